@@ -1,0 +1,33 @@
+// One exception for everything a user can cause: where it happened, what is wrong, and the exit code it means.
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace tyndall {
+enum class ExitCode {
+    ok = 0,
+    differs = 1,
+    usage = 2,
+    refused = 3,
+    unreadable = 4,
+    unwritable = 5,
+    non_finite = 6,
+    out_of_memory = 33,
+    no_display = 69,
+    internal = 70,
+};
+
+class Error : public std::runtime_error {
+public:
+    Error(ExitCode exit_code, std::string_view where, std::string_view what);
+    ExitCode code;
+};
+
+// `where` names file and field ("scenes/a.json: /lights/0/type"), `what` says what is wrong and what would do.
+[[noreturn]] void fail(ExitCode code, std::string_view where, std::string_view what);
+[[noreturn]] void refuse(std::string_view where, std::string_view what); // input is wrong: exit code 3
+
+// Foreign text made fit for one line of output: control bytes escaped, cut to `most` bytes.
+std::string printable(std::string_view text, size_t most = 200);
+}

@@ -1,0 +1,18 @@
+// Frame ranges (1-10, 1-10x2, 1,5,9, -3-4) and numbered file names (####, %04d, $F4).
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+// The frames of a range in the order written, without duplicates. Throws Error (usage) naming the column that is wrong.
+std::vector<int> parse_frames(std::string_view text);
+
+// "1-48", "1-9x2,20": the shortest way back.
+std::string format_frames(const std::vector<int>& frames);
+
+bool has_frame_token(std::string_view pattern);
+
+// The pattern with its token replaced: name.####.exr, 12 -> name.0012.exr. Negative frames keep their sign: -0003.
+std::string frame_name(std::string_view pattern, int frame);
+}

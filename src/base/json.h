@@ -1,0 +1,45 @@
+// JSON read safely: parsed with limits, checked against a schema, then read through a plain tree of values.
+// An error names the file, the JSON pointer and what was expected.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tyndall {
+class Json {
+public:
+    enum class Kind { null, boolean, number, string, array, object };
+
+    Kind kind = Kind::null;
+    bool boolean = false;
+    double number = 0;
+    std::string string;
+    std::vector<Json> items;                             // of an array
+    std::vector<std::pair<std::string, Json>> members;   // of an object, in file order
+
+    const Json* find(std::string_view key) const;        // member of an object, or null
+    bool has(std::string_view key) const { return find(key) != nullptr; }
+    // The value of a member, or `otherwise` when it is absent. The schema has already checked type and range.
+    double number_or(std::string_view key, double otherwise) const;
+    bool boolean_or(std::string_view key, bool otherwise) const;
+    std::string string_or(std::string_view key, std::string_view otherwise) const;
+};
+
+// Parses text (comments allowed; duplicate keys, depth over 64 and non-finite numbers refused). Throws Error (refused).
+Json parse_json(std::string_view text, std::string_view file);
+
+// Checks a document against a schema (draft-07). Throws Error (refused) naming file, JSON pointer and expectation;
+// an unknown key gets the nearest known name as a hint.
+void check_schema(const Json& document, std::string_view schema_text, std::string_view file);
+
+// Reads, parses and checks a file.
+Json read_json(const std::filesystem::path& path, std::string_view schema_text);
+
+// Compact JSON text of a value; numbers in the shortest form that reads back the same.
+std::string format_json(const Json& value);
+std::string quote_json(std::string_view text);
+}

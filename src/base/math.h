@@ -1,0 +1,85 @@
+// GLM under short names, and the few geometric types everything shares.
+// World space is right-handed, Y up, metres; angles are radians; colours are linear Rec.709.
+#pragma once
+#include <glm/glm.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tyndall {
+using glm::dmat4, glm::dvec3, glm::ivec2, glm::ivec3, glm::mat3, glm::mat4, glm::quat, glm::vec2, glm::vec3, glm::vec4;
+
+inline constexpr float pi = 3.14159265358979323846f;
+inline constexpr float infinity = std::numeric_limits<float>::infinity();
+
+// Points origin + t·direction for 0 <= t <= t_max; direction has unit length.
+struct Ray {
+    vec3 origin{0};
+    vec3 direction{0, 0, -1};
+    float t_max = infinity;
+
+    vec3 at(float t) const { return origin + t * direction; }
+};
+
+// A stretch of a ray; empty when high <= low.
+struct Interval {
+    float low = 0, high = 0;
+
+    bool empty() const { return !(low < high); }
+    float length() const { return empty() ? 0.0f : high - low; }
+};
+
+// Axis-aligned box; starts empty and grows.
+struct Box {
+    vec3 low{infinity}, high{-infinity};
+
+    bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
+    vec3 center() const { return 0.5f * (low + high); }
+    vec3 size() const { return high - low; }
+    void grow(vec3 point) { low = glm::min(low, point), high = glm::max(high, point); }
+    void grow(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+};
+
+inline constexpr Box everywhere() { return {vec3(-infinity), vec3(infinity)}; }
+
+// The part of origin + t·direction, low <= t <= high, inside the box. The direction may have any length, zeros included.
+inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (direction[axis] == 0) {
+            if (origin[axis] < box.low[axis] || origin[axis] > box.high[axis]) return {};
+            continue;
+        }
+        const float inverse = 1 / direction[axis];
+        const float a = (box.low[axis] - origin[axis]) * inverse, b = (box.high[axis] - origin[axis]) * inverse;
+        range.low = std::max(range.low, std::min(a, b));
+        range.high = std::min(range.high, std::max(a, b));
+    }
+    return range.empty() ? Interval{} : range;
+}
+
+// The smallest axis-aligned box around an affinely transformed box; a box infinite in any direction stays everywhere.
+inline Box transform(const mat4& matrix, const Box& box) {
+    if (box.empty() || std::isinf(box.low.x + box.low.y + box.low.z + box.high.x + box.high.y + box.high.z)) return box;
+    Box result;
+    for (int corner = 0; corner < 8; ++corner) {
+        const vec3 point(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                         corner & 4 ? box.high.z : box.low.z);
+        result.grow(vec3(matrix * vec4(point, 1)));
+    }
+    return result;
+}
+
+// Two unit vectors that complete `axis` (unit length) to a right-handed orthonormal frame (Duff et al. 2017).
+inline void make_frame(vec3 axis, vec3& u, vec3& v) {
+    const float sign = std::copysign(1.0f, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
+    u = vec3(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+    v = vec3(b, sign + axis.y * axis.y * a, -axis.y);
+}
+
+inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+inline float max_component(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline float luminance(vec3 rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
+}

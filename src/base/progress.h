@@ -1,0 +1,30 @@
+// Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise.
+#pragma once
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+namespace tyndall {
+enum class ProgressStyle { automatic, alf, json, bar, none };
+
+// Thread-safe. `to_stderr` keeps stdout free for a report.
+class Progress {
+public:
+    Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr = false);
+    ~Progress();
+    void set(double done);                 // absolute, 0..total
+    void line(std::string_view text);      // a human line (a frame finished) that does not break the bar
+    void finish();
+
+private:
+    void print(bool last);
+    std::mutex mutex_;
+    ProgressStyle style_;
+    std::string what_;
+    double total_, done_ = 0;
+    bool to_stderr_, finished_ = false;
+    int last_percent_ = -1;
+    std::chrono::steady_clock::time_point start_, last_print_;
+};
+}

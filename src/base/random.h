@@ -1,0 +1,57 @@
+// Counter-based random numbers: a value depends only on what it is for, never on who asked before.
+#pragma once
+#include <cstdint>
+
+namespace tyndall {
+// Avalanching 32-bit mix (Wellons' lowbias32).
+constexpr uint32_t mix(uint32_t x) {
+    x ^= x >> 16, x *= 0x7feb352du;
+    x ^= x >> 15, x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+constexpr uint32_t hash(uint32_t a) { return mix(a + 0x9e3779b9u); }
+template<class... More> constexpr uint32_t hash(uint32_t a, More... more) {
+    return mix(a + 0x9e3779b9u + 0x85ebca6bu * hash(static_cast<uint32_t>(more)...));
+}
+
+// The 24 leading bits as a number in [0, 1).
+constexpr float to_unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
+// A number in [0, 1) for one use: pixel index, sample index, dimension, seed.
+constexpr float random_unit(uint32_t pixel, uint32_t sample, uint32_t dimension, uint32_t seed) {
+    return to_unit(hash(pixel, sample, dimension, seed));
+}
+
+constexpr uint32_t reverse_bits(uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
+}
+
+// Hashed Owen scrambling of a bit-reversed index (Laine–Karras form, Vegdahl's constants).
+constexpr uint32_t owen_scramble(uint32_t x, uint32_t seed) {
+    x = reverse_bits(x);
+    x ^= x * 0x3d20adeau, x += seed, x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u, x ^= x * 0x53a22864u;
+    return reverse_bits(x);
+}
+
+// Second Sobol dimension of an index, as 32 bits.
+constexpr uint32_t sobol2(uint32_t index) {
+    uint32_t result = 0;
+    for (uint32_t direction = 1u << 31; index; index >>= 1, direction ^= direction >> 1)
+        if (index & 1) result ^= direction;
+    return result;
+}
+
+// Sample `index` of an Owen-scrambled (0,2)-sequence in [0,1)²; `seed` decorrelates uses and pixels.
+struct Sample2 { float x, y; };
+constexpr Sample2 sample2(uint32_t index, uint32_t seed) {
+    const uint32_t shuffled = owen_scramble(index, hash(seed, 0u));
+    return {to_unit(owen_scramble(reverse_bits(shuffled), hash(seed, 1u))),
+            to_unit(owen_scramble(sobol2(shuffled), hash(seed, 2u)))};
+}
+}

@@ -1,0 +1,54 @@
+// The techniques: what each promises, where it fails, and how it turns a scene into light along camera rays.
+#pragma once
+#include "modes/settings.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+// What the fog does to one camera ray up to its t_max.
+struct Scatter {
+    vec3 radiance{0};            // light scattered and emitted towards the eye
+    float transmittance = 1;     // share of what lies behind that comes through
+    float validity = 1;          // 0 where the mode knows itself wrong
+    int steps = 0;               // evaluations spent, for statistics
+};
+
+// One call's input beyond the rays: which pixel sample this is, for jitter.
+struct RayBatch {
+    std::span<const Ray> rays;                  // up to 16 neighbouring rays (4×4 pixels)
+    std::span<const uint32_t> ids;              // a number per ray, unique to pixel and sample
+    std::span<vec3> per_light;                  // empty, or rays × lights: the part of radiance from each light
+};
+using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
+
+enum class Accuracy { look, even_fog, single_scattering, multiple_scattering };
+enum class Surfaces { shared, own, post };
+enum class Severity { info, degraded, wrong };
+
+struct Limit {
+    Severity severity = Severity::info;
+    std::string where, why;
+};
+
+struct History;
+
+struct Mode {
+    std::string_view name, summary;
+    Accuracy accuracy;
+    Surfaces surfaces;
+    std::vector<Limit> (*limits)(const View&, const Snapshot&, const Settings&);
+    ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
+};
+
+std::span<const Mode> modes();
+const Mode& find_mode(std::string_view name);      // throws Error (usage) listing the names
+
+std::string_view name_of(Accuracy accuracy);
+std::string_view name_of(Severity severity);
+}

@@ -1,0 +1,61 @@
+// How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and headers.
+#pragma once
+#include "trace/light_depth.h"
+#include "trace/view.h"
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+enum class Visibility { off, rays };
+enum class Jitter { none, white };
+
+struct PixelSettings {
+    int samples = 4;                 // camera rays per pixel
+    PixelFilter filter = PixelFilter::blackman_harris;
+    float filter_radius = 1;         // pixels
+};
+
+struct MarchSettings {
+    float step_depth = 0.25f;        // most optical depth per step
+    float step_voxels = 4;           // most voxels per step
+    float step_length = 0.5f;        // longest step, metres
+    float near_light = 0.5f;         // a step is at most this share of the distance to a local light
+    int max_steps = 1024;            // per ray
+    float min_transmittance = 1e-3f; // the march stops where less than this passes
+    Jitter jitter = Jitter::white;
+    Visibility visibility = Visibility::rays;
+    LightTransmittance light = LightTransmittance::grid;
+    int light_resolution = 64;       // cells across the fog in the light grids
+    bool phase = true;               // off: isotropic
+    bool heterogeneity = true;       // off: bricks at their mean density
+    bool emission = true;
+    bool ambient = true;
+};
+
+struct Settings {
+    PixelSettings pixel;
+    MarchSettings march;
+};
+
+enum class Quality { draft, preview, final, reference };
+Settings settings_for(Quality quality);
+
+// One field by name: march.step_depth, its unit, range or choices, and what it does.
+struct SettingRow {
+    std::string name, unit, doc;
+    std::vector<std::string> choices;          // of an enumeration or switch; empty for a number
+    double low = 0, high = 0;                  // range of a number
+    bool integer = false;
+    std::function<std::string(const Settings&)> get;
+    std::function<void(Settings&, std::string_view)> set;   // throws Error (usage)
+};
+const std::vector<SettingRow>& setting_rows();
+
+// "march.step_depth=0.1". Throws Error (usage): an unknown row names the nearest one.
+void apply_setting(Settings& settings, std::string_view assignment);
+
+std::string_view name_of(Quality quality);
+}

@@ -1,0 +1,10 @@
+// 8-bit sRGB pictures for looking at.
+#pragma once
+#include "base/image.h"
+
+#include <filesystem>
+
+namespace tyndall {
+// colour · 2^exposure, filmic shoulder above 0.8 so that bright shafts keep their shape, sRGB, dithered by ±½ code.
+void write_png(const std::filesystem::path& file, const Image<vec3>& linear, float exposure);
+}

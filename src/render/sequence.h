@@ -1,0 +1,49 @@
+// Frames of a scene to files: resumable, atomic, with progress and statistics.
+#pragma once
+#include "base/progress.h"
+#include "render/exr.h"
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct RenderJob {
+    std::filesystem::path scene_file;
+    std::string output;                    // pattern
+    std::vector<int> frames;
+    std::string mode = "march";
+    Quality quality = Quality::preview;
+    Settings settings;                     // quality and --set already applied
+    std::string camera;                    // empty = the scene's
+    ivec2 resolution{0};                   // 0 = the scene's
+    ivec2 crop_low{0}, crop_high{0};
+    uint32_t seed = 0;
+    std::string isa;
+    MissingFrame missing = MissingFrame::error;
+    float exposure = 0;                    // added to the scene's, for PNGs
+    ExrOptions exr;
+    bool png = false, resume = false;
+    std::vector<std::string> limits_said;
+};
+
+struct FrameReport {
+    int frame = 0;
+    std::string file;
+    bool kept = false;
+    double load_seconds = 0, seconds = 0, write_seconds = 0;
+    FrameStats stats;
+};
+
+struct RenderReport {
+    std::vector<FrameReport> frames;
+    std::vector<std::string> notes;
+    double seconds = 0;
+    uint64_t non_finite = 0, peak_memory_bytes = 0;
+};
+
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel);
+
+// JSON of a report, with a schema version.
+std::string stats_json(const RenderReport& report, const RenderJob& job);
+}

@@ -1,0 +1,27 @@
+// A pinhole camera at one moment.
+#pragma once
+#include "base/math.h"
+
+#include <string>
+
+namespace tyndall {
+struct Camera {
+    std::string name;
+    vec3 position{0, 1, 4};
+    vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};   // orthonormal
+    float vertical_fov = 0.8f;        // radians; perspective
+    float ortho_height = 0;           // metres; above 0 the camera is orthographic
+    float near = 0.01f, far = infinity;
+};
+
+// Camera at `position` looking at `target`; `up` need not be perpendicular.
+Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov);
+
+// The ray through a point of the picture in pixels, (0,0) the upper left corner of the upper left pixel.
+Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel);
+
+// Distance along the viewing direction (planar z) of a point on a ray of this camera.
+inline float planar_depth(const Camera& camera, const Ray& ray, float t) {
+    return glm::dot(ray.at(t) - camera.position, camera.forward);
+}
+}

@@ -1,0 +1,42 @@
+// Triangles and what they are made of.
+#pragma once
+#include "base/image.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+enum class AlphaMode { opaque, mask, blend };
+
+struct Texture {
+    std::string name;
+    Image<vec4> texels;            // linear colour, straight alpha; empty when the file could not be used
+    bool repeat_u = true, repeat_v = true, mirror_u = false, mirror_v = false, nearest = false;
+};
+
+// Bilinear texel (nearest when asked); v runs down as in glTF.
+vec4 sample_texture(const Texture& texture, vec2 uv);
+
+struct Material {
+    std::string name;
+    vec3 base_color{1};
+    float alpha = 1;
+    int base_texture = -1;         // index into Scene::textures
+    vec3 emission{0};              // radiance (nits)
+    int emission_texture = -1;
+    AlphaMode alpha_mode = AlphaMode::opaque;
+    float alpha_cutoff = 0.5f;
+    bool double_sided = false;     // only shading normals care; every face casts shadows
+};
+
+// One material's triangles. Normals and uvs are empty or one per position.
+struct Mesh {
+    std::string name;
+    std::vector<vec3> positions, normals;
+    std::vector<vec2> uvs;
+    std::vector<vec3> colors;                // vertex colours times base_color; empty = white
+    std::vector<glm::uvec3> triangles;
+    int material = -1;                       // -1 = white Lambert
+};
+}

@@ -1,0 +1,59 @@
+// The triangles of a moment in Embree: what a ray meets, and whether light gets through. The only user of Embree.
+#pragma once
+#include "scene/scene.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace tyndall {
+// What 16 rays meet first. mesh < 0 = nothing.
+struct Hits {
+    std::array<float, 16> t;
+    std::array<int32_t, 16> instance, triangle;
+    std::array<float, 16> u, v;                  // barycentrics of the 2nd and 3rd corner
+};
+
+struct SurfacePoint {
+    vec3 position{0};
+    vec3 normal{0, 1, 0};            // shading normal, towards the viewer
+    vec3 face_normal{0, 1, 0};       // geometric, towards the viewer
+    vec3 base_color{1};
+    vec3 emission{0};
+    float alpha = 1;
+};
+
+class Occluders {
+public:
+    // World-space triangles of every instance at a moment. Non-finite and degenerate triangles are left out and counted.
+    // Shares geometry that does not move with `previous`.
+    static std::shared_ptr<const Occluders> make(const Scene& scene, double seconds, const Occluders* previous);
+    ~Occluders();
+
+    bool empty() const;
+    Box bounds() const;
+    uint64_t triangle_count() const;
+    uint64_t dropped() const;        // triangles left out
+
+    // First surface of up to 16 rays beyond t_min. Alpha MASK holes are passed; BLEND surfaces are hit.
+    // A ray with a non-finite component hits nothing. `coherent`: the rays start together.
+    void closest(std::span<const Ray> rays, float t_min, Hits& hits, bool coherent = true) const;
+
+    // Share of light that passes from each origin along direction to t_max: 1 free, 0 blocked, between through BLEND.
+    // Lanes with active[i] == 0 are left as they are. Rays start t_min in front of their origin.
+    struct ShadowRays {
+        alignas(64) float ox[16], oy[16], oz[16], dx[16], dy[16], dz[16], t_min[16], t_max[16];
+        alignas(64) int32_t active[16];     // -1 = trace, 0 = skip
+    };
+    void transmission(ShadowRays& rays, float* visibility) const;
+    float transmission(const Ray& ray, float t_min) const;     // a single ray: the slow way, for tests and benchmarks
+
+    SurfacePoint surface(const Ray& ray, const Hits& hits, int lane) const;
+
+private:
+    Occluders();
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+}

@@ -1,0 +1,53 @@
+// A scene at one moment, ready to trace.
+#pragma once
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
+#include "volume/medium.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct BackgroundNow {
+    BackgroundKind kind = BackgroundKind::color;
+    vec3 color{0}, zenith{0}, ground{0};
+    std::shared_ptr<const Image<vec3>> image;
+    bool lat_long = false;
+    float intensity = 1, rotation = 0;
+};
+
+struct Snapshot {
+    const Scene* scene = nullptr;
+    double seconds = 0;
+    int frame = 0;
+    std::vector<Light> lights;            // of non-zero intensity
+    std::vector<Medium> media;            // of non-zero extinction
+    vec3 ambient{0};
+    BackgroundNow background;
+    std::shared_ptr<const Occluders> occluders;
+    Box bounds;                           // of meshes, local lights and bounded media
+    std::vector<std::string> notes;       // what was mended in the files of this frame; say once
+    std::vector<std::string> media_keys;  // what each medium was made from: reuse when unchanged
+};
+
+struct Moment {
+    int frame = 0;
+    double seconds = 0;
+};
+inline Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
+
+// Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since
+// `previous` is shared with it. Throws Error.
+Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
+                       MissingFrame missing = MissingFrame::error);
+
+Camera camera_at(const Scene& scene, int camera, double seconds);
+
+// Index of a camera by name; empty = the default. Throws Error (usage) listing the names.
+int find_camera(const Scene& scene, const std::string& name);
+
+// Radiance behind everything. `screen` is the position on the picture, 0..1 from the upper left (for plates).
+vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);
+}

@@ -1,0 +1,25 @@
+// Bakes a recipe to a sequence of VDB files: frames are grown in parallel with writing.
+#pragma once
+#include "base/progress.h"
+#include "volume/recipe.h"
+#include "volume/vdb.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct BakeOptions {
+    VdbWriteOptions write;
+    bool resume = false;      // keep files whose stored settings hash matches and whose voxels read back
+};
+
+struct BakeReport {
+    int written = 0, kept = 0;
+    double seconds = 0;
+    uint64_t voxels = 0, bytes = 0;
+};
+
+// `pattern` needs a frame token for more than one frame. Frame f shows the time f / frame_rate. Throws Error.
+BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames,
+                const BakeOptions& options, Progress& progress);
+}

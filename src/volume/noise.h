@@ -1,0 +1,26 @@
+// Fractal gradient noise in three dimensions that can change over time, by itself and without a seam.
+#pragma once
+#include "base/math.h"
+
+#include <cstdint>
+#include <span>
+
+namespace tyndall {
+// Sum over octaves o of gain^o · gradient noise(lacunarity^o · point / scale); normalised so that |sum| <= 1.
+struct FractalNoise {
+    int octaves = 5;
+    float scale = 1;          // metres per cell of the first octave
+    float lacunarity = 2;
+    float gain = 0.5f;
+    uint32_t seed = 0;
+    float evolve = 0;         // turns of the gradients per second (0 = frozen); with a period, whole turns per loop
+};
+
+// Values at points (structure of arrays). Exactly the same bits on AVX2 and AVX-512.
+// `turn` = evolve · seconds: the gradients of every octave rotate by whole multiples of it, so turn and turn+1 are equal.
+void fractal_noise(const FractalNoise& noise, float turn, std::span<const float> x, std::span<const float> y,
+                   std::span<const float> z, std::span<float> values);
+
+// A rigorous upper bound of the noise over a box (never too small; tight for boxes below a cell).
+float fractal_noise_bound(const FractalNoise& noise, float turn, const Box& box);
+}

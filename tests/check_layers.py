@@ -1,0 +1,31 @@
+"""Fails when a file includes a layer above its own, or a library outside the layer that owns it."""
+import pathlib
+import re
+import sys
+
+LAYERS = ["base", "volume", "scene", "trace", "modes", "render", "measure"]
+OWNERS = {  # header prefix -> where it may be included
+    "tbb/": ["src/base"], "nlohmann/": ["src/base"], "valijson/": ["src/base"], "openvdb/": ["src/volume/vdb"],
+    "nanovdb/": ["tests"], "embree3/": ["src/trace/occluders"], "tiny_gltf": ["src/scene"],
+    "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/exr"],
+    "Imf": ["src/render/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "imgui": ["apps"],
+}
+
+root = pathlib.Path(sys.argv[1])
+problems = []
+for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.glob("apps/**/*.cpp")]):
+    relative = path.relative_to(root).as_posix()
+    own = relative.split("/")[1] if relative.startswith("src/") else None
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line)
+        if not match:
+            continue
+        included = match.group(1)
+        layer = included.split("/")[0]
+        if own in LAYERS and layer in LAYERS and "/" in included and LAYERS.index(layer) > LAYERS.index(own):
+            problems.append(f"{relative}:{number}: {own} includes {included}, a layer above it")
+        for prefix, allowed in OWNERS.items():
+            if included.startswith(prefix) and not any(relative.startswith(place) for place in allowed):
+                problems.append(f"{relative}:{number}: {included} belongs in {', '.join(allowed)} only")
+print("\n".join(problems) or "layers: ok")
+sys.exit(1 if problems else 0)
