@@ -21,7 +21,8 @@ struct PixelSettings {
 struct MarchSettings {
     float step_depth = 0.25f;        // most optical depth per step
     float step_voxels = 4;           // most voxels per step
-    float step_length = 0.5f;        // longest step, metres
+    float step_length = 1e6f;        // longest step, metres
+    float step_share = 1.0f / 48;    // longest step as a share of the ray's stretch through fog
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     int max_steps = 1024;            // per ray
     float min_transmittance = 1e-3f; // the march stops where less than this passes
@@ -58,4 +59,5 @@ const std::vector<SettingRow>& setting_rows();
 void apply_setting(Settings& settings, std::string_view assignment);
 
 std::string_view name_of(Quality quality);
+Quality quality_named(std::string_view name);   // throws Error (usage)
 }

@@ -1,0 +1,40 @@
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+// Optimal string alignment distance, row by row.
+size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::vector<size_t>> cost(a.size() + 1, std::vector<size_t>(b.size() + 1));
+    for (size_t i = 0; i <= a.size(); ++i) {
+        for (size_t j = 0; j <= b.size(); ++j) {
+            if (i == 0 || j == 0) {
+                cost[i][j] = i + j;
+                continue;
+            }
+            const bool same = a[i - 1] == b[j - 1];
+            cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + !same});
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+                cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
+        }
+    }
+    return cost[a.size()][b.size()];
+}
+}
+
+std::string joined(const std::vector<std::string>& words, std::string_view separator) {
+    std::string result;
+    for (const std::string& word : words) result += (result.empty() ? "" : std::string(separator)) + word;
+    return result;
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+    const std::string_view start = name.substr(0, 64);
+    const auto nearer = [&](const std::string& a, const std::string& b) {
+        return edit_distance(start, a) < edit_distance(start, b);
+    };
+    const auto best = std::min_element(candidates.begin(), candidates.end(), nearer);
+    return best == candidates.end() ? std::string() : *best;
+}
+}
