@@ -19,11 +19,12 @@ struct Scatter {
     int steps = 0;               // evaluations spent, for statistics
 };
 
-// One call's input beyond the rays: which pixel sample this is, for jitter.
+// Up to 16 neighbouring rays (4×4 pixels) of one pixel sample.
 struct RayBatch {
-    std::span<const Ray> rays;                  // up to 16 neighbouring rays (4×4 pixels)
-    std::span<const uint32_t> ids;              // a number per ray, unique to pixel and sample
+    std::span<const Ray> rays;
+    std::span<const uint32_t> ids;              // a number per ray, unique to pixel and sample: seeds random choices
     std::span<vec3> per_light;                  // empty, or rays × lights: the part of radiance from each light
+    std::span<const float> jitter;              // per ray in [0,1), stratified over the samples of a pixel; empty = ½
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 

@@ -1,0 +1,253 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/march_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/march_kernel.h"
+
+#include "base/random.h"
+#include "base/simd.h"
+#include "trace/light_depth_simd.h"
+#include "volume/medium_simd.h"
+#include "volume/phase_simd.h"
+#include "volume/steps.h"
+
+#include <array>
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+struct Packet {
+    Vec3s origin, direction;
+    std::array<std::vector<Step>, 16> steps;
+    std::vector<Floats> extinction;     // of each medium at the current points
+    size_t longest = 0;                 // most steps of any lane
+};
+
+struct Totals {
+    Vec3s radiance;
+    Floats transmittance;
+};
+
+// Points of one step, and how the light arrives there.
+struct Points {
+    Vec3s position;
+    Floats length;        // of the step, 0 in lanes that are done
+    Mask16 active;        // lanes with fog here
+};
+
+void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
+    alignas(64) float v[6][16] = {};
+    packet.longest = 0;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        packet.steps[lane].clear();
+        const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
+        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
+        if (lane >= batch.rays.size()) continue;
+
+        // The stretch of the ray in any fog sets the longest step.
+        Interval stretch{infinity, 0};
+        for (const Medium& medium : march.snapshot.media) {
+            const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+            if (inside.empty()) continue;
+            stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
+        }
+        if (stretch.empty()) continue;
+        const MarchSettings& settings = march.settings;
+        const StepRule rule{settings.step_depth,
+                            settings.step_voxels,
+                            std::min(settings.step_length, settings.step_share * stretch.length()),
+                            settings.max_steps,
+                            march.near_points,
+                            settings.near_light};
+        append_steps(ray, march.snapshot.media, rule, packet.steps[lane]);
+        packet.longest = std::max(packet.longest, packet.steps[lane].size());
+    }
+    packet.origin = {load(v[0]), load(v[1]), load(v[2])};
+    packet.direction = {load(v[3]), load(v[4]), load(v[5])};
+}
+
+// The k-th step of every lane: where it looks and how long it is.
+Points step_points(const Packet& packet, size_t k, const float* jitter) {
+    alignas(64) float at[16], length[16];
+    for (size_t lane = 0; lane < 16; ++lane) {
+        const bool there = k < packet.steps[lane].size();
+        const Step step = there ? packet.steps[lane][k] : Step{0, 0};
+        length[lane] = step.high - step.low;
+        at[lane] = step.low + jitter[lane] * length[lane];
+    }
+    Points points;
+    points.position = fused(packet.direction, load(at), packet.origin);
+    points.length = load(length);
+    points.active = points.length > 0.0f;
+    return points;
+}
+
+// Irradiance of a light at the points with nothing in the way, as arrival() of scene/light.h.
+struct Arriving {
+    Vec3s to_light;       // unit
+    Floats distance;
+    Floats amount;        // multiplies the light's intensity
+};
+
+Arriving arriving(const Light& light, const Points& points) {
+    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
+    const Vec3s offset = splat(light.position) - points.position;
+    const float closest = std::max(light.radius, 1e-4f);
+    const Floats squared = dot(offset, offset);
+    const Floats distance = max(sqrt(squared), 1e-12f);
+    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, closest * closest)};
+    if (!std::isinf(light.range)) {
+        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
+        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
+    }
+    if (light.kind == LightKind::spot) {
+        const float outer = std::cos(light.outer_cone);
+        const float scale = 1 / std::max(0.001f, std::cos(light.inner_cone) - outer);
+        const Floats cosine = -dot(result.to_light, splat(light.direction));
+        const Floats edge = max(min((cosine - outer) * scale, 1.0f), 0.0f);
+        result.amount = result.amount * edge * edge;
+    }
+    return result;
+}
+
+// Share of the light that surfaces let through, by one packet of shadow rays; soft lights get a random point each.
+Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
+                     const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
+    const Occluders* occluders = march.snapshot.occluders.get();
+    if (!light.shadows || !occluders || occluders->empty() || march.settings.visibility == Visibility::off) return 1.0f;
+    Occluders::ShadowRays rays;
+    store(points.position.x, rays.ox), store(points.position.y, rays.oy), store(points.position.z, rays.oz);
+    store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
+    store(light_at.distance * 0.9999f, rays.t_max);
+    alignas(64) float is_wanted[16], share[16];
+    store(select(wanted, 1.0f, 0.0f), is_wanted);
+    const bool soft = light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
+        rays.t_min[lane] = 0;
+        share[lane] = 0;
+        if (!soft || !rays.active[lane]) continue;
+        const uint32_t key = hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
+        const vec2 u(to_unit(hash(key, 0u)), to_unit(hash(key, 1u)));
+        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
+        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
+        rays.t_max[lane] = ray.t_max;
+    }
+    occluders->transmission(rays, share);
+    return load(share);
+}
+
+// Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.
+Vec3s scattered_from(const March& march, size_t light_index, const Points& points, const Packet& packet,
+                     const RayBatch& batch, size_t step) {
+    const Light& light = march.snapshot.lights[light_index];
+    const Arriving light_at = arriving(light, points);
+    Mask16 wanted = points.active & (light_at.amount > 0.0f);
+    if (!any(wanted)) return splat(vec3(0));
+    const Floats share = visible_share(march, light, points, light_at, wanted, batch, step, light_index);
+    wanted = wanted & (share > 0.0f);
+    if (!any(wanted)) return splat(vec3(0));
+
+    const Floats cosine = dot(light_at.to_light, packet.direction);
+    Vec3s scattering = splat(vec3(0));
+    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
+        const Optics& optics = march.snapshot.media[m].optics;
+        const Floats weight = packet.extinction[m] * phase_value(optics.phase, cosine);
+        scattering = fused(splat(optics.albedo), weight, scattering);
+    }
+    const Floats dimmed = exp(-light_depth16(march.depths[light_index], points.position, wanted));
+    const Floats amount = zero_unless(wanted, light_at.amount * share * dimmed);
+    return scattering * amount * splat(light.intensity * light.volume_scale);
+}
+
+// Extinction of all media at the points; fills packet.extinction.
+Floats extinction_at(const March& march, const Points& points, Packet& packet) {
+    Floats total = 0.0f;
+    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
+        const Medium& medium = march.snapshot.media[m];
+        packet.extinction[m] = zero_unless(points.active, density16(medium, points.position) * medium.optics.extinction);
+        total = total + packet.extinction[m];
+    }
+    return total;
+}
+
+// Emission and ambient light, per metre: neither needs a light's direction.
+Vec3s glow_at(const March& march, const Packet& packet) {
+    Vec3s glow = splat(vec3(0));
+    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
+        const Optics& optics = march.snapshot.media[m].optics;
+        const vec3 per_extinction = optics.albedo * march.snapshot.ambient + optics.emission / optics.extinction;
+        glow = fused(splat(per_extinction), packet.extinction[m], glow);
+    }
+    return glow;
+}
+
+void store_per_light(const Vec3s& light, size_t light_index, size_t light_count, const RayBatch& batch) {
+    alignas(64) float rgb[3][16];
+    store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
+    for (size_t lane = 0; lane < batch.rays.size(); ++lane)
+        batch.per_light[lane * light_count + light_index] += vec3(rgb[0][lane], rgb[1][lane], rgb[2][lane]);
+}
+
+void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local Packet packet;
+    const size_t light_count = march.snapshot.lights.size();
+    packet.extinction.resize(march.snapshot.media.size());
+    place_steps(march, batch, packet);
+
+    alignas(64) float jitter[16];
+    for (size_t lane = 0; lane < 16; ++lane) {
+        const bool given = lane < batch.jitter.size() && march.settings.jitter == Jitter::white;
+        jitter[lane] = given ? batch.jitter[lane] : 0.5f;
+    }
+
+    Totals totals{splat(vec3(0)), 1.0f};
+    alignas(64) float steps_taken[16] = {};
+    Floats taken = 0.0f;
+    for (size_t k = 0; k < packet.longest; ++k) {
+        Points points = step_points(packet, k, jitter);
+        points.active = points.active & (totals.transmittance > march.settings.min_transmittance);
+        if (!any(points.active)) {
+            if (!any(totals.transmittance > march.settings.min_transmittance)) break;
+            continue;
+        }
+        const Floats extinction = extinction_at(march, points, packet);
+        points.active = points.active & (extinction > 0.0f);
+        taken = taken + select(points.active, 1.0f, 0.0f);
+        if (!any(points.active)) continue;
+
+        // What a source of 1 per metre in this step adds to the eye.
+        const Floats depth = extinction * points.length;
+        const Floats weight = totals.transmittance * points.length * mean_transmittance(depth);
+        totals.radiance = totals.radiance + glow_at(march, packet) * weight;
+        for (size_t light = 0; light < light_count; ++light) {
+            const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;
+            totals.radiance = totals.radiance + added;
+            if (!batch.per_light.empty()) store_per_light(added, light, light_count, batch);
+        }
+        totals.transmittance = totals.transmittance * exp(-depth);
+    }
+
+    alignas(64) float rgbt[4][16];
+    store(totals.radiance.x, rgbt[0]), store(totals.radiance.y, rgbt[1]), store(totals.radiance.z, rgbt[2]);
+    store(totals.transmittance, rgbt[3]), store(taken, steps_taken);
+    for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
+        Scatter& result = results[lane];
+        result.radiance = vec3(rgbt[0][lane], rgbt[1][lane], rgbt[2][lane]);
+        result.transmittance = rgbt[3][lane];
+        result.validity = 1;
+        result.steps = static_cast<int>(steps_taken[lane]);
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(march_packet_kernel);
+void march_packet(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(march_packet_kernel)(march, batch, results);
+}
+}
+#endif

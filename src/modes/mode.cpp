@@ -1,0 +1,36 @@
+#include "modes/mode.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "modes/techniques.h"
+
+#include <array>
+
+namespace tyndall {
+std::span<const Mode> modes() {
+    static const std::array table{
+        Mode{"march", "ray march through all fog with shadow rays: the main renderer", Accuracy::single_scattering,
+             Surfaces::shared, march_limits, prepare_march},
+    };
+    return table;
+}
+
+const Mode& find_mode(std::string_view name) {
+    std::vector<std::string> names;
+    for (const Mode& mode : modes()) {
+        if (mode.name == name) return mode;
+        names.emplace_back(mode.name);
+    }
+    fail(ExitCode::usage, "--mode", "no mode '" + printable(name, 40) + "'; there is " + joined(names, ", "));
+}
+
+std::string_view name_of(Accuracy accuracy) {
+    constexpr std::string_view names[] = {"look", "even fog", "single scattering", "multiple scattering"};
+    return names[static_cast<size_t>(accuracy)];
+}
+
+std::string_view name_of(Severity severity) {
+    constexpr std::string_view names[] = {"info", "degraded", "wrong"};
+    return names[static_cast<size_t>(severity)];
+}
+}

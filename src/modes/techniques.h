@@ -1,0 +1,8 @@
+// The functions behind the rows of the mode table: one pair per technique, each in its own .cpp.
+#pragma once
+#include "modes/mode.h"
+
+namespace tyndall {
+std::vector<Limit> march_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_march(const View&, const Snapshot&, const Settings&, History*);
+}
