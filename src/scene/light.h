@@ -30,10 +30,26 @@ struct Arrival {
 };
 Arrival arrival(const Light& light, vec3 point);
 
+inline constexpr float smallest_radius = 1e-4f;   // metres; 1/r² is capped here when a light has no radius
+
 // KHR_lights_punctual's window: 1 near the light, 0 at range.
 inline float range_window(float distance, float range) {
     if (std::isinf(range)) return 1;
     const float x = distance / range, x4 = x * x * x * x;
     return std::clamp(1 - x4, 0.0f, 1.0f);
+}
+
+// KHR_lights_punctual's cone: clamp(cosine · scale + offset, 0, 1)², 1 inside inner_cone, 0 outside outer_cone. Its
+// guard of 0.001 against division by zero would dim cones under 2.6°; this one is small enough for any beam.
+struct ConeFalloff {
+    float scale, offset;
+    float at(float cosine) const {
+        const float x = std::clamp(cosine * scale + offset, 0.0f, 1.0f);
+        return x * x;
+    }
+};
+inline ConeFalloff cone_falloff(const Light& light) {
+    const float outer = std::cos(light.outer_cone), scale = 1 / std::max(std::cos(light.inner_cone) - outer, 1e-6f);
+    return {scale, -outer * scale};
 }
 }

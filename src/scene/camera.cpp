@@ -1,0 +1,36 @@
+// Camera frames and the rays of a picture.
+#include "scene/camera.h"
+
+namespace tyndall {
+Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov) {
+    Camera camera;
+    camera.position = position;
+    camera.vertical_fov = vertical_fov;
+    const vec3 towards = target - position;
+    if (glm::dot(towards, towards) > 0) camera.forward = glm::normalize(towards);
+
+    // Straight up or down, `up` says nothing: any direction across will do.
+    vec3 right = glm::cross(camera.forward, up);
+    if (!(glm::dot(right, right) > 1e-12f * glm::dot(up, up))) {
+        vec3 across;
+        make_frame(camera.forward, right, across);
+    }
+    camera.right = glm::normalize(right);
+    camera.up = glm::cross(camera.right, camera.forward);
+    return camera;
+}
+
+Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel) {
+    const vec2 extent(size);
+    const float aspect = extent.x / extent.y;
+    const vec2 screen((2 * pixel.x / extent.x - 1) * aspect, 1 - 2 * pixel.y / extent.y);
+    if (camera.ortho_height > 0) {
+        const vec2 offset = screen * (0.5f * camera.ortho_height);
+        return {camera.position + offset.x * camera.right + offset.y * camera.up, camera.forward, camera.far};
+    }
+    const vec2 slope = screen * std::tan(0.5f * camera.vertical_fov);
+    const vec3 direction = camera.forward + slope.x * camera.right + slope.y * camera.up;
+    const float length = glm::length(direction);
+    return {camera.position, direction / length, camera.far * length};
+}
+}
