@@ -1,6 +1,7 @@
 // Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise.
 #pragma once
 #include <chrono>
+#include <cstddef>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -13,8 +14,8 @@ class Progress {
 public:
     Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr = false);
     ~Progress();
-    void set(double done);                 // absolute, 0..total
-    void line(std::string_view text);      // a human line (a frame finished) that does not break the bar
+    void set(double done);            // absolute, 0..total; a smaller value than before is ignored
+    void line(std::string_view text); // a human line (a frame finished) that does not break the bar
     void finish();
 
 private:
@@ -25,6 +26,7 @@ private:
     double total_, done_ = 0;
     bool to_stderr_, finished_ = false;
     int last_percent_ = -1;
+    size_t last_length_ = 0;
     std::chrono::steady_clock::time_point start_, last_print_;
 };
 }

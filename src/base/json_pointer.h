@@ -1,0 +1,30 @@
+// JSON pointers (RFC 6901): how errors name a place in a document.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace tyndall {
+// "/lights" and "a/b" make "/lights/a~1b".
+inline std::string json_pointer(std::string_view parent, std::string_view key) {
+    std::string pointer(parent);
+    pointer += '/';
+    for (const char c : key) {
+        if (c == '~')
+            pointer += "~0";
+        else if (c == '/')
+            pointer += "~1";
+        else
+            pointer += c;
+    }
+    return pointer;
+}
+
+inline std::string json_pointer(std::string_view parent, size_t index) {
+    return std::string(parent) + "/" + std::to_string(index);
+}
+
+// "scenes/a.json: /lights/0"; the file alone for the root.
+inline std::string json_place(std::string_view file, std::string_view pointer) {
+    return std::string(file) + (pointer.empty() ? "" : ": ") + std::string(pointer);
+}
+}
