@@ -45,7 +45,8 @@ struct Box {
 
 inline constexpr Box everywhere() { return {vec3(-infinity), vec3(infinity)}; }
 
-// The part of origin + t·direction, low <= t <= high, inside the box. The direction may have any length, zeros included.
+// The part of origin + t·direction, low <= t <= high, inside the box. The direction may have any length, zeros
+// included.
 inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range) {
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) {

@@ -48,7 +48,9 @@ constexpr uint32_t sobol2(uint32_t index) {
 }
 
 // Sample `index` of an Owen-scrambled (0,2)-sequence in [0,1)²; `seed` decorrelates uses and pixels.
-struct Sample2 { float x, y; };
+struct Sample2 {
+    float x, y;
+};
 constexpr Sample2 sample2(uint32_t index, uint32_t seed) {
     const uint32_t shuffled = owen_scramble(index, hash(seed, 0u));
     return {to_unit(owen_scramble(reverse_bits(shuffled), hash(seed, 1u))),

@@ -1,5 +1,5 @@
-// The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by the
-// fog it crosses.
+// The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
+// the fog it crosses.
 #include "modes/march_kernel.h"
 #include "modes/techniques.h"
 
@@ -51,13 +51,15 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
                               "light scatters once only; up to " + number_text("%.2g", scattered) +
                                   " optical depths of scattering make real fog this thick brighter and softer"});
         if (!march.heterogeneity && medium.kind == DensityKind::bricks)
-            limits.push_back({Severity::wrong, "medium " + medium.name, "march.heterogeneity is off: drawn as even fog"});
+            limits.push_back(
+                {Severity::wrong, "medium " + medium.name, "march.heterogeneity is off: drawn as even fog"});
     }
     for (const Light& light : snapshot.lights)
         if (march.visibility == Visibility::off && light.shadows)
             limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
     if (!snapshot.media.empty() && march.light == LightTransmittance::off)
-        limits.push_back({Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
+        limits.push_back(
+            {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
     if (!snapshot.media.empty() && march.light == LightTransmittance::average)
         limits.push_back({Severity::degraded, "lights", "march.light is average: every point is dimmed the same"});
     if (max_component(snapshot.ambient) > 0)
@@ -79,6 +81,7 @@ ScatterFunction prepare_march(const View&, const Snapshot& snapshot, const Setti
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(
             make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution));
+        march->cones.push_back(cone_falloff(light));
         if (light.kind != LightKind::sun) march->near_points.push_back(light.position);
     }
     return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };

@@ -19,8 +19,8 @@ namespace {
 struct Packet {
     Vec3s origin, direction;
     std::array<std::vector<Step>, 16> steps;
-    std::vector<Floats> extinction;     // of each medium at the current points
-    size_t longest = 0;                 // most steps of any lane
+    std::vector<Floats> extinction; // of each medium at the current points
+    size_t longest = 0;             // most steps of any lane
 };
 
 struct Totals {
@@ -31,8 +31,8 @@ struct Totals {
 // Points of one step, and how the light arrives there.
 struct Points {
     Vec3s position;
-    Floats length;        // of the step, 0 in lanes that are done
-    Mask16 active;        // lanes with fog here
+    Floats length; // of the step, 0 in lanes that are done
+    Mask16 active; // lanes with fog here
 };
 
 void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
@@ -84,27 +84,25 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
 
 // Irradiance of a light at the points with nothing in the way, as arrival() of scene/light.h.
 struct Arriving {
-    Vec3s to_light;       // unit
+    Vec3s to_light; // unit
     Floats distance;
-    Floats amount;        // multiplies the light's intensity
+    Floats amount; // multiplies the light's intensity
 };
 
-Arriving arriving(const Light& light, const Points& points) {
+Arriving arriving(const Light& light, const ConeFalloff& cone, const Points& points) {
     if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - points.position;
-    const float closest = std::max(light.radius, 1e-4f);
+    const float reach = std::max(light.radius, smallest_radius);
     const Floats squared = dot(offset, offset);
     const Floats distance = max(sqrt(squared), 1e-12f);
-    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, closest * closest)};
+    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
     if (!std::isinf(light.range)) {
         const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
         result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
     }
     if (light.kind == LightKind::spot) {
-        const float outer = std::cos(light.outer_cone);
-        const float scale = 1 / std::max(0.001f, std::cos(light.inner_cone) - outer);
         const Floats cosine = -dot(result.to_light, splat(light.direction));
-        const Floats edge = max(min((cosine - outer) * scale, 1.0f), 0.0f);
+        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
         result.amount = result.amount * edge * edge;
     }
     return result;
@@ -141,7 +139,7 @@ Floats visible_share(const March& march, const Light& light, const Points& point
 Vec3s scattered_from(const March& march, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
     const Light& light = march.snapshot.lights[light_index];
-    const Arriving light_at = arriving(light, points);
+    const Arriving light_at = arriving(light, march.cones[light_index], points);
     Mask16 wanted = points.active & (light_at.amount > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
     const Floats share = visible_share(march, light, points, light_at, wanted, batch, step, light_index);
@@ -165,7 +163,8 @@ Floats extinction_at(const March& march, const Points& points, Packet& packet) {
     Floats total = 0.0f;
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const Medium& medium = march.snapshot.media[m];
-        packet.extinction[m] = zero_unless(points.active, density16(medium, points.position) * medium.optics.extinction);
+        packet.extinction[m] =
+            zero_unless(points.active, density16(medium, points.position) * medium.optics.extinction);
         total = total + packet.extinction[m];
     }
     return total;

@@ -8,13 +8,14 @@
 namespace tyndall {
 // What a march needs, made once per frame.
 struct March {
-    Snapshot snapshot;                  // media as the settings see them
+    Snapshot snapshot; // media as the settings see them
     MarchSettings settings;
-    std::vector<LightDepth> depths;     // one per light
-    std::vector<vec3> near_points;      // positions of the local lights
+    std::vector<LightDepth> depths; // one per light
+    std::vector<ConeFalloff> cones; // one per light
+    std::vector<vec3> near_points;  // positions of the local lights
 };
 
-// Fog along up to 16 rays. Source function and extinction are sampled once per step; within a step they are constant and
-// the integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015, section 5.6.3).
+// Fog along up to 16 rays. Source function and extinction are sampled once per step; within a step they are constant
+// and the integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015, section 5.6.3).
 void march_packet(const March& march, const RayBatch& batch, std::span<Scatter> results);
 }

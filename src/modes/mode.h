@@ -13,18 +13,18 @@
 namespace tyndall {
 // What the fog does to one camera ray up to its t_max.
 struct Scatter {
-    vec3 radiance{0};            // light scattered and emitted towards the eye
-    float transmittance = 1;     // share of what lies behind that comes through
-    float validity = 1;          // 0 where the mode knows itself wrong
-    int steps = 0;               // evaluations spent, for statistics
+    vec3 radiance{0};        // light scattered and emitted towards the eye
+    float transmittance = 1; // share of what lies behind that comes through
+    float validity = 1;      // 0 where the mode knows itself wrong
+    int steps = 0;           // evaluations spent, for statistics
 };
 
 // Up to 16 neighbouring rays (4×4 pixels) of one pixel sample.
 struct RayBatch {
     std::span<const Ray> rays;
-    std::span<const uint32_t> ids;              // a number per ray, unique to pixel and sample: seeds random choices
-    std::span<vec3> per_light;                  // empty, or rays × lights: the part of radiance from each light
-    std::span<const float> jitter;              // per ray in [0,1), stratified over the samples of a pixel; empty = ½
+    std::span<const uint32_t> ids; // a number per ray, unique to pixel and sample: seeds random choices
+    std::span<vec3> per_light;     // empty, or rays × lights: the part of radiance from each light
+    std::span<const float> jitter; // per ray in [0,1), stratified over the samples of a pixel; empty = ½
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 
@@ -48,7 +48,7 @@ struct Mode {
 };
 
 std::span<const Mode> modes();
-const Mode& find_mode(std::string_view name);      // throws Error (usage) listing the names
+const Mode& find_mode(std::string_view name); // throws Error (usage) listing the names
 
 std::string_view name_of(Accuracy accuracy);
 std::string_view name_of(Severity severity);

@@ -20,8 +20,8 @@ double parsed_number(std::string_view row, std::string_view text, double low, do
     const bool whole = problem == std::errc() && end == text.data() + text.size();
     if (!whole || !(value >= low && value <= high) || (integer && value != std::floor(value)))
         fail(ExitCode::usage, row,
-             "expected " + std::string(integer ? "a whole number" : "a number") + " from " + short_number(low) + " to " +
-                 short_number(high) + ", got '" + printable(text, 40) + "'");
+             "expected " + std::string(integer ? "a whole number" : "a number") + " from " + short_number(low) +
+                 " to " + short_number(high) + ", got '" + printable(text, 40) + "'");
     return value;
 }
 
@@ -53,7 +53,8 @@ SettingRow choice_row(std::string name, std::vector<std::string> choices, std::s
     return row;
 }
 
-#define FIELD(member) [](Settings & settings) -> auto& { return settings.member; }
+#define FIELD(member)                                                                                                  \
+    [](Settings & settings) -> auto& { return settings.member; }
 const std::vector<std::string> switches{"off", "on"};
 
 std::vector<SettingRow> make_rows() {
@@ -71,14 +72,14 @@ std::vector<SettingRow> make_rows() {
                    FIELD(march.step_share)),
         number_row("march.near_light", "", 0.005, 10, "a step is at most this share of the distance to a local light",
                    FIELD(march.near_light)),
-        number_row("march.max_steps", "", 1, 1e6, "most steps per ray; they get longer beyond",
-                   FIELD(march.max_steps)),
+        number_row("march.max_steps", "", 1, 1e6, "most steps per ray; they get longer beyond", FIELD(march.max_steps)),
         number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
                    FIELD(march.min_transmittance)),
         choice_row("march.jitter", {"none", "white"}, "where in its steps a ray looks: the middle, or shifted per ray",
                    FIELD(march.jitter)),
         choice_row("march.visibility", {"off", "rays"}, "shadows of surfaces in the fog", FIELD(march.visibility)),
-        choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog", FIELD(march.light)),
+        choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
+                   FIELD(march.light)),
         number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",
                    FIELD(march.light_resolution)),
         choice_row("march.phase", switches, "directional scattering; off = the same in all directions",
@@ -121,7 +122,8 @@ Settings settings_for(Quality quality) {
         march.step_depth = 0.5f, march.step_voxels = 8, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         break;
-    case Quality::preview: break;
+    case Quality::preview:
+        break;
     case Quality::final:
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
@@ -145,6 +147,7 @@ std::string_view name_of(Quality quality) {
 Quality quality_named(std::string_view name) {
     for (const Quality quality : {Quality::draft, Quality::preview, Quality::final, Quality::reference})
         if (name_of(quality) == name) return quality;
-    fail(ExitCode::usage, "--quality", "expected draft, preview, final or reference; got '" + printable(name, 40) + "'");
+    fail(ExitCode::usage, "--quality",
+         "expected draft, preview, final or reference; got '" + printable(name, 40) + "'");
 }
 }

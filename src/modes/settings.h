@@ -1,4 +1,5 @@
-// How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and headers.
+// How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and
+// headers.
 #pragma once
 #include "trace/light_depth.h"
 #include "trace/view.h"
@@ -13,9 +14,9 @@ enum class Visibility { off, rays };
 enum class Jitter { none, white };
 
 struct PixelSettings {
-    int samples = 4;                 // camera rays per pixel
+    int samples = 4; // camera rays per pixel
     PixelFilter filter = PixelFilter::blackman_harris;
-    float filter_radius = 1;         // pixels
+    float filter_radius = 1; // pixels
 };
 
 struct MarchSettings {
@@ -29,9 +30,9 @@ struct MarchSettings {
     Jitter jitter = Jitter::white;
     Visibility visibility = Visibility::rays;
     LightTransmittance light = LightTransmittance::grid;
-    int light_resolution = 64;       // cells across the fog in the light grids
-    bool phase = true;               // off: isotropic
-    bool heterogeneity = true;       // off: bricks at their mean density
+    int light_resolution = 64; // cells across the fog in the light grids
+    bool phase = true;         // off: isotropic
+    bool heterogeneity = true; // off: bricks at their mean density
     bool emission = true;
     bool ambient = true;
 };
@@ -47,11 +48,11 @@ Settings settings_for(Quality quality);
 // One field by name: march.step_depth, its unit, range or choices, and what it does.
 struct SettingRow {
     std::string name, unit, doc;
-    std::vector<std::string> choices;          // of an enumeration or switch; empty for a number
-    double low = 0, high = 0;                  // range of a number
+    std::vector<std::string> choices; // of an enumeration or switch; empty for a number
+    double low = 0, high = 0;         // range of a number
     bool integer = false;
     std::function<std::string(const Settings&)> get;
-    std::function<void(Settings&, std::string_view)> set;   // throws Error (usage)
+    std::function<void(Settings&, std::string_view)> set; // throws Error (usage)
 };
 const std::vector<SettingRow>& setting_rows();
 
@@ -59,5 +60,5 @@ const std::vector<SettingRow>& setting_rows();
 void apply_setting(Settings& settings, std::string_view assignment);
 
 std::string_view name_of(Quality quality);
-Quality quality_named(std::string_view name);   // throws Error (usage)
+Quality quality_named(std::string_view name); // throws Error (usage)
 }
