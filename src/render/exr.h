@@ -1,4 +1,8 @@
 // OpenEXR pictures. The only user of OpenEXR. Encoded in memory, then written atomically.
+//
+// Channels: R G B A (premultiplied; RGB holds the background as far as it shows, A does not), Z, inscatter.R/G/B,
+// transmittance.T, validity.T, light_NAME.R/G/B. Half floats, clamped to ±65504 (tyndall:clamped counts them); Z is a
+// 32 bit float, 1e10 where there is no surface. Rec.709, ZIP, no date and no host: the same input gives the same bytes.
 #pragma once
 #include "render/frame.h"
 
@@ -14,22 +18,34 @@ struct Provenance {
     Camera camera;
     double frame_rate = 24;
     int frame = 0;
-    std::map<std::string, std::string> attributes;     // "tyndall:mode" -> "march", ...: text for each
+    std::map<std::string, std::string> attributes; // "tyndall:mode" -> "march", ...: text for each, names to 31 bytes
 };
 
 // Which layers go into the file besides RGBA: Z, inscatter, transmittance, validity, lights.
 struct ExrOptions {
     std::vector<std::string> layers{"Z", "inscatter", "transmittance"};
-    bool full_float = false;                           // colours as 32 bit instead of half
+    bool full_float = false; // colours as 32 bit instead of half
 };
 
+// Throws Error (usage) naming a layer there is none of.
+void check_layer_names(const ExrOptions& options);
+
+// Names of the channels a picture gets, sorted: what write_exr will write for these lights.
+std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options);
+
+// Throws Error (usage, unwritable, internal).
 void write_exr(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,
                const ExrOptions& options);
 
+// The colours as a file with these options holds them.
+Image<vec3> stored_color(const Layers& layers, const ExrOptions& options);
+
+inline constexpr float no_surface_z = 1e10f;
+
 struct ExrFile {
-    ivec2 display{0}, low{0}, size{0};
+    ivec2 display{0}, low{0}, size{0}; // display window's size; data window within it
     std::vector<std::pair<std::string, Image<float>>> channels;
-    std::map<std::string, std::string> attributes;     // text attributes; others as text
+    std::map<std::string, std::string> attributes; // text attributes; others as text
     std::string compression;
     const Image<float>* channel(std::string_view name) const;
 };

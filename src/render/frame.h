@@ -1,4 +1,10 @@
 // One picture: every pixel sample traced, shaded, fogged and filtered into layers.
+//
+// A sample follows its camera ray through up to 64 BLEND surfaces to the first opaque one (or the 64th layer, taken as
+// opaque), asking the mode for the fog of each stretch in between. Where nothing is hit, the fog ends at the camera's
+// far plane or where the media end; media without end are followed until optical depth 20 or until less than 1e-6 is
+// left, at most 1e9 m. A stretch may have length 0. A picture and any crop of it hold the same bits, at any thread
+// count.
 #pragma once
 #include "modes/mode.h"
 
@@ -10,29 +16,32 @@
 namespace tyndall {
 // Pixels of the crop window. Colours are premultiplied linear Rec.709.
 struct Layers {
-    ivec2 display{0}, low{0}, size{0};          // full picture; where the pixels lie in it
-    Image<vec3> color;                          // surfaces through fog plus fog light
-    Image<float> alpha;                         // 1 - what shows of the background
-    Image<float> depth;                         // planar z of the nearest opaque surface, metres; infinite = none
-    Image<vec3> inscatter;                      // fog light alone
-    Image<float> transmittance;                 // of the fog, eye to surface
-    Image<float> validity;
-    std::vector<std::pair<std::string, Image<vec3>>> lights;   // fog and surface light of each light, on request
+    ivec2 display{0}, low{0}, size{0}; // full picture; where the pixels lie in it
+    Image<vec3> color;                 // surfaces and background through fog, plus fog light
+    Image<float> alpha;                // 1 - what shows of the background
+    Image<float> depth;                // planar z of the first opaque surface at the sample nearest the pixel's
+                                       // centre, metres; infinite = none
+    Image<vec3> inscatter;             // fog light alone, as far as BLEND surfaces in front let it through
+    Image<float> transmittance;        // of the fog, eye to surface
+    Image<float> validity;             // of the least valid stretch of a sample
+    std::vector<std::pair<std::string, Image<vec3>>> lights; // fog and surface light by light name, on request: every
+                                                             // light of the scene, dark ones too
 };
 
 struct FrameStats {
     double prepare_seconds = 0, render_seconds = 0;
     uint64_t camera_rays = 0, steps = 0;
-    uint64_t non_finite = 0;                    // samples dropped
+    uint64_t non_finite = 0; // samples dropped: they count as black and not valid
     ivec2 first_non_finite{-1};
 };
 
 struct FrameOptions {
     bool per_light = false;
-    std::atomic<bool>* cancel = nullptr;        // set from outside to stop early (throws Error)
-    std::function<void(double)> progress;       // 0..1, from any thread
+    std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)
+    std::function<void(double)> progress; // 0..1, from any thread
 };
 
+// Throws Error (internal) when cancelled.
 Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options, FrameStats& stats);
 }

@@ -10,18 +10,18 @@
 namespace tyndall {
 struct RenderJob {
     std::filesystem::path scene_file;
-    std::string output;                    // pattern
+    std::string output; // pattern
     std::vector<int> frames;
     std::string mode = "march";
     Quality quality = Quality::preview;
-    Settings settings;                     // quality and --set already applied
-    std::string camera;                    // empty = the scene's
-    ivec2 resolution{0};                   // 0 = the scene's
+    Settings settings;   // quality and --set already applied
+    std::string camera;  // empty = the scene's
+    ivec2 resolution{0}; // 0 = the scene's
     ivec2 crop_low{0}, crop_high{0};
     uint32_t seed = 0;
     std::string isa;
     MissingFrame missing = MissingFrame::error;
-    float exposure = 0;                    // added to the scene's, for PNGs
+    float exposure = 0; // added to the scene's, for PNGs
     ExrOptions exr;
     bool png = false, resume = false;
     std::vector<std::string> limits_said;

@@ -1,0 +1,184 @@
+// The pixel loop: blocks of pixels in parallel, each pixel owned by one task and filtered in sample order.
+#include "render/frame.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "render/samples.h"
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+
+namespace tyndall {
+namespace {
+constexpr int tile_side = 4;   // a tile's 16 rays are traced together
+constexpr int block_side = 32; // a task's pixels
+
+struct BlockStats {
+    uint64_t camera_rays = 0, steps = 0, non_finite = 0;
+    ivec2 first_non_finite{-1};
+};
+
+// What all blocks of a frame share.
+struct FrameTask {
+    FrameTracer tracer;
+    std::vector<size_t> light_layers; // the layer each light of the snapshot adds to; empty unless asked for
+    Layers layers;
+};
+
+// A pixel's sums over its samples.
+struct PixelSum {
+    vec3 color{0}, inscatter{0};
+    float alpha = 0, transmittance = 0, validity = 0;
+    float depth = infinity, off_center = infinity;
+
+    void add(const PixelSample& sample) {
+        color += sample.color, inscatter += sample.inscatter;
+        alpha += sample.alpha, transmittance += sample.transmittance, validity += sample.validity;
+        if (sample.off_center < off_center) off_center = sample.off_center, depth = sample.depth;
+    }
+};
+
+Layers make_layers(const View& view) {
+    const bool cropped = view.crop_low != view.crop_high;
+    Layers layers;
+    layers.display = view.size;
+    layers.low = cropped ? view.crop_low : ivec2(0);
+    layers.size = (cropped ? view.crop_high : view.size) - layers.low;
+    assert(layers.size.x > 0 && layers.size.y > 0 && layers.low.x >= 0 && layers.low.y >= 0);
+    assert(layers.low.x + layers.size.x <= view.size.x && layers.low.y + layers.size.y <= view.size.y);
+    layers.color = layers.inscatter = Image<vec3>(layers.size);
+    layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
+    return layers;
+}
+
+// Lights of one name share a layer; dark lights of the scene have theirs, so that every frame holds the same layers.
+std::vector<size_t> make_light_layers(const Snapshot& snapshot, Layers& layers) {
+    const auto find_or_add = [&](const std::string& name) {
+        for (size_t i = 0; i < layers.lights.size(); ++i)
+            if (layers.lights[i].first == name) return i;
+        layers.lights.emplace_back(name, Image<vec3>(layers.size));
+        return layers.lights.size() - 1;
+    };
+    if (snapshot.scene)
+        for (const LightSource& light : snapshot.scene->lights) find_or_add(light.name);
+    std::vector<size_t> result;
+    for (const Light& light : snapshot.lights) result.push_back(find_or_add(light.name));
+    return result;
+}
+
+bool contains(const Layers& layers, ivec2 pixel) {
+    const ivec2 p = pixel - layers.low;
+    return p.x >= 0 && p.y >= 0 && p.x < layers.size.x && p.y < layers.size.y;
+}
+
+void store_pixel(const FrameTask& task, ivec2 pixel, const PixelSum& sum, std::span<const vec3> lights,
+                 Layers& layers) {
+    const ivec2 p = pixel - layers.low;
+    const float samples = static_cast<float>(task.tracer.view.pixel_samples);
+    layers.color.at(p.x, p.y) = sum.color / samples;
+    layers.inscatter.at(p.x, p.y) = sum.inscatter / samples;
+    layers.alpha.at(p.x, p.y) = sum.alpha / samples;
+    layers.transmittance.at(p.x, p.y) = sum.transmittance / samples;
+    layers.validity.at(p.x, p.y) = sum.validity / samples;
+    layers.depth.at(p.x, p.y) = sum.depth;
+    for (size_t l = 0; l < lights.size(); ++l)
+        layers.lights[task.light_layers[l]].second.at(p.x, p.y) += lights[l] / samples;
+}
+
+void count_dropped(ivec2 pixel, BlockStats& stats) {
+    const ivec2 first = stats.first_non_finite;
+    if (stats.non_finite++ == 0 || pixel.y < first.y || (pixel.y == first.y && pixel.x < first.x))
+        stats.first_non_finite = pixel;
+}
+
+// Traces all pixels of a tile, also those outside the crop: a mode may let neighbours share steps.
+void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, BlockStats& stats) {
+    const View& view = task.tracer.view;
+    const ivec2 end = glm::min(corner + tile_side, view.size);
+    ivec2 pixels[16];
+    size_t count = 0;
+    bool wanted = false;
+    for (int y = corner.y; y < end.y; ++y)
+        for (int x = corner.x; x < end.x; ++x) {
+            pixels[count++] = {x, y};
+            wanted |= contains(layers, {x, y});
+        }
+    if (!wanted) return;
+
+    const size_t lights = task.light_layers.size();
+    PixelSum sums[16];
+    PixelSample samples[16];
+    std::vector<vec3> light_parts(lights * count), light_sums(lights * count, vec3(0));
+    for (int s = 0; s < view.pixel_samples; ++s) {
+        trace_samples(task.tracer, {pixels, count}, s, {samples, count}, light_parts);
+        for (size_t i = 0; i < count; ++i) {
+            if (!contains(layers, pixels[i])) continue;
+            ++stats.camera_rays, stats.steps += static_cast<uint64_t>(samples[i].steps);
+            const std::span<const vec3> parts{light_parts.data() + i * lights, lights};
+            if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
+                count_dropped(pixels[i], stats);
+                continue;
+            }
+            sums[i].add(samples[i]);
+            for (size_t l = 0; l < lights; ++l) light_sums[i * lights + l] += parts[l];
+        }
+    }
+    for (size_t i = 0; i < count; ++i)
+        if (contains(layers, pixels[i]))
+            store_pixel(task, pixels[i], sums[i], {light_sums.data() + i * lights, lights}, layers);
+}
+
+FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                    bool per_light) {
+    FrameTask task{{view, snapshot, mode.prepare(view, snapshot, settings, nullptr), {}}, {}, make_layers(view)};
+    if (snapshot.occluders && !snapshot.occluders->empty())
+        for (const Light& light : snapshot.lights)
+            task.tracer.light_depths.push_back(
+                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
+    if (per_light) task.light_layers = make_light_layers(snapshot, task.layers);
+    return task;
+}
+
+double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
+}
+
+Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                    const FrameOptions& options, FrameStats& stats) {
+    assert(mode.surfaces == Surfaces::shared && view.pixel_samples > 0);
+    const auto start = std::chrono::steady_clock::now();
+    FrameTask task = make_task(mode, view, snapshot, settings, options.per_light);
+    const auto prepared = std::chrono::steady_clock::now();
+
+    // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
+    Layers& layers = task.layers;
+    const ivec2 first = layers.low / block_side, last = (layers.low + layers.size - 1) / block_side;
+    const ivec2 blocks = last - first + 1;
+    const int64_t block_count = int64_t{blocks.x} * blocks.y;
+    std::vector<BlockStats> block_stats(static_cast<size_t>(block_count));
+    std::atomic<int64_t> done = 0;
+    parallel_for(block_count, [&](int64_t b) {
+        if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
+        const ivec2 low = (first + ivec2(b % blocks.x, b / blocks.x)) * block_side;
+        const ivec2 high = glm::min(low + block_side, view.size);
+        for (int y = low.y; y < high.y; y += tile_side)
+            for (int x = low.x; x < high.x; x += tile_side)
+                render_tile(task, {x, y}, layers, block_stats[static_cast<size_t>(b)]);
+        if (options.progress) options.progress(static_cast<double>(++done) / static_cast<double>(block_count));
+    });
+
+    stats = {};
+    stats.prepare_seconds = seconds_between(start, prepared);
+    stats.render_seconds = seconds_between(prepared, std::chrono::steady_clock::now());
+    for (const BlockStats& block : block_stats) {
+        stats.camera_rays += block.camera_rays, stats.steps += block.steps;
+        const ivec2 a = block.first_non_finite, b = stats.first_non_finite;
+        if (block.non_finite && (stats.non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x)))
+            stats.first_non_finite = a;
+        stats.non_finite += block.non_finite;
+    }
+    return std::move(task.layers);
+}
+}

@@ -1,0 +1,53 @@
+// The display transform: exposure, shoulder, sRGB, dither.
+#include "render/png.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/random.h"
+
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+#include <cstdint>
+
+namespace tyndall {
+namespace {
+constexpr float shoulder = 0.8f;
+
+// Identity up to the shoulder, then bent smoothly towards 1.
+float compressed(float x) {
+    if (!(x > 0)) return 0;
+    return x <= shoulder ? x : 1 - (1 - shoulder) * std::exp((shoulder - x) / (1 - shoulder));
+}
+
+// IEC 61966-2-1.
+float srgb(float x) { return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f; }
+
+uint8_t code(float linear, uint32_t x, uint32_t y, uint32_t channel) {
+    const float value = 255 * srgb(compressed(linear)) + random_unit(x, y, channel, 0);
+    return static_cast<uint8_t>(std::min(value, 255.0f));
+}
+
+void append(void* context, void* data, int size) {
+    auto& bytes = *static_cast<std::vector<std::byte>*>(context);
+    const auto* first = static_cast<const std::byte*>(data);
+    bytes.insert(bytes.end(), first, first + size);
+}
+}
+
+void write_png(const std::filesystem::path& file, const Image<vec3>& linear, float exposure) {
+    const float gain = std::exp2(exposure);
+    std::vector<uint8_t> codes;
+    codes.reserve(linear.pixels.size() * 3);
+    for (int y = 0; y < linear.size.y; ++y)
+        for (int x = 0; x < linear.size.x; ++x)
+            for (int c = 0; c < 3; ++c) codes.push_back(code(gain * linear.at(x, y)[c], x, y, c));
+
+    std::vector<std::byte> bytes;
+    if (!stbi_write_png_to_func(append, &bytes, linear.size.x, linear.size.y, 3, codes.data(), 3 * linear.size.x))
+        fail(ExitCode::out_of_memory, file.string(), "no memory to encode the picture");
+    write_file_atomically(file, bytes);
+}
+}
