@@ -1,25 +1,61 @@
 #include "base/error.h"
 
+#include "base/utf8.h"
+
+#include <algorithm>
 #include <cstdio>
 
 namespace tyndall {
+namespace {
+// Everything a terminal could act on (control characters, malformed UTF-8) spelt out as \x1b.
+std::string escaped(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const size_t length = utf8_length(text), taken = std::max<size_t>(length, 1);
+        const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+        const bool control = byte(0) < 0x20 || byte(0) == 0x7f || (length == 2 && byte(0) == 0xc2 && byte(1) < 0xa0);
+        char code[8];
+        for (size_t i = 0; i < taken; ++i) {
+            std::snprintf(code, sizeof code, "\\x%02x", byte(i));
+            if (control || length == 0)
+                result += code;
+            else
+                result += text[i];
+        }
+        text.remove_prefix(taken);
+    }
+    return result;
+}
+
+bool inside_character(std::string_view text, size_t at) { return at < text.size() && (text[at] & 0xc0) == 0x80; }
+
+// Both ends of a long place are kept: the file's name in front, the field behind.
+std::string shortened_place(std::string_view where) {
+    constexpr size_t most = 220, head = 100, tail = most - head;
+    const std::string front = escaped(where.substr(0, most + 4));
+    if (front.size() <= most) return front;
+    size_t start = where.size() - std::min(where.size(), tail);
+    while (inside_character(where, start)) ++start;
+    const std::string back = escaped(where.substr(start));
+    start = back.size() - std::min(back.size(), tail);
+    while (inside_character(back, start)) ++start;
+    return printable(front, head) + back.substr(start);
+}
+}
+
 Error::Error(ExitCode exit_code, std::string_view where, std::string_view what)
-    : std::runtime_error(printable(where, 220) + (where.empty() ? "" : ": ") + printable(what, 250)), code(exit_code) {}
+    : std::runtime_error(shortened_place(where) + (where.empty() ? "" : ": ") + printable(what, 250)), code(exit_code) {
+}
 
 void fail(ExitCode code, std::string_view where, std::string_view what) { throw Error(code, where, what); }
 void refuse(std::string_view where, std::string_view what) { throw Error(ExitCode::refused, where, what); }
 
 std::string printable(std::string_view text, size_t most) {
-    std::string result;
-    for (const unsigned char c : text) {
-        char escaped[8] = {static_cast<char>(c), 0};
-        if (c < 0x20 || c == 0x7f) std::snprintf(escaped, sizeof escaped, "\\x%02x", c);
-        if (result.size() + 7 > most) {
-            result += "...";
-            break;
-        }
-        result += escaped;
-    }
-    return result;
+    // Four bytes more than fit: a character torn by this first cut is dropped by the second.
+    std::string result = escaped(text.substr(0, most + 4));
+    if (result.size() <= most) return result;
+    size_t end = most - std::min<size_t>(most, 3);
+    while (inside_character(result, end)) --end;
+    return result.substr(0, end) + "...";
 }
 }
