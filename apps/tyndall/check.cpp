@@ -1,0 +1,138 @@
+// tyndall check: everything wrong with scenes, recipes, volumes and pictures, one line each.
+#include "common.h"
+#include "file_kind.h"
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "render/exr.h"
+#include "scene/gltf.h"
+#include "volume/vdb.h"
+
+#include <set>
+
+namespace tyndall {
+namespace {
+struct Problem {
+    std::string file, text;
+    bool unreadable = false;
+};
+using Problems = std::vector<Problem>;
+
+// "FILE: FIELD: TEXT"; a message that already begins with the file keeps it once.
+std::string problem_line(const Problem& problem) {
+    const std::string file = printable(problem.file, 200);
+    return problem.text.starts_with(file) ? problem.text : file + ": " + problem.text;
+}
+
+void check_vdb(const std::filesystem::path& file, const std::string& grid, Problems& problems) {
+    VdbReadReport report;
+    read_vdb(file, grid, &report);
+    const std::string summary = report.summary();
+    if (!summary.empty()) problems.push_back({file.string(), summary});
+}
+
+void check_exr(const std::filesystem::path& file, Problems& problems) {
+    const ExrFile exr = read_exr(file);
+    for (const auto& [name, image] : exr.channels) {
+        uint64_t bad = 0;
+        for (const float value : image.pixels) bad += std::isnan(value) || (std::isinf(value) && name != "Z");
+        if (bad)
+            problems.push_back({file.string(), "channel " + printable(name, 80) + ": " + std::to_string(bad) +
+                                                   " pixels are not finite numbers"});
+    }
+}
+
+// Runs one check; an error it throws is a problem of `file`.
+template<class Check> void guarded(const std::string& file, Problems& problems, Check check) {
+    stop_if_cancelled();
+    try {
+        check();
+    } catch (const Error& error) {
+        problems.push_back({file, error.what(), error.code == ExitCode::unreadable});
+    }
+}
+
+// Every volume the scene names on its frames, each file once.
+void check_media(const std::string& file, const Scene& scene, Problems& problems) {
+    for (const MediumSource& medium : scene.media) {
+        if (medium.kind != MediumKind::vdb) continue;
+        std::set<std::filesystem::path> seen;
+        for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame)
+            guarded(file, problems, [&] {
+                const auto volume = sequence_file(medium.sequence, frame, MissingFrame::error);
+                if (volume && seen.insert(*volume).second) check_vdb(*volume, medium.sequence.grid, problems);
+            });
+    }
+}
+
+void check_scene(const std::string& file, Problems& problems) {
+    const Scene scene = load_scene(file);
+    for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
+    check_media(file, scene, problems);
+}
+
+// A numbered name stands for all its files and for the gaps between them.
+void check_sequence(const std::string& pattern, Problems& problems) {
+    const VdbSequence sequence = find_sequence(pattern, ".");
+    for (int frame = sequence.files.front(); frame <= sequence.files.back(); ++frame)
+        guarded(pattern, problems, [&] {
+            if (const auto volume = sequence_file(sequence, frame, MissingFrame::error))
+                check_vdb(*volume, "", problems);
+        });
+}
+
+void check_file(const std::string& file, Problems& problems) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored) && file.ends_with(".vdb") && has_frame_token(file))
+        return check_sequence(file, problems);
+    switch (file_kind(file)) {
+    case FileKind::vdb:
+        return check_vdb(file, "", problems);
+    case FileKind::exr:
+        return check_exr(file, problems);
+    case FileKind::recipe:
+        read_recipe(file);
+        return;
+    case FileKind::gltf:
+    case FileKind::scene:
+        return check_scene(file, problems);
+    }
+}
+
+std::string problems_json(const std::vector<std::string>& files, const Problems& problems) {
+    std::vector<Json> items;
+    for (const Problem& problem : problems)
+        items.push_back(json_object(
+            {{"file", json_of(std::string_view(problem.file))}, {"problem", json_of(std::string_view(problem.text))}}));
+    return format_json(json_object({{"files", json_of(files)}, {"problems", json_array(std::move(items))}})) + "\n";
+}
+
+int run_check(const std::vector<std::string>& files, const Globals& globals) {
+    Problems problems;
+    for (const std::string& file : files) guarded(file, problems, [&] { check_file(file, problems); });
+
+    std::string text;
+    for (const Problem& problem : problems) text += problem_line(problem) + "\n";
+    print_report(globals.json ? problems_json(files, problems) : text);
+    if (!globals.quiet) say(count_text(files.size(), "file") + " checked, " + count_text(problems.size(), "problem"));
+    const auto unreadable = [](const Problem& problem) { return problem.unreadable; };
+    if (problems.empty()) return 0;
+    const bool only_unreadable = std::all_of(problems.begin(), problems.end(), unreadable);
+    return static_cast<int>(only_unreadable ? ExitCode::unreadable : ExitCode::differs);
+}
+}
+
+Run add_check(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("check", "find everything wrong with scenes, recipes, volumes and pictures");
+    auto files = std::make_shared<std::vector<std::string>>();
+    command->add_option("FILES", *files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence")
+        ->type_name("")
+        ->required();
+    command->footer("Example: before a long render\n"
+                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
+                    "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and pictures are read whole.\n"
+                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
+                    "missing or cannot be read.");
+    return [files](const Globals& globals) { return run_check(*files, globals); };
+}
+}

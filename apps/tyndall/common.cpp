@@ -1,0 +1,159 @@
+#include "common.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+namespace tyndall {
+std::atomic<bool>& cancel_flag() {
+    static std::atomic<bool> flag{false};
+    return flag;
+}
+
+void stop_if_cancelled() {
+    if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
+}
+
+std::string formatted(const char* format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    const int length = std::vsnprintf(nullptr, 0, format, arguments);
+    va_end(arguments);
+    std::string result(static_cast<size_t>(std::max(length, 0)) + 1, '\0');
+    std::vsnprintf(result.data(), result.size(), format, again);
+    va_end(again);
+    result.pop_back();
+    return result;
+}
+
+void say(std::string_view line) { std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(line.size()), line.data()); }
+
+void print_report(std::string_view text) {
+    errno = 0;
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    if (written && std::fflush(stdout) == 0) return;
+    if (errno != EPIPE) fail(ExitCode::unwritable, "standard output", std::strerror(errno));
+}
+
+int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high) {
+    int64_t value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size() || value < low || value > high)
+        fail(ExitCode::usage, option,
+             formatted("expected a whole number from %lld to %lld, got '%s'", static_cast<long long>(low),
+                       static_cast<long long>(high), printable(text, 40).c_str()));
+    return value;
+}
+
+double number_option(std::string_view option, std::string_view text, double low, double high) {
+    double value = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+        fail(ExitCode::usage, option,
+             formatted("expected a number from %g to %g, got '%s'", low, high, printable(text, 40).c_str()));
+    return value;
+}
+
+size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices) {
+    for (size_t i = 0; i < choices.size(); ++i)
+        if (choices[i] == text) return i;
+    fail(ExitCode::usage, option, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
+}
+
+std::vector<std::string> comma_list(std::string_view text) {
+    std::vector<std::string> pieces;
+    for (size_t start = 0;;) {
+        const size_t comma = text.find(',', start);
+        pieces.emplace_back(text.substr(start, comma == text.npos ? text.npos : comma - start));
+        if (comma == text.npos) return pieces;
+        start = comma + 1;
+    }
+}
+
+Json json_of(std::string_view text) {
+    Json value;
+    value.kind = Json::Kind::string;
+    value.string = text;
+    return value;
+}
+
+Json json_of(const char* text) { return json_of(std::string_view(text)); }
+
+Json json_of(bool boolean) {
+    Json value;
+    value.kind = Json::Kind::boolean;
+    value.boolean = boolean;
+    return value;
+}
+
+Json json_of(double number) {
+    Json value;
+    value.kind = std::isfinite(number) ? Json::Kind::number : Json::Kind::null;
+    value.number = number;
+    return value;
+}
+
+Json json_of(int number) { return json_of(static_cast<double>(number)); }
+Json json_of(uint64_t number) { return json_of(static_cast<double>(number)); }
+
+Json json_of(vec3 v) { return json_array({json_of(double{v.x}), json_of(double{v.y}), json_of(double{v.z})}); }
+
+Json json_of(const Box& box) {
+    if (box.empty()) return Json();
+    return json_object({{"low", json_of(box.low)}, {"high", json_of(box.high)}});
+}
+
+Json json_of(const std::vector<std::string>& texts) {
+    std::vector<Json> items;
+    for (const std::string& text : texts) items.push_back(json_of(std::string_view(text)));
+    return json_array(std::move(items));
+}
+
+Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts) {
+    std::vector<std::pair<std::string, Json>> members;
+    for (const auto& [name, text] : named_texts) members.emplace_back(name, json_of(std::string_view(text)));
+    return json_object(std::move(members));
+}
+
+Json json_array(std::vector<Json> items) {
+    Json value;
+    value.kind = Json::Kind::array;
+    value.items = std::move(items);
+    return value;
+}
+
+Json json_object(std::vector<std::pair<std::string, Json>> members) {
+    Json value;
+    value.kind = Json::Kind::object;
+    value.members = std::move(members);
+    return value;
+}
+
+std::string bytes_text(double bytes) {
+    constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
+    size_t unit = 0;
+    while (bytes >= 1000 && unit < 4) bytes /= 1000, ++unit;
+    return formatted(unit == 0 || bytes >= 100 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
+}
+
+std::string seconds_text(double seconds) {
+    if (seconds < 0.0995) return formatted("%.0f ms", seconds * 1000);
+    if (seconds < 120) return formatted("%.1f s", seconds);
+    if (seconds < 7200) return formatted("%.1f min", seconds / 60);
+    return formatted("%.1f h", seconds / 3600);
+}
+
+std::string vector_text(vec3 v) {
+    return formatted("%.4g %.4g %.4g", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+}
+
+std::string count_text(uint64_t count, std::string_view noun) {
+    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
+}
+}

@@ -1,0 +1,72 @@
+// What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
+#pragma once
+#include "base/json.h"
+#include "base/math.h"
+#include "base/progress.h"
+
+#include <CLI/CLI.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+struct Globals {
+    ProgressStyle progress = ProgressStyle::automatic;
+    bool json = false, quiet = false, verbose = false;
+};
+
+// A command's work after the command line was read; returns the exit code.
+using Run = std::function<int(const Globals&)>;
+
+Run add_bake(CLI::App& app);
+Run add_render(CLI::App& app);
+Run add_info(CLI::App& app);
+Run add_check(CLI::App& app);
+Run add_modes(CLI::App& app);
+
+// Set by SIGINT and SIGTERM; long work ends soon after.
+std::atomic<bool>& cancel_flag();
+// Throws when a signal asked to stop; for work that takes no flag itself.
+void stop_if_cancelled();
+
+// printf into a string.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+
+// One line for people on stderr; foreign text in it has to be printable already.
+void say(std::string_view line);
+// The data a command was asked for, on stdout. Throws Error (unwritable); a reader that has gone away is no error.
+void print_report(std::string_view text);
+
+// An option's value as a number in low..high. Throws Error (usage) naming the option.
+int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high);
+double number_option(std::string_view option, std::string_view text, double low, double high);
+// The position of an option's value among its choices. Throws Error (usage) listing them.
+size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices);
+// The pieces between commas.
+std::vector<std::string> comma_list(std::string_view text);
+
+// JSON values for reports; numbers JSON cannot hold (infinite) become null.
+Json json_of(std::string_view text);
+Json json_of(const char* text);
+Json json_of(bool value);
+Json json_of(double value);
+Json json_of(int value);
+Json json_of(uint64_t value);
+Json json_of(vec3 value);
+Json json_of(const Box& box);
+Json json_of(const std::vector<std::string>& texts);
+Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts);
+Json json_array(std::vector<Json> items);
+Json json_object(std::vector<std::pair<std::string, Json>> members);
+
+// "1.5 MB", "2.1 min": for people.
+std::string bytes_text(double bytes);
+std::string seconds_text(double seconds);
+std::string vector_text(vec3 value);
+std::string count_text(uint64_t count, std::string_view noun);
+}

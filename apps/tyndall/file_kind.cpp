@@ -1,0 +1,50 @@
+#include "file_kind.h"
+
+#include "base/error.h"
+#include "base/file.h"
+
+#include <fstream>
+
+namespace tyndall {
+namespace {
+std::string first_bytes(const std::filesystem::path& file) {
+    std::string bytes(8, '\0');
+    std::ifstream stream(file, std::ios::binary);
+    stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<size_t>(stream.gcount()));
+    return bytes;
+}
+
+// A scene says so with its version; a recipe has none of a scene's keys.
+FileKind json_kind(const std::filesystem::path& file) {
+    const Json document = parse_json(read_file(file), file.string());
+    if (document.has("asset")) return FileKind::gltf;
+    const std::string schema = document.string_or("$schema", "");
+    if (schema.ends_with("recipe.schema.json")) return FileKind::recipe;
+    if (document.has("tyndall") || schema.ends_with("scene.schema.json")) return FileKind::scene;
+    for (const char* key : {"noise", "voxel_size", "threshold", "wind"})
+        if (document.has(key)) return FileKind::recipe;
+    for (const char* key : {"gltf", "media", "camera", "lights", "background"})
+        if (document.has(key)) return FileKind::scene;
+    refuse(file.string(),
+           "neither a scene nor a fog recipe: a scene begins with \"tyndall\": 1, a recipe has \"noise\"");
+}
+}
+
+FileKind file_kind(const std::filesystem::path& file) {
+    check_readable(file);
+    const std::string extension = file.extension().string();
+    if (extension == ".vdb") return FileKind::vdb;
+    if (extension == ".gltf" || extension == ".glb") return FileKind::gltf;
+    if (extension == ".exr") return FileKind::exr;
+    if (extension == ".json") return json_kind(file);
+
+    const std::string bytes = first_bytes(file);
+    if (bytes.starts_with(" BDV")) return FileKind::vdb;
+    if (bytes.starts_with("glTF")) return FileKind::gltf;
+    if (bytes.starts_with("\x76\x2f\x31\x01")) return FileKind::exr;
+    if (bytes.starts_with("NanoVDB") || extension == ".nvdb")
+        refuse(file.string(), "NanoVDB files are not read; convert it with nanovdb_convert to a .vdb");
+    refuse(file.string(), "not a kind of file tyndall knows (.vdb .gltf .glb .json .exr)");
+}
+}

@@ -1,0 +1,12 @@
+// What a file is, from its name and its first bytes.
+#pragma once
+#include "base/json.h"
+
+#include <filesystem>
+
+namespace tyndall {
+enum class FileKind { vdb, gltf, exr, scene, recipe };
+
+// Throws Error: unreadable, or refused when it is none of these.
+FileKind file_kind(const std::filesystem::path& file);
+}

@@ -1,0 +1,173 @@
+// tyndall info: glTF files and scenes.
+#include "common.h"
+#include "info.h"
+#include "light_units.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/gltf.h"
+
+namespace tyndall {
+namespace {
+constexpr const char* kind_names[] = {"point", "spot", "sun"};
+constexpr const char* medium_names[] = {"homogeneous", "height", "noise", "vdb"};
+
+const char* unit_of(const LightSource& light) { return light.kind == LightKind::sun ? "lux" : "candela"; }
+
+struct Totals {
+    uint64_t triangles = 0, animated_nodes = 0;
+    float last_key = 0; // seconds
+    Box bounds;         // of the meshes at time 0
+};
+
+Totals totals_of(const Scene& scene) {
+    Totals totals;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
+        totals.triangles += mesh.triangles.size();
+        Box box;
+        for (const vec3 position : mesh.positions) box.grow(position);
+        if (!box.empty()) totals.bounds.grow(transform(node_matrix(scene, instance.node, 0), box));
+    }
+    const auto last_of = [&](const std::vector<float>& times) {
+        if (times.size() >= 2) totals.last_key = std::max(totals.last_key, times.back());
+        return times.size() >= 2;
+    };
+    for (const Node& node : scene.nodes)
+        if (last_of(node.translation.times) | last_of(node.rotation.times) | last_of(node.scale.times))
+            ++totals.animated_nodes;
+    return totals;
+}
+
+Json lights_json(const Scene& scene) {
+    std::vector<Json> lights;
+    for (const LightSource& light : scene.lights)
+        lights.push_back(json_object({{"name", json_of(std::string_view(light.name))},
+                                      {"kind", json_of(kind_names[static_cast<int>(light.kind)])},
+                                      {"intensity", json_of(double{light.intensity.at(0)})},
+                                      {"unit", json_of(unit_of(light))},
+                                      {"color", json_of(light.color.at(0))},
+                                      {"range", json_of(double{light.range})}}));
+    return json_array(std::move(lights));
+}
+
+Json media_json(const Scene& scene) {
+    std::vector<Json> media;
+    for (const MediumSource& medium : scene.media)
+        media.push_back(json_object({{"name", json_of(std::string_view(medium.name))},
+                                     {"kind", json_of(medium_names[static_cast<int>(medium.kind)])},
+                                     {"extinction", json_of(double{medium.extinction.at(0)})},
+                                     {"albedo", json_of(medium.albedo.at(0))},
+                                     {"g", json_of(double{medium.g.at(0)})},
+                                     {"file", json_of(std::string_view(medium.sequence.pattern))}}));
+    return json_array(std::move(media));
+}
+
+std::string content_json(const std::filesystem::path& file, const char* kind, const Scene& scene) {
+    const Totals totals = totals_of(scene);
+    std::vector<std::string> cameras, inputs;
+    for (const CameraSource& camera : scene.cameras) cameras.push_back(camera.name);
+    for (const auto& input : scene.inputs) inputs.push_back(input.string());
+    return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
+                                    {"kind", json_of(kind)},
+                                    {"frame_rate", json_of(scene.frame_rate)},
+                                    {"first_frame", json_of(scene.first_frame)},
+                                    {"last_frame", json_of(scene.last_frame)},
+                                    {"meshes", json_of(scene.meshes.size())},
+                                    {"instances", json_of(scene.instances.size())},
+                                    {"triangles", json_of(totals.triangles)},
+                                    {"materials", json_of(scene.materials.size())},
+                                    {"textures", json_of(scene.textures.size())},
+                                    {"bounds", json_of(totals.bounds)},
+                                    {"animated_nodes", json_of(totals.animated_nodes)},
+                                    {"animation_seconds", json_of(double{totals.last_key})},
+                                    {"cameras", json_of(cameras)},
+                                    {"lights", lights_json(scene)},
+                                    {"media", media_json(scene)},
+                                    {"light_units", json_of(std::string_view(light_units_hint(scene)))},
+                                    {"inputs", json_of(inputs)},
+                                    {"warnings", json_of(scene.warnings)}})) +
+           "\n";
+}
+
+std::string content_text(const Scene& scene) {
+    const Totals totals = totals_of(scene);
+    std::string text = "  geometry      " + count_text(totals.triangles, "triangle") + " in " +
+                       count_text(scene.instances.size(), "instance") + " of " +
+                       count_text(scene.meshes.size(), "mesh") + ", " + count_text(scene.materials.size(), "material") +
+                       ", " + count_text(scene.textures.size(), "texture") + "\n";
+    if (!totals.bounds.empty())
+        text += "  world         " + vector_text(totals.bounds.low) + " to " + vector_text(totals.bounds.high) + " m\n";
+    if (totals.animated_nodes)
+        text += "  animation     " + count_text(totals.animated_nodes, "node") + ", " +
+                seconds_text(double{totals.last_key}) + "\n";
+    for (const CameraSource& camera : scene.cameras)
+        text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
+                (camera.ortho_height > 0
+                     ? ", orthographic\n"
+                     : formatted(", %.1f degrees high\n", glm::degrees(double{camera.vertical_fov.at(0)})));
+    for (const LightSource& light : scene.lights)
+        text += formatted("  light         %s, %s, %g %s\n",
+                          printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),
+                          kind_names[static_cast<int>(light.kind)], double{light.intensity.at(0)}, unit_of(light));
+    const std::string hint = light_units_hint(scene);
+    if (!hint.empty()) text += "  light units   " + hint + "\n";
+    for (const MediumSource& medium : scene.media)
+        text += formatted("  fog           %s, %s, extinction %g /m, albedo %s, g %g%s%s\n",
+                          printable(medium.name.empty() ? "(no name)" : medium.name, 80).c_str(),
+                          medium_names[static_cast<int>(medium.kind)], double{medium.extinction.at(0)},
+                          vector_text(medium.albedo.at(0)).c_str(), double{medium.g.at(0)},
+                          medium.sequence.pattern.empty() ? "" : ", ", printable(medium.sequence.pattern).c_str());
+    for (const std::string& warning : scene.warnings) text += "  warning       " + printable(warning, 400) + "\n";
+    return text;
+}
+}
+
+std::string gltf_report(const std::filesystem::path& file, bool json) {
+    Scene scene;
+    scene.file = file;
+    load_gltf(file, {}, scene);
+    if (json) return content_json(file, "gltf", scene);
+    return printable(file.string()) + ": glTF\n" + content_text(scene);
+}
+
+std::string scene_report(const std::filesystem::path& file, bool json) {
+    const Scene scene = load_scene(file);
+    if (json) return content_json(file, "scene", scene);
+    std::string text =
+        formatted("%s: scene, frames %d to %d at %g per second, %d x %d pixels\n", printable(file.string()).c_str(),
+                  scene.first_frame, scene.last_frame, scene.frame_rate, scene.resolution.x, scene.resolution.y);
+    text += content_text(scene);
+    for (const auto& input : scene.inputs) text += "  reads         " + printable(input.string()) + "\n";
+    return text;
+}
+
+std::string recipe_report(const std::filesystem::path& file, bool json) {
+    const FogRecipe recipe = read_recipe(file);
+    const vec3 across = glm::ceil(recipe.bounds.size() / recipe.voxel_size);
+    if (json)
+        return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
+                                        {"kind", json_of("recipe")},
+                                        {"name", json_of(std::string_view(recipe.name))},
+                                        {"bounds", json_of(recipe.bounds)},
+                                        {"voxel_size", json_of(double{recipe.voxel_size})},
+                                        {"voxels", json_of(across)},
+                                        {"period", json_of(recipe.period)},
+                                        {"frame_rate", json_of(recipe.frame_rate)},
+                                        {"extinction", json_of(double{recipe.extinction})},
+                                        {"albedo", json_of(recipe.albedo)},
+                                        {"g", json_of(double{recipe.g})},
+                                        {"hash", json_of(std::string_view(recipe_hash(recipe)))}})) +
+               "\n";
+    std::string text = printable(file.string()) + ": fog recipe for a grid named " + printable(recipe.name, 80) + "\n";
+    text += "  world         " + vector_text(recipe.bounds.low) + " to " + vector_text(recipe.bounds.high) + " m\n";
+    text += formatted("  voxels        %.0f x %.0f x %.0f of %g m\n", double{across.x}, double{across.y},
+                      double{across.z}, double{recipe.voxel_size});
+    text += formatted("  optics        extinction %g /m at density 1, albedo %s, g %g\n", double{recipe.extinction},
+                      vector_text(recipe.albedo).c_str(), double{recipe.g});
+    text += recipe.period > 0 ? formatted("  motion        repeats after %g s (%g frames)\n", recipe.period,
+                                          recipe.period * recipe.frame_rate)
+                              : std::string("  motion        does not repeat\n");
+    return text;
+}
+}

@@ -1,0 +1,53 @@
+#include "light_units.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace tyndall {
+namespace {
+constexpr double lumens_per_watt = 683, sphere = 4 * 3.14159265358979323846;
+
+// Whether a person could have typed the number: at most three significant digits.
+bool typed(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2e", value);
+    return std::abs(std::strtod(text, nullptr) - value) <= 2e-6 * value;
+}
+
+// The number a Blender user would have typed for a light, by kind of export.
+double spec_value(const LightSource& light, double intensity) {
+    return light.kind == LightKind::sun ? intensity / lumens_per_watt : intensity / lumens_per_watt * sphere;
+}
+double unitless_value(const LightSource& light, double intensity) {
+    return light.kind == LightKind::sun ? intensity : intensity * sphere;
+}
+
+bool all_typed(const Scene& scene, double (*value)(const LightSource&, double)) {
+    for (const LightSource& light : scene.lights) {
+        const double intensity = light.intensity.at(0);
+        if (intensity > 0 && !typed(value(light, intensity))) return false;
+    }
+    return true;
+}
+}
+
+std::string light_units_hint(const Scene& scene) {
+    bool any_local = false, any = false, all_large = true;
+    for (const LightSource& light : scene.lights) {
+        const float intensity = light.intensity.at(0);
+        if (!(intensity > 0)) continue;
+        any = true;
+        any_local |= light.kind != LightKind::sun;
+        if (light.kind != LightKind::sun) all_large &= intensity >= 100;
+    }
+    if (!any) return "";
+    if (all_typed(scene, spec_value))
+        return "intensities look like Blender's standard export: candela and lux, as they should be";
+    if (!any_local) return "";
+    if (all_typed(scene, unitless_value))
+        return "intensities look like Blender's unitless export: render with --light-units unitless";
+    if (all_large && all_typed(scene, [](const LightSource&, double intensity) { return intensity; }))
+        return "intensities are round and large: candela, or watts of Blender's raw export (then --light-units raw)";
+    return "";
+}
+}

@@ -1,0 +1,184 @@
+"""The command line itself: help, names, hints, exit code 2, and output that cannot be written."""
+import json
+import subprocess
+import unittest
+
+from program import TYNDALL, ProgramTest, run, scene
+
+COMMANDS = ["bake", "render", "info", "check", "modes"]
+OPTIONS = {
+    "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
+    "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
+               "--exposure", "--light-units", "--missing", "--aov", "--png", "--resume", "--seed", "--isa",
+               "--stats-json"],
+}
+
+
+class Help(ProgramTest):
+    def test_without_a_command_it_says_what_to_do_first(self):
+        result = self.succeed()
+        for word in ["tyndall bake", "tyndall render", "--help"]:
+            self.assertIn(word, result.stdout)
+        self.assertEqual(result.stderr, "")
+
+    def test_general_help_lists_commands_and_exit_codes(self):
+        result = self.succeed("--help")
+        for word in COMMANDS + ["--threads", "--progress", "--json", "--quiet", "--verbose", "--version", "Exit codes"]:
+            self.assertIn(word, result.stdout)
+
+    def test_every_command_explains_itself_with_an_example(self):
+        for command in COMMANDS:
+            for arguments in [(command, "--help"), (command, "-h")]:
+                result = self.succeed(*arguments)
+                self.assertIn("Example", result.stdout)
+                self.assertEqual(result.stderr, "")
+                for option in OPTIONS.get(command, []):
+                    self.assertIn(option, result.stdout)
+                self.assertLessEqual(max(map(len, result.stdout.splitlines())), 120, command)
+
+    def test_version(self):
+        self.assertRegex(self.succeed("--version").stdout, r"^tyndall \d+\.\d+\.\d+\n$")
+
+
+class CommandLine(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.json", scene())
+        self.output = self.path("out.####.exr")
+
+    def render(self, *more):
+        return ("render", self.scene, "-o", self.output, *more)
+
+    def test_mistyped_names_get_a_hint(self):
+        self.refuse(2, ["rneder", "did you mean render"], "rneder", self.scene)
+        self.refuse(2, ["--framse", "did you mean --frames"], *self.render("--framse", "1-3"))
+        self.refuse(2, ["--thraeds", "did you mean --threads"], "modes", "--thraeds", "2")
+        self.refuse(2, ["march.step_dpeth", "march.step_depth"], *self.render("--set", "march.step_dpeth=1"))
+
+    def test_what_is_missing_is_named(self):
+        self.refuse(2, ["SCENE"], "render")
+        self.refuse(2, ["--output"], "render", self.scene)
+        self.refuse(2, ["--frames"], *self.render("--frames"))
+        self.refuse(2, ["FILE"], "info")
+        self.refuse(2, ["FILES"], "check")
+        self.refuse(2, ["unexpected"], *self.render("another.json"))
+
+    def test_wrong_values_of_render_options(self):
+        cases = {
+            "--frames": ["", "x", "1-", "1-10:2", "5-1", "1-10x0", "1,,2", "1-99999999999"],
+            "--res": ["", "64", "64x", "0x36", "64x36x2", "-64x36", "99999x10", "64.5x36"],
+            "--crop": ["", "1,2,3", "5,5,5,9", "9,0,5,5", "0,0,9,x", "-1,0,5,5"],
+            "--samples": ["0", "-1", "nan", "1.5", "5000", "many"],
+            "--quality": ["good", "FINAL"],
+            "--mode": ["rasterize", ""],
+            "--set": ["march.step_depth", "march.step_depth=", "march.step_depth=nan", "march.step_depth=1e30",
+                      "pixel.samples=1.5", "march.jitter=blue", "=1"],
+            "--exposure": ["bright", "nan", "1000"],
+            "--light-units": ["watts"],
+            "--missing": ["ignore"],
+            "--aov": ["depth", "Z,,inscatter"],
+            "--seed": ["-1", "4294967296", "1.5"],
+            "--isa": ["sse2", "neon"],
+        }
+        for option, values in cases.items():
+            for value in values:
+                with self.subTest(option=option, value=value):
+                    self.refuse(2, [], *self.render(option, value))
+
+    def test_wrong_values_of_global_options(self):
+        for option, value in [("--threads", "0"), ("--threads", "-1"), ("--threads", "1025"), ("--threads", "two"),
+                              ("--progress", "loud")]:
+            self.refuse(2, [option], "modes", option, value)
+
+    def test_wrong_values_of_bake_options(self):
+        bake = ("bake", "recipe.json", "-o", self.path("fog.####.vdb"))
+        for option, value in [("--voxel-size", "0"), ("--voxel-size", "-1"), ("--voxel-size", "nan"),
+                              ("--compression", "lzma"), ("--frames", "1-5:2")]:
+            self.refuse(2, [], *bake, option, value)
+
+    def test_options_that_do_not_exist_are_not_swallowed(self):
+        for option in ["--orders", "--target-error", "--time-budget", "--history", "--time-samples"]:
+            self.refuse(2, [option], *self.render(option, "1"))
+        for mode in ["march,march", "all", "auto"]:
+            self.refuse(2, ["march"], *self.render("--mode", mode))
+
+    def test_output_names(self):
+        several = ("--frames", "1-2")
+        for name in ["out.exr", "out.####.png", "out", "####", ".exr", "out.%s.exr", "out.##.##.exr"]:
+            with self.subTest(name=name):
+                self.refuse(2, [], "render", self.scene, "-o", self.path(name), *several)
+        self.refuse(2, ["several frames"], "render", self.scene, "-o", self.path("out.exr"))
+        self.refuse(2, [".vdb"], "bake", "recipe.json", "-o", self.path("out.####.exr"))
+
+    def test_a_step_with_a_colon_is_explained(self):
+        self.refuse(2, ["use x"], *self.render("--frames", "1-10:2"))
+
+    def test_camera_and_crop_are_checked_against_the_scene(self):
+        self.refuse(2, ["nobody"], *self.render("--camera", "nobody"))
+        self.refuse(2, ["--crop"], *self.render("--crop", "0,0,65,36"))
+        self.refuse(2, ["--crop"], *self.render("--res", "32x18", "--crop", "0,0,33,18"))
+
+    def test_negative_frames_are_values_not_options(self):
+        self.succeed(*self.render("--frames", "-2--1", "--quality", "draft"))
+        self.assertTrue(self.path("out.-0002.exr").exists())
+        self.assertTrue(self.path("out.-0001.exr").exists())
+
+    def test_option_values_may_be_any_bytes(self):
+        for value in ["\n\x1b[31m", "%s%n%s", "é" * 400, "x" * 5000, "--", "🌫"]:
+            self.refuse(2, [], *self.render("--quality", value))
+            self.refuse(2, [], "modes", f"--{value[:3000]}")
+
+
+class Modes(ProgramTest):
+    def test_table_for_people_and_scripts(self):
+        text = self.succeed("modes").stdout
+        report = json.loads(self.succeed("modes", "--json").stdout)
+        self.assertIn("march", [mode["name"] for mode in report["modes"]])
+        for mode in report["modes"]:
+            self.assertTrue(mode["promise"] and mode["summary"])
+            self.assertIn(mode["summary"], text)
+        for row in report["settings"]:
+            self.assertIn(row["name"], text)
+            self.assertEqual(list(row["values"]), ["draft", "preview", "final", "reference"])
+
+    def test_every_setting_takes_its_own_values(self):
+        path = self.write("scene.json", scene(frames="1", resolution=[2, 2]))
+        assignments = []
+        for row in json.loads(self.succeed("modes", "--json").stdout)["settings"]:
+            assignments += ["--set", f"{row['name']}={row['values']['draft']}"]
+        self.succeed("render", path, "-o", self.path("out.exr"), *assignments)
+
+
+class Streams(ProgramTest):
+    def test_a_full_device_is_an_error_and_a_closed_pipe_is_not(self):
+        with open("/dev/full", "w") as full:
+            self.check_refusal(run("modes", stdout=full), 5, "standard output")
+        shell = subprocess.run(["bash", "-c", '"$0" modes | true; exit "${PIPESTATUS[0]}"', TYNDALL],
+                               stderr=subprocess.PIPE, text=True)
+        self.assertEqual((shell.returncode, shell.stderr), (0, ""))
+
+    def test_rendering_does_not_need_its_streams(self):
+        path = self.write("scene.json", scene(frames="1"))
+        reference = self.path("reference.exr")
+        self.succeed("render", path, "-o", reference)
+        for name, redirection in [("closed", ">&- 2>&- <&-"), ("full", ">/dev/full 2>/dev/full"), ("pipe", "| true")]:
+            command = f'"$0" render "$1" -o "$2" {redirection}; exit "${{PIPESTATUS[0]}}"'
+            output = self.path(f"{name}.exr")
+            result = subprocess.run(["bash", "-c", command, TYNDALL, path, output], stderr=subprocess.DEVNULL)
+            self.assertEqual(result.returncode, 0, name)
+            self.assertEqual(output.read_bytes(), reference.read_bytes(), name)
+
+    def test_reports_leave_stdout_alone(self):
+        path = self.write("scene.json", scene(frames="1-2"))
+        result = self.succeed("render", path, "-o", self.path("out.####.exr"), "--json", "--progress", "alf")
+        json.loads(result.stdout)
+        self.assertIn("ALF_PROGRESS", result.stderr)
+
+    def test_quiet_means_errors_only(self):
+        path = self.write("scene.json", scene(frames="1"))
+        result = self.succeed("render", path, "-o", self.path("out.####.exr"), "-q")
+        self.assertEqual((result.stdout, result.stderr), ("", ""))
+
+
+if __name__ == "__main__":
+    unittest.main()
