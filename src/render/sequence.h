@@ -21,7 +21,8 @@ struct RenderJob {
     uint32_t seed = 0;
     std::string isa;
     MissingFrame missing = MissingFrame::error;
-    float exposure = 0; // added to the scene's, for PNGs
+    LightUnits light_units = LightUnits::spec; // how the scene was loaded; for the header
+    float exposure = 0;                        // added to the scene's, for PNGs
     ExrOptions exr;
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
@@ -30,19 +31,29 @@ struct RenderJob {
 struct FrameReport {
     int frame = 0;
     std::string file;
-    bool kept = false;
+    bool kept = false; // by resume; nothing was rendered
     double load_seconds = 0, seconds = 0, write_seconds = 0;
     FrameStats stats;
 };
 
 struct RenderReport {
-    std::vector<FrameReport> frames;
+    std::vector<FrameReport> frames; // complete ones, in the order of the job
     std::vector<std::string> notes;
+    bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
 
+// Renders the job's frames; while one renders, the next is loaded and the last is written. Output names are tested and
+// leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
+// beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
+// channels and size, and its `tyndall:hash` equals that of the job. Throws Error; one of a frame names it, and frames
+// finished before it are written.
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel);
+
+// As above with a mode that need not be in the table.
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
+                             std::atomic<bool>& cancel);
 
 // JSON of a report, with a schema version.
 std::string stats_json(const RenderReport& report, const RenderJob& job);

@@ -1,0 +1,24 @@
+// What a frame is made from, as a view to render, a hash to compare and attributes to keep.
+#pragma once
+#include "render/sequence.h"
+
+#include <map>
+#include <string>
+
+namespace tyndall {
+View view_of(const Scene& scene, const RenderJob& job, int frame);
+
+// Content hashes of files already read, by path: a file counts as it was when first asked for.
+struct FileHashes {
+    std::map<std::filesystem::path, std::string> known;
+};
+
+// One hash over everything the pixels and header of a frame depend on: contents of the scene's files and of the frame's
+// fog, the lights as loaded, mode, settings, size, crop, camera, seed, layers, instruction set and program version.
+// Directories do not count. Throws Error (unreadable).
+std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files);
+
+// How to make the frame again.
+Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
+                         const FrameStats& stats);
+}

@@ -1,0 +1,272 @@
+// The pipeline over frames: one is rendered while the one before is written and the one after is loaded.
+#include "render/sequence.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/frames.h"
+#include "base/parallel.h"
+#include "render/png.h"
+#include "render/provenance.h"
+#include "render/resume.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <set>
+
+namespace tyndall {
+namespace {
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+constexpr int largest_side = 16384; // what read_exr takes back
+
+// A frame ready to render, and after that ready to write.
+struct Work {
+    size_t index = 0; // in the job's frames
+    FrameReport report;
+    std::string hash;
+    View view;
+    Snapshot snapshot;
+    Layers layers;
+};
+
+// What the stages share. Only the stage beside the renderer changes it.
+struct Pipeline {
+    const Scene& scene;
+    const RenderJob& job;
+    const Mode& mode;
+    Progress& progress;
+    std::atomic<bool>& cancel;
+    std::vector<std::string> channels; // of every file
+    FileHashes files;
+    RenderReport report;
+    size_t next = 0; // index of the first frame not yet looked at
+};
+
+bool wants_lights(const RenderJob& job) { return std::ranges::count(job.exr.layers, "lights") > 0; }
+
+std::filesystem::path png_name(const std::string& exr) { return std::filesystem::path(exr).replace_extension(".png"); }
+
+float png_exposure(const Pipeline& pipeline, int frame) {
+    return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
+}
+
+[[noreturn]] void fail_in_frame(int frame, const Error& error) {
+    fail(error.code, "frame " + std::to_string(frame), error.what());
+}
+
+void check_picture(const Scene& scene, const RenderJob& job) {
+    const ivec2 size = job.resolution.x > 0 ? job.resolution : scene.resolution;
+    if (size.x < 1 || size.y < 1 || size.x > largest_side || size.y > largest_side)
+        fail(ExitCode::usage, "resolution", "expected 1 to 16384 pixels on each side");
+    const ivec2 low = job.crop_low, high = job.crop_high;
+    if (low == high) return;
+    if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
+        fail(ExitCode::usage, "crop", "it has to lie inside the picture and hold a pixel");
+}
+
+// Names, directories and leftovers. Nothing that was read may be written over.
+void check_outputs(const Scene& scene, const RenderJob& job) {
+    if (job.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
+    if (std::filesystem::path(job.output).extension() != ".exr")
+        fail(ExitCode::usage, printable(job.output), "the output has to end in .exr");
+    if (job.frames.size() > 1 && !has_frame_token(job.output))
+        fail(ExitCode::usage, printable(job.output), "several frames need a place for the number, as in name.####.exr");
+
+    std::set<std::filesystem::path> inputs, directories;
+    for (const std::filesystem::path& input : scene.inputs) inputs.insert(std::filesystem::weakly_canonical(input));
+    for (const int frame : job.frames) {
+        const std::string exr = frame_name(job.output, frame);
+        std::vector<std::filesystem::path> outputs{exr};
+        if (job.png) outputs.push_back(png_name(exr));
+        for (const std::filesystem::path& output : outputs) {
+            if (inputs.contains(std::filesystem::weakly_canonical(output)))
+                fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be written over");
+            check_output(output);
+            directories.insert(output.has_parent_path() ? output.parent_path() : ".");
+        }
+    }
+    for (const std::filesystem::path& directory : directories) sweep_temporaries(directory);
+}
+
+void say(const Pipeline& pipeline, const Work& work, const std::string& what) {
+    pipeline.progress.line("frame " + std::to_string(work.report.frame) + " (" + std::to_string(work.index + 1) + "/" +
+                           std::to_string(pipeline.job.frames.size()) + ") " + what);
+}
+
+WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
+    const View& view = work.view;
+    const bool cropped = view.crop_low != view.crop_high;
+    return {view.size, cropped ? view.crop_low : ivec2(0), cropped ? view.crop_high - view.crop_low : view.size,
+            pipeline.channels, work.hash};
+}
+
+Image<vec3> color_of(const ExrFile& exr) {
+    Image<vec3> color(exr.size);
+    const Image<float>*red = exr.channel("R"), *green = exr.channel("G"), *blue = exr.channel("B");
+    for (size_t i = 0; i < color.pixels.size(); ++i)
+        color.pixels[i] = {red->pixels[i], green->pixels[i], blue->pixels[i]};
+    return color;
+}
+
+// Keeps a frame that is already there and right; its PNG is made anew, since that carries no hash.
+bool keep(Pipeline& pipeline, Work& work) {
+    std::string why;
+    const std::optional<ExrFile> exr = finished_frame(work.report.file, wanted_frame(pipeline, work), why);
+    if (!exr) {
+        if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
+        return false;
+    }
+    if (pipeline.job.png)
+        write_png(png_name(work.report.file), color_of(*exr), png_exposure(pipeline, work.report.frame));
+    work.report.kept = true;
+    say(pipeline, work, "kept " + work.report.file);
+    return true;
+}
+
+// The next frame that has to be rendered; kept ones on the way are reported.
+std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
+    while (pipeline.next < pipeline.job.frames.size() && !pipeline.cancel) {
+        const auto start = Clock::now();
+        Work work;
+        work.index = pipeline.next++;
+        const int frame = work.report.frame = pipeline.job.frames[work.index];
+        work.report.file = frame_name(pipeline.job.output, frame);
+        try {
+            work.view = view_of(pipeline.scene, pipeline.job, frame);
+            work.hash = frame_hash(pipeline.scene, pipeline.job, work.view, pipeline.files);
+            if (pipeline.job.resume && keep(pipeline, work)) {
+                work.report.load_seconds = seconds_since(start);
+                pipeline.report.frames.push_back(work.report);
+                continue;
+            }
+            const Moment moment = moment_of(pipeline.scene, frame);
+            work.snapshot = make_snapshot(pipeline.scene, moment, previous, pipeline.job.missing);
+        } catch (const Error& error) {
+            fail_in_frame(frame, error);
+        }
+        for (const std::string& note : work.snapshot.notes)
+            if (!std::ranges::count(pipeline.report.notes, note)) pipeline.report.notes.push_back(note);
+        work.report.load_seconds = seconds_since(start);
+        return work;
+    }
+    return {};
+}
+
+void render(const Pipeline& pipeline, Work& work) {
+    const RenderJob& job = pipeline.job;
+    const auto start = Clock::now();
+    FrameOptions options{wants_lights(job), &pipeline.cancel, {}};
+    options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
+    try {
+        work.layers = render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, work.report.stats);
+    } catch (const Error& error) {
+        fail_in_frame(work.report.frame, error);
+    }
+    work.report.seconds = seconds_since(start);
+}
+
+void write(Pipeline& pipeline, Work& work) {
+    const RenderJob& job = pipeline.job;
+    const auto start = Clock::now();
+    FrameReport& report = work.report;
+    try {
+        const Provenance provenance = provenance_of(pipeline.scene, job, work.view, work.hash, report.stats);
+        write_exr(report.file, work.layers, provenance, job.exr);
+        if (job.png)
+            write_png(png_name(report.file), stored_color(work.layers, job.exr), png_exposure(pipeline, report.frame));
+    } catch (const Error& error) {
+        fail_in_frame(report.frame, error);
+    }
+    report.write_seconds = seconds_since(start);
+    pipeline.report.non_finite += report.stats.non_finite;
+    pipeline.report.frames.push_back(report);
+
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
+    std::string text = std::string(seconds) + " -> " + report.file;
+    if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
+    say(pipeline, work, text);
+}
+
+// Runs `body` and keeps what it throws for later, so that the stage beside it can end in peace.
+template<class Body> std::exception_ptr caught(const Body& body) {
+    try {
+        body();
+    } catch (const std::exception&) {
+        return std::current_exception();
+    }
+    return {};
+}
+
+void run(Pipeline& pipeline) {
+    std::optional<Work> current = load_next(pipeline, nullptr), rendered;
+    while (current) {
+        std::optional<Work> next;
+        std::exception_ptr render_error, write_error, load_error;
+        parallel_for(2, [&](int64_t stage) {
+            if (stage == 0) {
+                render_error = caught([&] { render(pipeline, *current); });
+                return;
+            }
+            write_error = caught([&] {
+                if (rendered) write(pipeline, *rendered);
+            });
+            if (!write_error) load_error = caught([&] { next = load_next(pipeline, &current->snapshot); });
+        });
+        if (write_error) std::rethrow_exception(write_error);
+        if (render_error && pipeline.cancel) return;
+        if (render_error) std::rethrow_exception(render_error);
+
+        // The fog and triangles of a finished frame are not needed any more, unless the next one shares them.
+        current->snapshot = {};
+        rendered = std::move(current);
+        current = std::move(next);
+        if (load_error) {
+            write(pipeline, *rendered);
+            std::rethrow_exception(load_error);
+        }
+    }
+    if (rendered) write(pipeline, *rendered);
+}
+
+uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+}
+
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
+                             std::atomic<bool>& cancel) {
+    const auto start = Clock::now();
+    check_layer_names(job.exr);
+    check_picture(scene, job);
+    find_camera(scene, job.camera);
+    check_outputs(scene, job);
+    flush_denormals();
+
+    std::vector<std::string> lights;
+    for (const LightSource& light : scene.lights) lights.push_back(light.name);
+    Pipeline pipeline{scene, job, mode, progress, cancel, channel_names(lights, job.exr), {}, {}, 0};
+    run(pipeline);
+
+    RenderReport& report = pipeline.report;
+    std::ranges::sort(report.frames, {}, [&](const FrameReport& frame) {
+        return std::ranges::find(job.frames, frame.frame) - job.frames.begin();
+    });
+    report.cancelled = cancel && report.frames.size() < job.frames.size();
+    report.seconds = seconds_since(start);
+    report.peak_memory_bytes = peak_memory();
+    return std::move(report);
+}
+
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel) {
+    return render_sequence(scene, job, find_mode(job.mode), progress, cancel);
+}
+}
