@@ -16,7 +16,7 @@ struct Options {
     bool png = false, resume = false;
 };
 
-constexpr int largest_side = 32768; // pixels
+constexpr int largest_side = 16384; // pixels; what EXR readers take
 
 ivec2 parsed_resolution(const std::string& text) {
     const size_t cross = text.find('x');
@@ -99,17 +99,25 @@ void choose_frames(const Scene& scene, RenderJob& job) {
     check_pattern(job.output, ".exr", job.frames.size() > 1);
 }
 
-// Where the mode fails on this scene, from its first frame.
-std::vector<std::string> limit_lines(const Scene& scene, const RenderJob& job) {
+// Where the mode fails on this scene, from the first frame.
+std::vector<Limit> limits_of(const Scene& scene, const RenderJob& job) {
     const Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), nullptr, job.missing);
     View view;
     view.camera = camera_at(scene, find_camera(scene, job.camera), snapshot.seconds);
-    if (job.resolution.x > 0) view.size = job.resolution;
-    std::vector<std::string> lines;
-    for (const Limit& limit : find_mode(job.mode).limits(view, snapshot, job.settings))
-        lines.push_back(std::string(name_of(limit.severity)) + ": " + printable(limit.where) + ": " +
-                        printable(limit.why));
-    return lines;
+    view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
+    return find_mode(job.mode).limits(view, snapshot, job.settings);
+}
+
+std::string limit_line(const Limit& limit) {
+    return std::string(name_of(limit.severity)) + ": " + printable(limit.where) + ": " + printable(limit.why, 240);
+}
+
+// What the picture will not show: warnings of the files, then limits of the mode; mere remarks only when verbose.
+void say_limits(const Scene& scene, const std::vector<Limit>& limits, const Globals& globals) {
+    if (globals.quiet) return;
+    for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
+    for (const Limit& limit : limits)
+        if (globals.verbose || limit.severity != Severity::info) say(limit_line(limit));
 }
 
 void say_summary(const RenderReport& report, const RenderJob& job) {
@@ -130,6 +138,7 @@ void say_summary(const RenderReport& report, const RenderJob& job) {
 int run_render(const Options& texts, const Globals& globals) {
     RenderJob job = make_job(texts);
     const LoadOptions options = load_options(texts);
+    job.light_units = options.light_units;
     OutputPlaces places;
     if (!job.frames.empty())
         places.check(job.output, job.frames);
@@ -138,19 +147,19 @@ int run_render(const Options& texts, const Globals& globals) {
     if (!texts.stats.empty()) places.check(std::filesystem::path(texts.stats));
 
     const Scene scene = load_scene(job.scene_file, options);
+    stop_if_cancelled();
     choose_frames(scene, job);
     places.check(job.output, job.frames);
     find_camera(scene, job.camera);
     check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
-    job.limits_said = limit_lines(scene, job);
-    if (!globals.quiet) {
-        for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
-        for (const std::string& line : job.limits_said) say(line);
-    }
+    const std::vector<Limit> limits = limits_of(scene, job);
+    say_limits(scene, limits, globals);
 
     Progress progress(globals.progress, "render", static_cast<double>(job.frames.size()), globals.json);
     const RenderReport report = render_sequence(scene, job, progress, cancel_flag());
-    progress.finish();
+    if (!report.cancelled) progress.finish();
+    // For the statistics only: a frame's header must not depend on which frame was the first.
+    for (const Limit& limit : limits) job.limits_said.push_back(limit_line(limit));
     if (!texts.stats.empty()) write_file_atomically(texts.stats, stats_json(report, job));
     if (globals.json) print_report(stats_json(report, job) + "\n");
     if (!globals.quiet) {
