@@ -1,44 +1,53 @@
 // Optical depth of the fog between a point and a light, stored in grids aligned with the light.
 //
 //   sun    orthographic columns along the light, fitted to the fog          u,v across · w along
-//   spot   perspective columns in the cone                                  u,v = tangent plane · w = distance
+//   spot   perspective columns in a cone                                    u,v = tangent plane · w = distance
 //   point  octahedral directions                                            u,v = octahedron · w = distance
 //
 // Each cell holds the depth from the light (or the fog's edge) to the cell corner; look-ups are trilinear in depth.
+// The path of a local light ends at its `radius`: inside the glowing ball nothing dims it.
 #pragma once
+#include "trace/light_ray.h"
 #include "trace/snapshot.h"
 
 #include <vector>
 
 namespace tyndall {
-enum class LightTransmittance { off, average, grid, marched };   // `froxel` joins with the froxel cache
+enum class LightTransmittance { off, average, grid, marched }; // `froxel` joins with the froxel cache
 
 struct LightDepthGrid {
+    // How cells lie, by the three above. A point light that sees the fog under a small angle has a `spot` grid, a spot
+    // wider than 70° to each side a `point` grid.
     LightKind kind = LightKind::sun;
-    mat4 world_to_grid{1};       // sun, spot: world to (u,v,w) before scaling to cells
-    vec3 position{0};            // spot, point
-    ivec3 size{0};
-    vec3 scale{1}, offset{0};    // cell coordinate = coordinate · scale + offset
-    float tan_cone = 1;
-    std::vector<float> depth;    // [(w·ny + v)·nx + u]
+    mat3 world_to_grid{1};    // rotation to the grid's axes, after `position` is taken off
+    vec3 position{0};         // a point in the fog (sun), the light
+    ivec3 size{0};            // corners along u, v, w
+    vec3 scale{1}, offset{0}; // corner number = coordinate · scale + offset
+    std::vector<float> depth; // [(w·size.y + v)·size.x + u]
     bool empty() const { return depth.empty(); }
 };
 
-// Everything a mode needs to ask for light-side transmittance of one light: closed forms for homogeneous and height fog,
-// one grid for all brick media together.
+// Everything a mode needs to ask for light-side transmittance of one light: closed forms for homogeneous and height
+// fog, one grid for all brick media together. Points into the snapshot's media, which must outlive it and stay in
+// place.
 struct LightDepth {
     LightTransmittance method = LightTransmittance::grid;
     Light light;
     LightDepthGrid grid;
-    std::vector<const Medium*> analytic;     // homogeneous and height media
-    std::vector<const Medium*> marched;      // brick media, when marched
-    float average = 0;                       // optical depth used for every point, when average
+    std::vector<const Medium*> analytic; // homogeneous and height media
+    std::vector<const Medium*> marched;  // brick media, when marched
+    float average = 0;                   // optical depth used for every point, when average
 };
 
 // `resolution`: cells across the longer side of the fog as the light sees it. Built in parallel.
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution);
 
-// Optical depth from 16 points to the light (x,y,z of 16 each). Only lanes with active != 0 need be right.
+// Optical depth from 16 points to the light (x,y,z of 16 each); 0 in lanes with active == 0. Kernels use
+// light_depth16() of trace/light_depth_simd.h.
 void light_depths(const LightDepth& depth, const float* x, const float* y, const float* z, const int32_t* active,
                   float* optical_depth);
+
+// The share of the brick media alone, exact for their trilinear densities: what `marched` adds to the closed forms.
+void marched_depths(const LightDepth& depth, const float* x, const float* y, const float* z, const int32_t* active,
+                    float* optical_depth);
 }

@@ -18,18 +18,26 @@ struct BackgroundNow {
     float intensity = 1, rotation = 0;
 };
 
+// Bricks as file or recipe made them, what they were made from, and where the medium's own transform put them.
+struct FogSource {
+    std::string key;         // empty = nothing to reuse
+    dmat4 index_to_world{1}; // before the medium's transform
+    std::shared_ptr<const BrickPool> bricks, placed;
+    mat4 matrix{1}; // the medium's transform
+};
+
 struct Snapshot {
     const Scene* scene = nullptr;
     double seconds = 0;
     int frame = 0;
-    std::vector<Light> lights;            // of non-zero intensity
-    std::vector<Medium> media;            // of non-zero extinction
+    std::vector<Light> lights; // of non-zero intensity
+    std::vector<Medium> media; // of non-zero extinction
     vec3 ambient{0};
     BackgroundNow background;
     std::shared_ptr<const Occluders> occluders;
-    Box bounds;                           // of meshes, local lights and bounded media
-    std::vector<std::string> notes;       // what was mended in the files of this frame; say once
-    std::vector<std::string> media_keys;  // what each medium was made from: reuse when unchanged
+    Box bounds;                         // of meshes, local lights and bounded media
+    std::vector<std::string> notes;     // what was mended in the files of this frame; say once
+    std::vector<FogSource> fog_sources; // one per medium of the scene: what the next frame can use again
 };
 
 struct Moment {
@@ -39,7 +47,8 @@ struct Moment {
 inline Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
 
 // Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since
-// `previous` is shared with it. Throws Error.
+// `previous` (of the same, unchanged Scene) is shared with it, and the result is the same without. The Scene must
+// outlive it. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error);
 

@@ -13,9 +13,9 @@ struct View {
     ivec2 crop_low{0}, crop_high{0}; // pixels low..high (high excluded) to render; equal = all
     int pixel_samples = 4;
     PixelFilter filter = PixelFilter::blackman_harris;
-    float filter_radius = 1.0f;      // pixels
+    float filter_radius = 1.0f; // pixels
     uint32_t seed = 0;
-    int frame = 0;                   // varies the jitter from frame to frame
+    int frame = 0; // varies the jitter from frame to frame
 };
 
 // Position of a sample in its pixel, in pixels from the upper left of the picture: importance sampled by the filter, so

@@ -1,0 +1,45 @@
+// What is seen where there is no surface: a colour, a sky gradient or a picture.
+#include "trace/snapshot.h"
+
+namespace tyndall {
+namespace {
+// Bilinear between pixel centres; the edges hold, or wrap around sideways.
+vec3 sample_image(const Image<vec3>& image, vec2 uv, bool wrap) {
+    const vec2 position = uv * vec2(image.size) - 0.5f;
+    const vec2 corner = glm::floor(position), share = position - corner;
+    const auto column = [&](int x) {
+        return wrap ? (x % image.size.x + image.size.x) % image.size.x : std::clamp(x, 0, image.size.x - 1);
+    };
+    const auto row = [&](int y) { return std::clamp(y, 0, image.size.y - 1); };
+    const int x0 = column(static_cast<int>(corner.x)), x1 = column(static_cast<int>(corner.x) + 1);
+    const int y0 = row(static_cast<int>(corner.y)), y1 = row(static_cast<int>(corner.y) + 1);
+    const vec3 upper = glm::mix(image.at(x0, y0), image.at(x1, y0), share.x);
+    const vec3 lower = glm::mix(image.at(x0, y1), image.at(x1, y1), share.x);
+    return glm::mix(upper, lower, share.y);
+}
+
+// The middle of the picture lies along -Z; `rotation` turns it to the left.
+vec2 lat_long_position(vec3 direction, float rotation) {
+    const float turn = (std::atan2(direction.x, -direction.z) + rotation) / (2 * pi);
+    return {0.5f + turn - std::floor(0.5f + turn), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / pi};
+}
+}
+
+vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen) {
+    switch (background.kind) {
+    case BackgroundKind::color:
+        return background.color * background.intensity;
+    case BackgroundKind::sky: {
+        const vec3 end = direction.y >= 0 ? background.zenith : background.ground;
+        const float height = std::clamp(std::abs(direction.y), 0.0f, 1.0f);
+        return glm::mix(background.color, end, height * height * (3 - 2 * height)) * background.intensity;
+    }
+    case BackgroundKind::image: {
+        if (!background.image || background.image->empty()) return vec3(0);
+        const vec2 uv = background.lat_long ? lat_long_position(direction, background.rotation) : screen;
+        return sample_image(*background.image, uv, background.lat_long) * background.intensity;
+    }
+    }
+    return vec3(0);
+}
+}

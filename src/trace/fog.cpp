@@ -1,0 +1,139 @@
+// Media of a scene at one moment: optics evaluated, files read, recipes grown, transforms folded in.
+#include "trace/fog.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "volume/vdb.h"
+
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+mat4 medium_matrix(const Scene& scene, const MediumSource& source, double seconds) {
+    const mat4 turned = glm::translate(mat4(1), source.translation.at(seconds)) *
+                        glm::mat4_cast(glm::normalize(source.rotation.at(seconds)));
+    const mat4 matrix = glm::scale(turned, source.scale.at(seconds));
+    const float determinant = glm::determinant(mat3(matrix));
+    if (!std::isfinite(determinant) || determinant == 0)
+        refuse(scene.file.string(), "medium " + source.name + ": its scale or rotation leaves it no volume");
+    return matrix;
+}
+
+Optics optics_at(const MediumSource& source, double seconds) {
+    return {source.extinction.at(seconds), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
+            source.emission.at(seconds)};
+}
+
+// Fog that stands still is grown once.
+bool changes(const FogRecipe& recipe) {
+    return recipe.wind != vec3(0) || recipe.noise.evolve != 0 || (recipe.swirl != 0 && recipe.swirl_speed != 0);
+}
+
+std::string number_key(double value) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%a", value);
+    return text;
+}
+
+FogSource source_of(const SparseVolume& volume, std::string key) {
+    FogSource source;
+    source.key = std::move(key);
+    source.index_to_world = volume.index_to_world;
+    if (!volume.empty()) source.bricks = make_bricks(volume);
+    return source;
+}
+
+FogSource grown(const MediumSource& source, double seconds, const FogSource& before) {
+    FogRecipe recipe = *source.recipe;
+    if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
+    std::string key = "recipe " + recipe_hash(recipe);
+    if (changes(recipe)) key.append(" at ").append(number_key(seconds));
+    return key == before.key ? before : source_of(grow(recipe, seconds), key);
+}
+
+FogSource read(const MediumSource& source, int frame, MissingFrame missing, const FogSource& before,
+               std::vector<std::string>& notes) {
+    const auto file = sequence_file(source.sequence, frame, missing);
+    if (!file) return {};
+    const uint64_t size = check_readable(*file);
+    const auto changed = std::filesystem::last_write_time(*file).time_since_epoch().count();
+    const std::string key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) +
+                            " " + source.sequence.grid;
+    if (key == before.key) return before;
+    VdbReadReport report;
+    const SparseVolume volume = read_vdb(*file, source.sequence.grid, &report);
+    if (const std::string summary = report.summary(); !summary.empty())
+        notes.push_back(file->filename().string() + ": " + summary);
+    return source_of(volume, key);
+}
+
+// The bricks where the medium's transform puts them; the densities are copied only when the transform does something.
+std::shared_ptr<const BrickPool> placed_bricks(const FogSource& source, const mat4& matrix) {
+    if (matrix == mat4(1)) return source.bricks;
+    auto moved = std::make_shared<BrickPool>(*source.bricks);
+    place(*moved, dmat4(matrix) * source.index_to_world);
+    return moved;
+}
+
+FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
+                     const FogSource& before, std::vector<std::string>& notes) {
+    FogSource result = source.kind == MediumKind::noise ? grown(source, moment.seconds, before)
+                                                        : read(source, moment.frame, missing, before, notes);
+    const mat4 matrix = medium_matrix(scene, source, moment.seconds);
+    if (!result.bricks || (result.placed && result.matrix == matrix)) return result;
+    result.placed = placed_bricks(result, matrix);
+    result.matrix = matrix;
+    return result;
+}
+
+// Fog given by a formula: its box moves, its height does not.
+void add_analytic(const Scene& scene, const MediumSource& source, double seconds, Medium& medium) {
+    const mat4 matrix = medium_matrix(scene, source, seconds);
+    medium.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
+    medium.bounds = source.bounds;
+    medium.world_to_local = glm::inverse(matrix);
+    medium.world_bounds = moved_box(matrix, source.bounds);
+    medium.height_base = source.height_base.at(seconds), medium.height_falloff = source.height_falloff.at(seconds);
+}
+}
+
+// Interval arithmetic per axis: 0 · infinity is 0 here, as a coefficient of 0 means that the axis has no say.
+Box moved_box(const mat4& matrix, const Box& box) {
+    Box result{vec3(matrix[3]), vec3(matrix[3])};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const float factor = matrix[column][row];
+            if (factor == 0) continue;
+            const float a = factor * box.low[column], b = factor * box.high[column];
+            result.low[row] += std::min(a, b), result.high[row] += std::max(a, b);
+        }
+    return result;
+}
+
+void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot) {
+    const bool comparable = previous && previous->fog_sources.size() == scene.media.size();
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        const MediumSource& source = scene.media[i];
+        const FogSource before = comparable ? previous->fog_sources[i] : FogSource{};
+        FogSource& fog = snapshot.fog_sources.emplace_back();
+        Medium medium;
+        medium.name = source.name;
+        medium.optics = optics_at(source, moment.seconds);
+        if (!(medium.optics.extinction > 0)) {
+            if (max_component(medium.optics.emission) > 0 && !comparable)
+                snapshot.notes.push_back("medium " + source.name + ": emits nothing, as its extinction is 0");
+            fog = before;
+            continue;
+        }
+        if (source.kind == MediumKind::noise || source.kind == MediumKind::vdb) {
+            fog = fog_source(scene, source, moment, missing, before, snapshot.notes);
+            if (!fog.placed || !(fog.placed->highest > 0)) continue;
+            medium.kind = DensityKind::bricks;
+            medium.bricks = fog.placed;
+            medium.world_bounds = fog.placed->bounds;
+        } else {
+            add_analytic(scene, source, moment.seconds, medium);
+        }
+        snapshot.media.push_back(std::move(medium));
+    }
+}
+}

@@ -1,0 +1,200 @@
+// Where a light's grid lies: tightly around the bricks that the light can reach.
+#include "trace/light_grid.h"
+
+#include <cmath>
+
+namespace tyndall {
+namespace {
+constexpr int64_t most_corners = 64 << 20; // of 4 bytes: 256 MB
+constexpr int most_layers = 8192;
+constexpr float widest_cone = 70 * pi / 180; // half angle up to which perspective columns serve a spot
+constexpr float widest_view = 60 * pi / 180; // ... and a point light that has the fog to one side
+
+// A brick in world space: a box with any edges.
+struct Block {
+    vec3 center, half[3];
+    float radius;
+
+    float extent(vec3 axis) const {
+        return std::abs(dot(half[0], axis)) + std::abs(dot(half[1], axis)) + std::abs(dot(half[2], axis));
+    }
+};
+
+Block block_of(const BrickPool& pool, vec3 low, vec3 high) {
+    Block block;
+    const vec3 center = 0.5f * (low + high), size = 0.5f * (high - low);
+    block.center = vec3(pool.index_to_world * vec4(center, 1));
+    block.radius = 0;
+    for (int axis = 0; axis < 3; ++axis) block.half[axis] = vec3(pool.index_to_world[axis]) * size[axis];
+    for (int corner = 0; corner < 4; ++corner)
+        block.radius = std::max(block.radius, glm::length(block.half[0] + (corner & 1 ? 1.0f : -1.0f) * block.half[1] +
+                                                          (corner & 2 ? 1.0f : -1.0f) * block.half[2]));
+    return block;
+}
+
+std::vector<Block> blocks_of(std::span<const Medium* const> media) {
+    std::vector<Block> blocks;
+    for (const Medium* medium : media) {
+        const BrickPool& pool = *medium->bricks;
+        size_t cell = 0;
+        for (int x = 0; x < pool.size.x; ++x)
+            for (int y = 0; y < pool.size.y; ++y)
+                for (int z = 0; z < pool.size.z; ++z) {
+                    if (pool.index[cell++] == 0) continue;
+                    const vec3 low = glm::max(8.0f * vec3(x, y, z), pool.local_bounds.low);
+                    const vec3 high = glm::min(8.0f * vec3(x + 1, y + 1, z + 1), pool.local_bounds.high);
+                    if (low.x < high.x && low.y < high.y && low.z < high.z) blocks.push_back(block_of(pool, low, high));
+                }
+    }
+    return blocks;
+}
+
+// Ranges of the three coordinates that the fog takes up.
+struct Fit {
+    vec3 low{infinity}, high{-infinity};
+
+    void grow(int axis, float from, float to) {
+        low[axis] = std::min(low[axis], from), high[axis] = std::max(high[axis], to);
+    }
+    bool empty() const { return !(low.x < high.x && low.y < high.y && low.z < high.z); }
+    float area() const { return (high.x - low.x) * (high.y - low.y); }
+};
+
+mat3 frame_along(vec3 axis, vec3 across) {
+    vec3 u = across - dot(across, axis) * axis, v;
+    if (glm::length(u) < 1e-3f * glm::length(across)) make_frame(axis, u, v);
+    u = glm::normalize(u);
+    return glm::transpose(mat3(u, glm::cross(axis, u), axis));
+}
+
+Fit fit_columns(std::span<const Block> blocks, const mat3& world_to_grid, vec3 origin) {
+    const mat3 axes = glm::transpose(world_to_grid);
+    Fit fit;
+    for (const Block& block : blocks) {
+        const vec3 center = world_to_grid * (block.center - origin);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float extent = block.extent(axes[axis]);
+            fit.grow(axis, center[axis] - extent, center[axis] + extent);
+        }
+    }
+    return fit;
+}
+
+// Distances and tangents the blocks take up, seen from the light. A block beside or behind the light fills the cone.
+Fit fit_cone(std::span<const Block> blocks, const mat3& world_to_grid, vec3 origin, float largest_tangent) {
+    const mat3 axes = glm::transpose(world_to_grid);
+    const float angle = std::atan(largest_tangent);
+    Fit fit;
+    for (const Block& block : blocks) {
+        const vec3 center = world_to_grid * (block.center - origin);
+        const float distance = glm::length(center);
+        const float seen = distance > block.radius ? std::asin(block.radius / distance) : pi;
+        if (std::atan2(glm::length(vec2(center)), center.z) > 1.4142f * angle + seen) continue;
+        fit.grow(2, distance - block.radius, distance + block.radius);
+        const float depth = block.extent(axes[2]), nearest = center.z - depth;
+        for (int axis = 0; axis < 2; ++axis) {
+            const float a = center[axis] - block.extent(axes[axis]), b = center[axis] + block.extent(axes[axis]);
+            const bool beside = nearest < 0.05f * block.radius;
+            const float from = beside ? -infinity : std::min(a / nearest, a / (center.z + depth));
+            const float to = beside ? infinity : std::max(b / nearest, b / (center.z + depth));
+            fit.grow(axis, std::max(from, -largest_tangent), std::min(to, largest_tangent));
+        }
+    }
+    return fit;
+}
+
+// The turn about the axis that leaves the least room unused: along one of the media's own axes.
+template<class FitOf>
+Fit tightest(std::span<const Medium* const> media, vec3 axis, LightDepthGrid& grid, const FitOf& fit_of) {
+    Fit best;
+    for (const Medium* medium : media)
+        for (int i = 0; i < 3; ++i) {
+            const mat3 frame = frame_along(axis, vec3(medium->bricks->index_to_world[i]));
+            const Fit fit = fit_of(frame);
+            if (!best.empty() && !(fit.area() < best.area())) continue;
+            best = fit;
+            grid.world_to_grid = frame;
+        }
+    return best;
+}
+
+// The half angle around `axis` that a light sees all blocks in; π when it is inside one.
+float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
+    float angle = 0;
+    for (const Block& block : blocks) {
+        const vec3 towards = block.center - origin;
+        const float distance = glm::length(towards);
+        if (!(distance > block.radius)) return pi;
+        const float turn = std::acos(std::clamp(dot(towards, axis) / distance, -1.0f, 1.0f));
+        angle = std::max(angle, turn + std::asin(block.radius / distance));
+    }
+    return angle;
+}
+
+// Corners along each axis: `cell` apart across and about as far apart along; coarser when that would take too much
+// memory.
+void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
+    const vec3 extent = fit.high - fit.low;
+    for (;; cell *= 1.1f) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const float cells = std::ceil(extent[axis] / cell[axis] - 1e-3f);
+            grid.size[axis] = 1 + static_cast<int>(std::clamp(cells, 1.0f, static_cast<float>(most_layers)));
+        }
+        if (int64_t{grid.size.x} * grid.size.y * grid.size.z <= most_corners) break;
+    }
+    grid.scale = vec3(grid.size - 1) / extent;
+    grid.offset = -fit.low * grid.scale;
+}
+}
+
+LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution) {
+    LightDepthGrid grid;
+    const std::vector<Block> blocks = blocks_of(media);
+    if (blocks.empty()) return grid;
+    Box fog;
+    for (const Block& block : blocks) fog.grow(block.center);
+    const float cells = static_cast<float>(std::max(resolution, 1));
+
+    if (light.kind == LightKind::sun) {
+        grid.kind = LightKind::sun;
+        grid.position = fog.center();
+        const Fit fit = tightest(media, light.direction, grid,
+                                 [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
+        const vec3 extent = fit.high - fit.low;
+        set_size(fit, vec3(std::max(extent.x, extent.y) / cells), grid);
+        return grid;
+    }
+
+    // Perspective columns when one cone holds all that matters, else all directions.
+    grid.position = light.position;
+    const vec3 towards = fog.center() - light.position;
+    const bool spot = light.kind == LightKind::spot && light.outer_cone <= widest_cone;
+    const vec3 axis = spot ? light.direction : glm::length(towards) > 0 ? glm::normalize(towards) : vec3(0, 0, 1);
+    const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);
+    Fit fit;
+    vec3 cell;
+    if (spot || angle < widest_view) {
+        grid.kind = LightKind::spot;
+        const float tangent = std::tan(std::max(angle, 1e-3f));
+        fit = tightest(media, axis, grid,
+                       [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
+        if (fit.empty()) return grid;
+        cell.x = cell.y = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
+    } else {
+        grid.kind = LightKind::point;
+        for (const Block& block : blocks) {
+            const float distance = glm::length(block.center - light.position);
+            fit.grow(2, distance - block.radius, distance + block.radius);
+        }
+        fit.low.x = fit.low.y = -1, fit.high.x = fit.high.y = 1;
+        cell.x = cell.y = 1.5f / cells;
+    }
+    fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
+    if (!(fit.high.z > fit.low.z)) return grid;
+    // Cells are cubes two thirds of the way out.
+    const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
+    cell.z = cell.x * reference * (grid.kind == LightKind::point ? 1.77f : 1.0f);
+    set_size(fit, cell, grid);
+    return grid;
+}
+}

@@ -1,0 +1,124 @@
+// A scene at one moment: animations evaluated, triangles built, fog made.
+#include "trace/snapshot.h"
+#include "base/error.h"
+#include "base/text.h"
+#include "trace/fog.h"
+
+namespace tyndall {
+namespace {
+// Rotation part of a node's matrix; an axis that vanishes takes the frame of the others.
+struct Frame {
+    vec3 position, up, forward;
+};
+
+Frame node_frame(const Scene& scene, int node, double seconds, const std::string& what) {
+    const mat4 matrix = node_matrix(scene, node, seconds);
+    const vec3 back(matrix[2]);
+    if (!is_finite(vec3(matrix[3])) || !is_finite(back) || !(glm::length(back) > 0))
+        refuse(scene.file.string(), what + ": the transform of its node is degenerate");
+    return {vec3(matrix[3]), vec3(matrix[1]), -glm::normalize(back)};
+}
+
+Light light_at(const Scene& scene, const LightSource& source, double seconds) {
+    Light light;
+    light.name = source.name;
+    light.kind = source.kind;
+    if (source.node >= 0) {
+        const Frame frame = node_frame(scene, source.node, seconds, "light " + source.name);
+        light.position = frame.position, light.direction = frame.forward;
+    } else {
+        light.position = source.position.at(seconds);
+        const vec3 direction = source.direction.at(seconds);
+        const float length = glm::length(direction);
+        if (source.kind != LightKind::point && !(length > 0))
+            refuse(scene.file.string(), "light " + source.name + ": its direction has no length");
+        if (length > 0) light.direction = direction / length;
+    }
+    light.intensity = source.color.at(seconds) * source.intensity.at(seconds);
+    light.volume_scale = source.volume_scale.at(seconds), light.surface_scale = source.surface_scale.at(seconds);
+    light.outer_cone = source.outer_cone.at(seconds);
+    light.inner_cone = std::min(source.inner_cone.at(seconds), light.outer_cone);
+    light.range = source.range;
+    light.radius = source.radius.at(seconds), light.angle = source.angle.at(seconds);
+    light.shadows = source.shadows;
+    return light;
+}
+
+bool shines(const Light& light) {
+    return is_finite(light.intensity) && max_component(light.intensity) > 0 &&
+           std::max(light.volume_scale, light.surface_scale) > 0;
+}
+
+BackgroundNow background_at(const Background& background, double seconds) {
+    BackgroundNow now;
+    now.kind = background.kind;
+    now.color = background.color.at(seconds);
+    now.zenith = background.zenith.at(seconds), now.ground = background.ground.at(seconds);
+    now.image = background.image;
+    now.lat_long = background.lat_long;
+    now.intensity = background.intensity.at(seconds), now.rotation = background.rotation;
+    return now;
+}
+
+// A box that is finite in every direction; fog without bounds says nothing about where the scene is.
+bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
+
+Box scene_bounds(const Snapshot& snapshot) {
+    Box box = snapshot.occluders->bounds();
+    for (const Light& light : snapshot.lights)
+        if (light.kind != LightKind::sun) box.grow(light.position);
+    for (const Medium& medium : snapshot.media)
+        if (bounded(medium.world_bounds)) box.grow(medium.world_bounds);
+    return box;
+}
+}
+
+Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing) {
+    Snapshot snapshot;
+    snapshot.scene = &scene;
+    snapshot.seconds = moment.seconds, snapshot.frame = moment.frame;
+    for (const LightSource& source : scene.lights) {
+        Light light = light_at(scene, source, moment.seconds);
+        if (shines(light)) snapshot.lights.push_back(std::move(light));
+    }
+    snapshot.ambient = scene.ambient.at(moment.seconds);
+    snapshot.background = background_at(scene.background, moment.seconds);
+    if (previous && previous->scene != &scene) previous = nullptr;
+    add_media(scene, moment, previous, missing, snapshot);
+
+    snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);
+    const uint64_t dropped = snapshot.occluders->dropped();
+    if (dropped > 0 && !(previous && previous->occluders->dropped() == dropped))
+        snapshot.notes.push_back(std::to_string(dropped) + " triangles without area or out of range left out");
+    snapshot.bounds = scene_bounds(snapshot);
+    return snapshot;
+}
+
+Camera camera_at(const Scene& scene, int camera, double seconds) {
+    const CameraSource& source = scene.cameras[camera];
+    const float fov = source.vertical_fov.at(seconds);
+    Camera result;
+    if (source.node >= 0) {
+        const Frame frame = node_frame(scene, source.node, seconds, "camera " + source.name);
+        result = look_at(frame.position, frame.position + frame.forward, frame.up, fov);
+    } else {
+        const vec3 position = source.position.at(seconds), target = source.target.at(seconds);
+        if (position == target) refuse(scene.file.string(), "camera " + source.name + ": position and target are one");
+        result = look_at(position, target, source.up.at(seconds), fov);
+    }
+    result.name = source.name;
+    result.ortho_height = source.ortho_height;
+    result.near = source.near, result.far = source.far;
+    return result;
+}
+
+int find_camera(const Scene& scene, const std::string& name) {
+    if (scene.cameras.empty()) refuse(scene.file.string(), "the scene has no camera");
+    if (name.empty()) return scene.camera;
+    std::vector<std::string> names;
+    for (const CameraSource& camera : scene.cameras) names.push_back(camera.name);
+    for (size_t i = 0; i < names.size(); ++i)
+        if (names[i] == name) return static_cast<int>(i);
+    fail(ExitCode::usage, "camera", "no \"" + name + "\" here; there is " + joined(names, ", "));
+}
+}

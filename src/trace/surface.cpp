@@ -1,0 +1,84 @@
+// Lambert surfaces under every light, through the fog between them.
+#include "trace/surface.h"
+
+#include <array>
+
+namespace tyndall {
+namespace {
+// Sixteen points, padded with the last one.
+struct Packet {
+    alignas(64) float x[16], y[16], z[16];
+    alignas(64) int32_t active[16];
+    vec3 irradiance[16]; // of the current light, cosine included
+};
+
+bool is_soft(const Light& light) { return light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0; }
+
+// What the light brings to each point with nothing in the way, on the side that is seen.
+bool gather_light(const Light& light, std::span<const SurfacePoint> points, Packet& packet) {
+    bool any = false;
+    for (size_t i = 0; i < 16; ++i) {
+        packet.active[i] = 0, packet.irradiance[i] = vec3(0);
+        if (i >= points.size()) continue;
+        const Arrival arriving = arrival(light, points[i].position);
+        const float cosine = dot(points[i].normal, arriving.to_light);
+        const vec3 irradiance = arriving.irradiance * (std::max(cosine, 0.0f) * light.surface_scale);
+        if (!(max_component(irradiance) > 0)) continue;
+        packet.irradiance[i] = irradiance;
+        packet.active[i] = -1, any = true;
+    }
+    return any;
+}
+
+void cast_shadows(const Occluders& occluders, const Light& light, std::span<const SurfacePoint> points,
+                  std::span<const vec2> u, Packet& packet) {
+    Occluders::ShadowRays rays{};
+    for (size_t i = 0; i < points.size(); ++i) {
+        // The ray starts off the surface, on the side that the light comes from.
+        const SurfacePoint& point = points[i];
+        const Ray ray = ray_to_light(light, point.position, is_soft(light) ? u[i] : vec2(0));
+        const float side = dot(point.face_normal, ray.direction) < 0 ? -1.0f : 1.0f;
+        const vec3 origin = point.position + point.face_normal * (side * shadow_offset(point.position));
+        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
+        rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
+        rays.t_min[i] = 0, rays.t_max[i] = ray.t_max;
+        rays.active[i] = packet.active[i];
+    }
+    alignas(64) float visibility[16] = {};
+    occluders.transmission(rays, visibility);
+    for (size_t i = 0; i < points.size(); ++i) packet.irradiance[i] *= visibility[i];
+}
+
+void dim(const LightDepth& depth, Packet& packet) {
+    alignas(64) float optical_depth[16];
+    light_depths(depth, packet.x, packet.y, packet.z, packet.active, optical_depth);
+    for (int i = 0; i < 16; ++i) packet.irradiance[i] *= std::exp(-optical_depth[i]);
+}
+}
+
+void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths, std::span<const SurfacePoint> points,
+                    std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
+    const size_t lights = snapshot.lights.size();
+    if (per_light) per_light->assign(points.size() * lights, vec3(0));
+    Packet packet;
+    for (size_t i = 0; i < 16; ++i) {
+        const vec3 position = points[std::min(i, points.size() - 1)].position;
+        packet.x[i] = position.x, packet.y[i] = position.y, packet.z[i] = position.z;
+    }
+    for (size_t i = 0; i < points.size(); ++i)
+        radiance[i] = points[i].base_color * snapshot.ambient + points[i].emission;
+
+    const bool occluded = snapshot.occluders && !snapshot.occluders->empty();
+    for (size_t l = 0; l < lights; ++l) {
+        const Light& light = snapshot.lights[l];
+        if (!gather_light(light, points, packet)) continue;
+        if (occluded && light.shadows) cast_shadows(*snapshot.occluders, light, points, u, packet);
+        if (l < depths.size()) dim(depths[l], packet);
+        for (size_t i = 0; i < points.size(); ++i) {
+            const vec3 added = points[i].base_color * packet.irradiance[i] / pi;
+            radiance[i] += added;
+            if (per_light) (*per_light)[i * lights + l] = added;
+        }
+    }
+}
+}

@@ -1,0 +1,70 @@
+// Where in a pixel its samples lie: a scrambled (0,2)-sequence bent into the shape of the pixel filter.
+#include "trace/view.h"
+#include "base/random.h"
+
+#include <array>
+
+namespace tyndall {
+namespace {
+constexpr int cells = 512;
+using Quantiles = std::array<float, cells + 1>; // position in [-1,1] below which i/cells of the filter lies
+
+// Gaussian of standard deviation radius/3, lowered to be 0 at the radius.
+double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
+
+// Blackman–Harris window, 4 terms (Harris 1978), over [-1,1].
+double blackman_harris(double x) {
+    const double phase = 3.14159265358979323846 * (x + 1);
+    return 0.35875 - 0.48829 * std::cos(phase) + 0.14128 * std::cos(2 * phase) - 0.01168 * std::cos(3 * phase);
+}
+
+// Inverse of the filter's cumulative distribution, by summing fine midpoints.
+template<class Filter> Quantiles quantiles(Filter filter) {
+    constexpr int steps = 1 << 16;
+    const auto at = [](int step) { return -1 + 2 * (step + 0.5) / steps; };
+    double total = 0, sum = 0;
+    for (int i = 0; i < steps; ++i) total += filter(at(i));
+    Quantiles result;
+    result[0] = -1, result[cells] = 1;
+    int next = 1;
+    for (int i = 0; i < steps && next < cells; ++i) {
+        const double share = filter(at(i)) / total;
+        for (; next < cells && sum + share >= static_cast<double>(next) / cells; ++next)
+            result[next] = static_cast<float>(-1 + 2 * (i + (static_cast<double>(next) / cells - sum) / share) / steps);
+        sum += share;
+    }
+    return result;
+}
+
+float looked_up(const Quantiles& table, float u) {
+    const float position = u * cells;
+    const int cell = std::min(static_cast<int>(position), cells - 1);
+    return table[cell] + (position - cell) * (table[cell + 1] - table[cell]);
+}
+
+// A number in [0,1) turned into an offset in [-1,1], distributed as the filter.
+float warped(PixelFilter filter, float u) {
+    static const Quantiles gaussian_table = quantiles(gaussian), harris_table = quantiles(blackman_harris);
+    switch (filter) {
+    case PixelFilter::box:
+        return 2 * u - 1;
+    case PixelFilter::tent:
+        return u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
+    case PixelFilter::gaussian:
+        return looked_up(gaussian_table, u);
+    case PixelFilter::blackman_harris:
+        return looked_up(harris_table, u);
+    }
+    return 0;
+}
+}
+
+vec2 sample_position(const View& view, ivec2 pixel, int sample) {
+    const vec2 center = vec2(pixel) + 0.5f;
+    if (view.pixel_samples == 1) return center;
+    const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
+                              static_cast<uint32_t>(view.frame));
+    const Sample2 u = sample2(static_cast<uint32_t>(sample), key);
+    return center + view.filter_radius * vec2(warped(view.filter, u.x), warped(view.filter, u.y));
+}
+}
