@@ -10,10 +10,10 @@
 
 namespace tyndall {
 struct Optics {
-    float extinction = 0.1f;    // 1/m at density 1
-    vec3 albedo{0.95f};         // scattered share of the extinction, 0..1
+    float extinction = 0.1f; // 1/m at density 1
+    vec3 albedo{0.95f};      // scattered share of the extinction, 0..1
     Phase phase;
-    vec3 emission{0};           // radiance per metre at density 1
+    vec3 emission{0}; // radiance per metre at density 1
 };
 
 enum class DensityKind { homogeneous, height, bricks };
@@ -22,10 +22,10 @@ struct Medium {
     std::string name;
     DensityKind kind = DensityKind::homogeneous;
     Optics optics;
-    Box bounds = everywhere();          // local box of a homogeneous or height medium
-    mat4 world_to_local{1};             // of those bounds; bricks carry their own transform
+    Box bounds = everywhere(); // local box of a homogeneous or height medium
+    mat4 world_to_local{1};    // of those bounds; bricks carry their own transform
     Box world_bounds = everywhere();
-    float height_base = 0;              // density = exp(-(y - base) / falloff) in world y, at most 1 below base
+    float height_base = 0; // density = exp(-(y - base) / falloff) in world y, at most 1 below base
     float height_falloff = 1;
     std::shared_ptr<const BrickPool> bricks;
 
@@ -33,7 +33,7 @@ struct Medium {
     float majorant() const { return optics.extinction * (kind == DensityKind::bricks ? bricks->highest : 1.0f); }
 };
 
-// Densities at 16 points (x, y, z of 16 each); 0 outside the medium.
+// Densities at 16 points (x, y, z of 16 each); 0 outside the medium. Kernels use density16() of medium_simd.h.
 void densities(const Medium& medium, const float* x, const float* y, const float* z, float* density);
 
 // Optical depth along a ray 0..t_max: exact for homogeneous and height fog; for bricks two Gauss points per voxel cell,

@@ -1,0 +1,274 @@
+// From leaves and tiles to bricks: find what every brick is made of, pack the ones that differ inside, drop the rest.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "volume/bricks.h"
+#include "volume/half.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cassert>
+
+namespace tyndall {
+namespace {
+constexpr int64_t largest_index = int64_t{256} << 20; // bytes
+constexpr int64_t longest_axis = 1 << 20;             // bricks: floats still tell its voxels apart
+constexpr int64_t farthest_voxel = int64_t{1} << 30;
+
+struct VoxelBox {
+    ivec3 low{std::numeric_limits<int>::max()}, high{std::numeric_limits<int>::min()};
+
+    bool empty() const { return high.x < low.x; }
+    void grow(const VoxelBox& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
+};
+
+// What of a leaf is not 0. Bit d of `parts`: some voxel that the brick at -d (d = 4·dx + 2·dy + dz) has as a corner.
+struct LeafSummary {
+    VoxelBox box;
+    uint8_t parts = 0;
+};
+
+// Everything a brick can be made of, by cell of 8³ voxels: n > 0 = leaf n-1, n < 0 = tile -n-1 covers it, 0 = nothing.
+struct Sources {
+    std::vector<const Leaf*> leaves;
+    std::vector<LeafSummary> summaries;
+    std::vector<Leaf> partial;   // made from tiles that cover a cell in part
+    std::vector<uint16_t> tiles; // values as halves
+    std::vector<int32_t> cells;
+};
+
+// The eight cells whose voxels are corners of one brick, d = 4·dx + 2·dy + dz.
+using Corners = std::array<int32_t, 8>;
+
+struct Packed {
+    uint16_t largest = 0;
+    bool uniform = false;
+    double mass = 0; // sum of the 8³ voxels that are the brick's own
+};
+
+LeafSummary summary_of(const Leaf& leaf) {
+    LeafSummary summary;
+    for (int v = 0; v < 512; ++v) {
+        if (half_from_float(leaf.values[v]) == 0) continue;
+        const ivec3 at(v >> 6, (v >> 3) & 7, v & 7);
+        summary.box.grow({leaf.origin + at, leaf.origin + at});
+        for (int d = 0; d < 8; ++d) {
+            const bool used = (!(d & 4) || at.x == 0) && (!(d & 2) || at.y == 0) && (!(d & 1) || at.z == 0);
+            summary.parts |= static_cast<uint8_t>(used << d);
+        }
+    }
+    return summary;
+}
+
+void summarize_leaves(const SparseVolume& volume, Sources& sources) {
+    for (const Leaf& leaf : volume.leaves) sources.leaves.push_back(&leaf);
+    sources.summaries.resize(volume.leaves.size());
+    parallel_ranges(static_cast<int64_t>(volume.leaves.size()), 16, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i) sources.summaries[i] = summary_of(volume.leaves[i]);
+    });
+    for (const Tile& tile : volume.tiles) sources.tiles.push_back(half_from_float(tile.value));
+}
+
+VoxelBox filled_box(const SparseVolume& volume, const Sources& sources) {
+    VoxelBox box;
+    for (const LeafSummary& summary : sources.summaries)
+        if (summary.parts) box.grow(summary.box);
+    for (size_t i = 0; i < volume.tiles.size(); ++i)
+        if (sources.tiles[i]) box.grow({volume.tiles[i].low, volume.tiles[i].high});
+    return box;
+}
+
+// Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
+void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
+    int64_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int64_t low = box.low[axis], high = box.high[axis];
+        if (low < -farthest_voxel || high > farthest_voxel)
+            refuse(name, "voxel coordinates go beyond 2^30; move the grid by its transform instead");
+        const int64_t first = (low - 1) >> 3, count = ((high + 1) >> 3) - first + 1;
+        pool.low[axis] = static_cast<int>(first * 8);
+        pool.size[axis] = static_cast<int>(count);
+        if (count > longest_axis || (cells *= count) * int64_t{sizeof(int32_t)} > largest_index)
+            fail(ExitCode::out_of_memory, name,
+                 "fog spans " + std::to_string(int64_t{box.high.x} - box.low.x + 1) + "x" +
+                     std::to_string(int64_t{box.high.y} - box.low.y + 1) + "x" +
+                     std::to_string(int64_t{box.high.z} - box.low.z + 1) +
+                     " voxels; its brick index would pass 256 MB. Use larger voxels or a smaller active box");
+    }
+    pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
+    pool.index.assign(cells, 0);
+    pool.maximum.assign(cells, 0);
+}
+
+int64_t cell_at(const BrickPool& pool, ivec3 cell) {
+    return (int64_t{cell.x} * pool.size.y + cell.y) * pool.size.z + cell.z;
+}
+
+// A tile covers most cells whole; where it covers one in part, a leaf is made for that cell.
+void add_tile(const BrickPool& pool, const Tile& tile, int32_t tile_index, Sources& sources) {
+    const ivec3 low = tile.low - pool.low, high = tile.high - pool.low;
+    const ivec3 first = low / 8, last = high / 8;
+    for (int x = first.x; x <= last.x; ++x)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int z = first.z; z <= last.z; ++z) {
+                const ivec3 corner = ivec3(x, y, z) * 8;
+                int32_t& cell = sources.cells[cell_at(pool, ivec3(x, y, z))];
+                const ivec3 from = glm::max(low - corner, ivec3(0)), to = glm::min(high - corner, ivec3(7));
+                if (from == ivec3(0) && to == ivec3(7)) {
+                    cell = -tile_index - 1;
+                    continue;
+                }
+                if (cell == 0) {
+                    sources.partial.push_back(Leaf{corner + pool.low});
+                    cell = static_cast<int32_t>(sources.leaves.size() + sources.partial.size());
+                }
+                assert(cell > static_cast<int32_t>(sources.leaves.size()));
+                Leaf& leaf = sources.partial[cell - 1 - sources.leaves.size()];
+                for (int i = from.x; i <= to.x; ++i)
+                    for (int j = from.y; j <= to.y; ++j)
+                        std::fill_n(&leaf.values[i * 64 + j * 8 + from.z], to.z - from.z + 1, tile.value);
+            }
+}
+
+void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources) {
+    sources.cells.assign(pool.index.size(), 0);
+    for (size_t i = 0; i < volume.leaves.size(); ++i)
+        if (sources.summaries[i].parts)
+            sources.cells[cell_at(pool, (volume.leaves[i].origin - pool.low) / 8)] = static_cast<int32_t>(i + 1);
+    for (size_t i = 0; i < volume.tiles.size(); ++i)
+        if (sources.tiles[i]) add_tile(pool, volume.tiles[i], static_cast<int32_t>(i), sources);
+    for (const Leaf& leaf : sources.partial) {
+        sources.leaves.push_back(&leaf);
+        sources.summaries.push_back(summary_of(leaf));
+    }
+}
+
+Corners corners_of(const BrickPool& pool, const Sources& sources, ivec3 cell) {
+    Corners corners;
+    for (int d = 0; d < 8; ++d) {
+        const ivec3 at = cell + ivec3(d >> 2, (d >> 1) & 1, d & 1);
+        const bool inside = at.x < pool.size.x && at.y < pool.size.y && at.z < pool.size.z;
+        corners[d] = inside ? sources.cells[cell_at(pool, at)] : 0;
+    }
+    return corners;
+}
+
+// 0 = empty, 1 = has to be packed, -h = constant of the half h.
+int32_t kind_of(const Corners& corners, const Sources& sources) {
+    const uint16_t tile = corners[0] < 0 ? sources.tiles[-corners[0] - 1] : 0;
+    bool empty = true, constant = tile != 0;
+    for (int d = 0; d < 8; ++d) {
+        const int32_t source = corners[d];
+        empty &= source == 0 || (source > 0 && !((sources.summaries[source - 1].parts >> d) & 1));
+        constant &= source < 0 && sources.tiles[-source - 1] == tile;
+    }
+    return empty ? 0 : constant ? -int32_t{tile} : 1;
+}
+
+// Marks every cell of the index with its kind and lists the ones to pack, in order.
+std::vector<ivec3> listed_bricks(BrickPool& pool, const Sources& sources) {
+    std::vector<std::vector<ivec3>> slabs(pool.size.x);
+    parallel_for(pool.size.x, [&](int64_t x) {
+        for (int y = 0; y < pool.size.y; ++y)
+            for (int z = 0; z < pool.size.z; ++z) {
+                const ivec3 cell(static_cast<int>(x), y, z);
+                const int32_t kind = kind_of(corners_of(pool, sources, cell), sources);
+                pool.index[cell_at(pool, cell)] = kind;
+                if (kind == 1) slabs[x].push_back(cell);
+            }
+    });
+    std::vector<ivec3> list;
+    for (const std::vector<ivec3>& slab : slabs) list.insert(list.end(), slab.begin(), slab.end());
+    return list;
+}
+
+// Writes the 9³ corner values of a brick.
+Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
+    const auto row = [&](int d, int x, int y, int count, uint16_t* to) {
+        const int32_t source = corners[d];
+        if (source > 0) {
+            const float* from = &sources.leaves[source - 1]->values[x * 64 + y * 8];
+            for (int z = 0; z < count; ++z) to[z] = half_from_float(from[z]);
+        } else {
+            std::fill_n(to, count, source < 0 ? sources.tiles[-source - 1] : uint16_t{0});
+        }
+    };
+    Packed packed;
+    for (int x = 0; x < 9; ++x)
+        for (int y = 0; y < 9; ++y) {
+            const int d = 4 * (x >> 3) + 2 * (y >> 3);
+            uint16_t* to = values + (x * 9 + y) * 9;
+            row(d, x & 7, y & 7, 8, to);
+            row(d + 1, x & 7, y & 7, 1, to + 8);
+            float sum = 0;
+            for (int z = 0; z < 8; ++z) sum += float_from_half(to[z]);
+            packed.mass += d == 0 ? sum : 0;
+        }
+    packed.largest = *std::max_element(values, values + 729);
+    packed.uniform = std::all_of(values, values + 729, [&](uint16_t value) { return value == packed.largest; });
+    return packed;
+}
+
+std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
+                                  BrickPool& pool) {
+    const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (bytes > memory)
+        fail(ExitCode::out_of_memory, name,
+             "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +
+                 std::to_string(static_cast<int64_t>(memory / 1e6)) + " MB. Use larger voxels");
+    pool.values.resize(list.size() * brick_stride);
+    std::vector<Packed> packed(list.size());
+    parallel_ranges(static_cast<int64_t>(list.size()), 16, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i)
+            packed[i] = pack(corners_of(pool, sources, list[i]), sources, &pool.values[i * brick_stride]);
+    });
+    return packed;
+}
+
+// Turns the marks in the index into brick and constant numbers, closing the gaps that uniform bricks leave.
+void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
+    std::vector<int32_t> constant_of(half_from_float(largest_half) + 1, 0);
+    size_t next = 0, bricks = 0, filled = 0;
+    for (size_t cell = 0; cell < pool.index.size(); ++cell) {
+        int32_t& id = pool.index[cell];
+        if (id == 0) continue;
+        ++filled;
+        const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true, 0};
+        pool.maximum[cell] = float_from_half(brick.largest);
+        pool.mass += brick.uniform ? 512.0 * pool.maximum[cell] : brick.mass;
+        if (brick.uniform) {
+            int32_t& constant = constant_of[brick.largest];
+            if (constant == 0) {
+                pool.constants.push_back(pool.maximum[cell]);
+                constant = -static_cast<int32_t>(pool.constants.size());
+            }
+            next += id > 0, id = constant;
+        } else {
+            const uint16_t* from = &pool.values[next * brick_stride];
+            if (bricks != next) std::copy_n(from, brick_stride, &pool.values[bricks * brick_stride]);
+            ++next, id = static_cast<int32_t>(++bricks);
+        }
+        pool.highest = std::max(pool.highest, pool.maximum[cell]);
+    }
+    pool.values.resize(bricks * brick_stride);
+    if (pool.values.size() < pool.values.capacity() / 4 * 3) pool.values.shrink_to_fit();
+    pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));
+}
+}
+
+std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
+    auto pool = std::make_shared<BrickPool>();
+    Sources sources;
+    summarize_leaves(volume, sources);
+    const VoxelBox box = filled_box(volume, sources);
+    if (!box.empty()) {
+        size_pool(volume.name, box, *pool);
+        fill_cells(*pool, volume, sources);
+        const std::vector<ivec3> list = listed_bricks(*pool, sources);
+        finish_index(packed_bricks(volume.name, list, sources, *pool), *pool);
+    }
+    place(*pool, volume.index_to_world);
+    return pool;
+}
+}

@@ -1,0 +1,122 @@
+#include "volume/steps.h"
+
+#include "volume/spans.h"
+
+#include <cassert>
+
+namespace tyndall {
+namespace {
+// Spans that touch: steps run through them without regard to their borders.
+struct Run {
+    size_t first = 0, end = 0;
+    double cost = 0; // steps it takes, a real number
+};
+
+// Reused from ray to ray: nothing is allocated once the longest ray has been seen.
+struct Scratch {
+    std::vector<Span> spans, more, merged;
+    std::vector<double> rates; // steps per metre of each span
+    std::vector<Run> runs;
+};
+
+double step_length(const Span& span, const StepRule& rule) {
+    const double length = std::min<double>(span.limit, rule.length);
+    return span.extinction > 0 ? std::min(length, rule.optical_depth / span.extinction) : length;
+}
+
+void collect_spans(const Ray& ray, std::span<const Medium> media, const StepRule& rule, Scratch& scratch) {
+    scratch.spans.clear();
+    const double t_end = horizon(ray, media);
+    for (const Medium& medium : media) {
+        if (medium.optics.extinction == 0 && medium.optics.emission == vec3(0)) continue;
+        scratch.more.clear();
+        append_spans(ray, medium, t_end, rule, scratch.more);
+        if (scratch.spans.empty()) {
+            std::swap(scratch.spans, scratch.more);
+            continue;
+        }
+        scratch.merged.clear();
+        overlay(scratch.spans, scratch.more, true, scratch.merged);
+        std::swap(scratch.spans, scratch.merged);
+    }
+}
+
+// Cuts the spans where a local light asks for smaller steps.
+void refine_near(const Ray& ray, const StepRule& rule, Scratch& scratch) {
+    double longest = 0;
+    for (const Span& span : scratch.spans) longest = std::max(longest, step_length(span, rule));
+    for (const vec3 point : rule.near_points) {
+        scratch.more.clear();
+        append_near_spans(ray, point, rule.near_ratio, longest, scratch.more);
+        if (scratch.more.empty()) continue;
+        scratch.merged.clear();
+        overlay(scratch.spans, scratch.more, false, scratch.merged);
+        std::swap(scratch.spans, scratch.merged);
+    }
+}
+
+void find_runs(const StepRule& rule, Scratch& scratch) {
+    scratch.rates.clear(), scratch.runs.clear();
+    for (size_t i = 0; i < scratch.spans.size(); ++i) {
+        const Span& span = scratch.spans[i];
+        if (i == 0 || span.low > scratch.spans[i - 1].high) scratch.runs.push_back({i, i, 0});
+        scratch.rates.push_back(1 / step_length(span, rule));
+        scratch.runs.back().end = i + 1;
+        scratch.runs.back().cost += (span.high - span.low) * scratch.rates.back();
+    }
+}
+
+// As many equal shares of a run's cost as it needs steps; a sum of many shares may miss a whole number by rounding.
+double wanted_steps(const Run& run) { return std::max(1.0, std::ceil(run.cost - 1e-9)); }
+
+void append_step(double low, double high, std::vector<Step>& steps) {
+    const Step step{static_cast<float>(low), static_cast<float>(high)};
+    if (step.low < step.high) steps.push_back(step);
+}
+
+void place_run(const Scratch& scratch, const Run& run, int count, std::vector<Step>& steps) {
+    double low = scratch.spans[run.first].low, before = 0;
+    int placed = 1;
+    for (size_t i = run.first; i < run.end; ++i) {
+        const Span& span = scratch.spans[i];
+        const double cost = (span.high - span.low) * scratch.rates[i];
+        for (; placed < count; ++placed) {
+            const double target = run.cost * placed / count;
+            if (target >= before + cost) break;
+            const double high = span.low + (target - before) / scratch.rates[i];
+            append_step(low, high, steps);
+            low = high;
+        }
+        before += cost;
+    }
+    append_step(low, scratch.spans[run.end - 1].high, steps);
+}
+
+// More runs than steps: each step spans several runs and what lies between them.
+void place_joined(const Scratch& scratch, size_t most, std::vector<Step>& steps) {
+    const size_t runs = scratch.runs.size(), share = (runs + most - 1) / most;
+    for (size_t i = 0; i < runs; i += share) {
+        const Run &first = scratch.runs[i], &last = scratch.runs[std::min(i + share, runs) - 1];
+        append_step(scratch.spans[first.first].low, scratch.spans[last.end - 1].high, steps);
+    }
+}
+}
+
+void append_steps(const Ray& ray, std::span<const Medium> media, const StepRule& rule, std::vector<Step>& steps) {
+    assert(rule.optical_depth > 0 && rule.voxels > 0 && rule.length > 0 && rule.most > 0);
+    if (!is_finite(ray.origin) || !is_finite(ray.direction)) return;
+    static thread_local Scratch scratch;
+    collect_spans(ray, media, rule, scratch);
+    refine_near(ray, rule, scratch);
+    find_runs(rule, scratch);
+
+    const size_t most = static_cast<size_t>(rule.most), runs = scratch.runs.size();
+    if (runs >= most) return place_joined(scratch, most, steps);
+    double wanted = 0, cost = 0;
+    for (const Run& run : scratch.runs) wanted += wanted_steps(run), cost += run.cost;
+    for (const Run& run : scratch.runs) {
+        const double count = wanted <= rule.most ? wanted_steps(run) : 1 + std::floor(run.cost * (most - runs) / cost);
+        place_run(scratch, run, static_cast<int>(count), steps);
+    }
+}
+}
