@@ -95,7 +95,14 @@ std::vector<int> parse_frames(std::string_view text) {
 }
 
 namespace {
-int text_length(int64_t value) { return static_cast<int>(std::to_string(value).size()); }
+// "7", "1-9" or "1-9x2"
+std::string piece_text(const std::vector<int>& frames, size_t start, size_t end) {
+    std::string text = std::to_string(frames[start]);
+    if (end == start) return text;
+    const int64_t step = int64_t{frames[start + 1]} - frames[start];
+    text.append("-").append(std::to_string(frames[end]));
+    return step == 1 ? text : text.append("x").append(std::to_string(step));
+}
 
 // The piece of the list that ends at some frame, in the cheapest spelling of everything up to there.
 struct Piece {
@@ -106,12 +113,7 @@ struct Piece {
 constexpr int64_t per_character = int64_t{1} << 24;
 
 int64_t piece_cost(const std::vector<int>& frames, size_t start, size_t end) {
-    int64_t length = 1 + text_length(frames[start]);
-    if (end > start) {
-        const int64_t step = int64_t{frames[start + 1]} - frames[start];
-        length += 1 + text_length(frames[end]) + (step == 1 ? 0 : 1 + text_length(step));
-    }
-    return length * per_character + 1;
+    return static_cast<int64_t>(piece_text(frames, start, end).size() + 1) * per_character + 1;
 }
 }
 
@@ -129,16 +131,11 @@ std::string format_frames(const std::vector<int>& frames) {
         }
     }
 
+    std::vector<std::string> pieces; // last first
+    for (size_t end = frames.size(); end-- > 0; end = best[end].start)
+        pieces.push_back(piece_text(frames, best[end].start, end));
     std::string text;
-    for (size_t end = frames.size(); end-- > 0; end = best[end].start) {
-        const size_t start = best[end].start;
-        std::string piece = std::to_string(frames[start]);
-        if (end > start) {
-            const int64_t step = int64_t{frames[start + 1]} - frames[start];
-            piece += "-" + std::to_string(frames[end]) + (step == 1 ? "" : "x" + std::to_string(step));
-        }
-        text = piece + (text.empty() ? "" : ",") + text;
-    }
+    for (size_t i = pieces.size(); i-- > 0;) text.append(pieces[i]).append(i > 0 ? "," : "");
     return text;
 }
 }

@@ -1,12 +1,16 @@
 #include "base/parallel.h"
 
+#include "base/cores.h"
+
 #include <tbb/global_control.h>
-#include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
 #include <xmmintrin.h>
 
+#include <algorithm>
+#include <cassert>
 #include <memory>
 
 namespace tyndall {
@@ -22,10 +26,20 @@ struct FlushOnEntry : tbb::task_scheduler_observer {
     FlushOnEntry() { observe(true); }
     void on_scheduler_entry(bool) override { _mm_setcsr(_mm_getcsr() | flush_to_zero_and_denormals_are_zero); }
 };
+
+// Runs a loop over [0, count) in which every task rounds as the calling thread does, and a thread that waits for it
+// takes up nothing else: an outer loop's body is never entered a second time on the same stack, so it may hold a lock.
+template<class Body> void run(int64_t count, const Body& body) {
+    if (count <= 0) return;
+    tbb::task_group_context context;
+    context.capture_fp_settings();
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(tbb::blocked_range<int64_t>(0, count), body, context); });
+}
 }
 
 void set_thread_count(int threads) {
-    const int count = threads > 0 ? threads : tbb::info::default_concurrency();
+    assert(threads >= 0);
+    const int count = threads > 0 ? threads : usable_cores();
     limit() = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, count);
 }
 
@@ -34,12 +48,18 @@ int thread_count() {
 }
 
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
-    tbb::parallel_for(int64_t{0}, count, [&](int64_t i) { body(i); });
+    run(count, [&](const tbb::blocked_range<int64_t>& range) {
+        for (int64_t i = range.begin(); i < range.end(); ++i) body(i);
+    });
 }
 
 void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int64_t, int64_t)>& body) {
-    tbb::parallel_for(tbb::blocked_range<int64_t>(0, count, grain),
-                      [&](const tbb::blocked_range<int64_t>& range) { body(range.begin(), range.end()); });
+    // Split evenly into pieces of at least the grain, of which neighbours may be handed out together.
+    const int64_t pieces = std::max<int64_t>(count / std::max<int64_t>(grain, 1), 1);
+    const int64_t size = count / pieces, larger = count % pieces;
+    const auto start = [&](int64_t piece) { return piece * size + std::min(piece, larger); };
+    run(count > 0 ? pieces : 0,
+        [&](const tbb::blocked_range<int64_t>& range) { body(start(range.begin()), start(range.end())); });
 }
 
 void flush_denormals() {

@@ -4,16 +4,19 @@
 #include <functional>
 
 namespace tyndall {
-// Limits all parallel work of the process (this pool, Embree, OpenVDB); 0 = every core the process may use.
+// Limits all parallel work of the process (this pool, Embree, OpenVDB); 0 = every core the process may use
+// (base/cores.h).
 void set_thread_count(int threads);
-int thread_count();
+int thread_count(); // that limit
 
 // Calls body(i) for 0 <= i < count, in any order, on several threads. An exception stops the loop and is rethrown.
+// Loops may be nested. Every thread rounds (and flushes denormals) as the caller does.
 void parallel_for(int64_t count, const std::function<void(int64_t)>& body);
 
 // Calls body(begin, end) on pieces of at least `grain` items.
 void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int64_t, int64_t)>& body);
 
-// Flush denormals to zero on this thread and on every pool thread: fog tails are full of them.
+// Flushes denormals to zero on this thread and on pool threads: fog tails are full of them. Call it first of all: loops inside
+// libraries keep the setting of the moment the pool was first used.
 void flush_denormals();
 }

@@ -31,8 +31,10 @@ bool looks_like(std::string_view a, std::string_view b) {
 
 std::string unknown_key(const std::string& key, const std::vector<std::string>& known) {
     if (known.empty()) return "unknown key; none is known here";
-    const auto longer_form = [&](const std::string& name) {
-        return key.size() >= 3 && (name.starts_with(lowered(key)) || name.ends_with("_" + lowered(key)));
+    const auto longer_form = [wanted = lowered(key)](const std::string& name) {
+        const bool at_end =
+            name.size() > wanted.size() && name.ends_with(wanted) && name[name.size() - wanted.size() - 1] == '_';
+        return wanted.size() >= 3 && (name.starts_with(wanted) || at_end);
     };
     if (const auto match = std::find_if(known.begin(), known.end(), longer_form); match != known.end())
         return "unknown key; did you mean " + quote_json(*match) + "?";

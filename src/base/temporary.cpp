@@ -13,6 +13,7 @@
 #include <charconv>
 #include <chrono>
 #include <cstring>
+#include <sstream>
 
 namespace tyndall {
 namespace {
@@ -47,11 +48,10 @@ std::string namespace_tag() {
 }
 
 std::filesystem::path temporary_name(const std::filesystem::path& path) {
-    const std::string tail =
-        "." + host_tag() + "." + namespace_tag() + "-" + std::to_string(getpid()) + "." + random_tag() + ".tmp";
-    std::string stem = "." + path.filename().string();
-    if (stem.size() + tail.size() > longest_name) stem.resize(longest_name - tail.size());
-    return path.parent_path() / (stem + tail);
+    std::ostringstream tail, stem;
+    tail << '.' << host_tag() << '.' << namespace_tag() << '-' << getpid() << '.' << random_tag() << ".tmp";
+    stem << '.' << path.filename().string().substr(0, longest_name - 1 - tail.str().size());
+    return path.parent_path() / (stem.str() + tail.str());
 }
 
 // Takes the part after the last dot off `text`; false when there is none.

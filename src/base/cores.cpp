@@ -1,0 +1,62 @@
+#include "base/cores.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+namespace {
+int affinity_cores() {
+    // The mask of a machine with many cores outgrows cpu_set_t: asked for again with twice the room.
+    for (int room = 1024; room <= 1 << 20; room *= 2) {
+        std::vector<cpu_set_t> mask(static_cast<size_t>(room) / CPU_SETSIZE);
+        const size_t bytes = mask.size() * sizeof(cpu_set_t);
+        if (sched_getaffinity(0, bytes, mask.data()) == 0) return CPU_COUNT_S(bytes, mask.data());
+    }
+    return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+std::string first_line(const std::filesystem::path& path) {
+    std::ifstream stream(path);
+    std::string line;
+    std::getline(stream, line);
+    return line;
+}
+
+// This process's group in the v2 hierarchy, from the line "0::/batch/job_7".
+std::string control_group() {
+    std::ifstream stream("/proc/self/cgroup");
+    for (std::string line; std::getline(stream, line);)
+        if (line.starts_with("0::/")) return line.substr(4);
+    return {};
+}
+}
+
+int granted_cores(std::string_view cpu_max) {
+    int64_t quota = 0, period = 0;
+    const char* const end = cpu_max.data() + cpu_max.size();
+    const auto first = std::from_chars(cpu_max.data(), end, quota);
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != ' ') return 0; // also "max 100000"
+    const auto second = std::from_chars(first.ptr + 1, end, period);
+    if (second.ec != std::errc() || quota <= 0 || period <= 0) return 0;
+    return static_cast<int>(std::min<int64_t>((quota - 1) / period + 1, 1 << 20));
+}
+
+int usable_cores() {
+    int cores = std::max(affinity_cores(), 1);
+    // Every group on the way up may set a limit of its own.
+    const std::filesystem::path root = "/sys/fs/cgroup";
+    for (std::filesystem::path group = control_group();; group = group.parent_path()) {
+        const int granted = granted_cores(first_line(root / group / "cpu.max"));
+        if (granted > 0) cores = std::min(cores, granted);
+        if (group.empty()) return cores;
+    }
+}
+}
