@@ -61,9 +61,13 @@ inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range
     return range.empty() ? Interval{} : range;
 }
 
-// The smallest axis-aligned box around an affinely transformed box; a box infinite in any direction stays everywhere.
+inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+// The smallest axis-aligned box around an affinely transformed box; one that is infinite in any direction becomes
+// everywhere.
 inline Box transform(const mat4& matrix, const Box& box) {
-    if (box.empty() || std::isinf(box.low.x + box.low.y + box.low.z + box.high.x + box.high.y + box.high.z)) return box;
+    if (box.empty()) return box;
+    if (!is_finite(box.low) || !is_finite(box.high)) return everywhere();
     Box result;
     for (int corner = 0; corner < 8; ++corner) {
         const vec3 point(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
@@ -80,7 +84,6 @@ inline void make_frame(vec3 axis, vec3& u, vec3& v) {
     v = vec3(b, sign + axis.y * axis.y * a, -axis.y);
 }
 
-inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 inline float max_component(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float luminance(vec3 rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
 }
