@@ -6,18 +6,21 @@
 #include <span>
 
 namespace tyndall {
-// Sum over octaves o of gain^o · gradient noise(lacunarity^o · point / scale); normalised so that |sum| <= 1.
+// Sum over octaves o of gain^o · gradient noise(lacunarity^o · point / scale); normalised so that |sum| <= 1. Extremes
+// are rare: with five octaves of gain 0.5 two thirds of space lie within ±0.13, and all but a thousandth within ±0.42.
 struct FractalNoise {
     int octaves = 5;
-    float scale = 1;          // metres per cell of the first octave
+    float scale = 1; // metres per cell of the first octave
     float lacunarity = 2;
     float gain = 0.5f;
     uint32_t seed = 0;
-    float evolve = 0;         // turns of the gradients per second (0 = frozen); with a period, whole turns per loop
+    float evolve = 0;    // turns of the gradients per second (0 = frozen); with a period, whole turns per loop
+    bool billow = false; // octaves of |noise| (mean removed): round lobes between sharp creases, as on a cumulus
 };
 
 // Values at points (structure of arrays). Exactly the same bits on AVX2 and AVX-512.
-// `turn` = evolve · seconds: the gradients of every octave rotate by whole multiples of it, so turn and turn+1 are equal.
+// `turn` = evolve · seconds: the gradients of every octave rotate by whole multiples of it, so turn and turn+1 are
+// equal.
 void fractal_noise(const FractalNoise& noise, float turn, std::span<const float> x, std::span<const float> y,
                    std::span<const float> z, std::span<float> values);
 

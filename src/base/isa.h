@@ -1,0 +1,12 @@
+// Which instruction set the vector kernels use: the best of the machine, or one that is asked for.
+#pragma once
+#include <string_view>
+
+namespace tyndall {
+// `name`: "auto", "avx2" or "avx512". Returns the name of what is used from now on; not to be called while kernels run.
+// Throws Error (usage) for an unknown name or an instruction set this machine does not have.
+std::string_view set_isa(std::string_view name);
+
+// "avx512", "avx2" or "baseline" (no AVX2: correct, slow, and with other rounding).
+std::string_view isa_name();
+}

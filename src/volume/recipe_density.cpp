@@ -1,0 +1,44 @@
+#include "volume/recipe.h"
+
+#include <cassert>
+#include <cstring>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volume/recipe_density.cpp"
+#include <hwy/foreach_target.h>
+
+#include "volume/recipe_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+void recipe_density_kernel(const FogField& field, size_t count, const float* x, const float* y, const float* z,
+                           float* density) {
+    int finished = 0;
+    const dvec3 middle = field.origin;
+    for (size_t first = 0; first < count; first += 16) {
+        const size_t some = std::min<size_t>(16, count - first);
+        float local[3][16] = {}, values[16];
+        for (size_t i = 0; i < some; ++i) {
+            local[0][i] = static_cast<float>(x[first + i] - middle.x);
+            local[1][i] = static_cast<float>(y[first + i] - middle.y);
+            local[2][i] = static_cast<float>(z[first + i] - middle.z);
+        }
+        store(fog_density(field, {load(local[0]), load(local[1]), load(local[2])}, finished), values);
+        std::memcpy(density + first, values, some * sizeof(float));
+    }
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(recipe_density_kernel);
+
+void recipe_density(const FogRecipe& recipe, double seconds, std::span<const float> x, std::span<const float> y,
+                    std::span<const float> z, std::span<float> density) {
+    assert(x.size() == density.size() && y.size() == density.size() && z.size() == density.size());
+    const FogField field = fog_field(recipe, seconds);
+    HWY_DYNAMIC_DISPATCH(recipe_density_kernel)(field, density.size(), x.data(), y.data(), z.data(), density.data());
+}
+}
+#endif
