@@ -8,9 +8,9 @@ namespace tyndall {
 struct Camera {
     std::string name;
     vec3 position{0, 1, 4};
-    vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};   // orthonormal
-    float vertical_fov = 0.8f;        // radians; perspective
-    float ortho_height = 0;           // metres; above 0 the camera is orthographic
+    vec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1}; // orthonormal
+    float vertical_fov = 0.8f;                           // radians; perspective
+    float ortho_height = 0;                              // metres; above 0 the camera is orthographic
     float near = 0.01f, far = infinity;
 };
 

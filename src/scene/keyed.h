@@ -5,11 +5,11 @@
 #include <vector>
 
 namespace tyndall {
-enum class Interpolation { step, linear, smooth, cubic };   // cubic: values hold in-tangent, value, out-tangent (glTF)
+enum class Interpolation { step, linear, smooth, cubic }; // cubic: values hold in-tangent, value, out-tangent (glTF)
 
 // Before the first and after the last key the value holds, unless `loop` repeats the keys.
 template<class T> struct Keyed {
-    std::vector<float> times;        // ascending seconds; empty = constant values[0]
+    std::vector<float> times; // ascending seconds; empty = constant values[0]
     std::vector<T> values{T{}};
     Interpolation interpolation = Interpolation::linear;
     bool loop = false;

@@ -10,27 +10,27 @@ enum class LightKind { point, spot, sun };
 struct Light {
     std::string name;
     LightKind kind = LightKind::point;
-    vec3 position{0};              // point, spot
-    vec3 direction{0, -1, 0};      // unit, the way the light travels: spot axis, sun
-    vec3 intensity{1};             // candela (point, spot) or lux (sun), colour included
-    float volume_scale = 1;        // multiplies the light in fog
-    float surface_scale = 1;       // multiplies the light on surfaces
-    float inner_cone = 0, outer_cone = pi / 4;   // half angles of a spot
-    float range = infinity;        // metres; the light fades to 0 there
-    float radius = 0;              // metres; point, spot: soft shadows, and 1/r² is capped inside
-    float angle = 0;               // radians, half angle of the sun's disc
+    vec3 position{0};                          // point, spot
+    vec3 direction{0, -1, 0};                  // unit, the way the light travels: spot axis, sun
+    vec3 intensity{1};                         // candela (point, spot) or lux (sun), colour included
+    float volume_scale = 1;                    // multiplies the light in fog
+    float surface_scale = 1;                   // multiplies the light on surfaces
+    float inner_cone = 0, outer_cone = pi / 4; // half angles of a spot
+    float range = infinity;                    // metres; the light fades to 0 there
+    float radius = 0;                          // metres; point, spot: soft shadows, and 1/r² is capped inside
+    float angle = 0;                           // radians, half angle of the sun's disc
     bool shadows = true;
 };
 
 // What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
 struct Arrival {
     vec3 irradiance{0};
-    vec3 to_light{0, 1, 0};      // unit
-    float distance = infinity;   // metres, infinite for the sun
+    vec3 to_light{0, 1, 0};    // unit
+    float distance = infinity; // metres, infinite for the sun
 };
 Arrival arrival(const Light& light, vec3 point);
 
-inline constexpr float smallest_radius = 1e-4f;   // metres; 1/r² is capped here when a light has no radius
+inline constexpr float smallest_radius = 1e-4f; // metres; 1/r² is capped here when a light has no radius
 
 // KHR_lights_punctual's window: 1 near the light, 0 at range.
 inline float range_window(float distance, float range) {

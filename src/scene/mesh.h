@@ -11,8 +11,9 @@ enum class AlphaMode { opaque, mask, blend };
 
 struct Texture {
     std::string name;
-    Image<vec4> texels;            // linear colour, straight alpha; empty when the file could not be used
+    Image<vec4> texels; // linear colour, straight alpha; empty when the file could not be used
     bool repeat_u = true, repeat_v = true, mirror_u = false, mirror_v = false, nearest = false;
+    mat3 uv_transform{1}; // applied to uv first (KHR_texture_transform)
 };
 
 // Bilinear texel (nearest when asked); v runs down as in glTF.
@@ -22,12 +23,12 @@ struct Material {
     std::string name;
     vec3 base_color{1};
     float alpha = 1;
-    int base_texture = -1;         // index into Scene::textures
-    vec3 emission{0};              // radiance (nits)
+    int base_texture = -1; // index into Scene::textures
+    vec3 emission{0};      // radiance (nits)
     int emission_texture = -1;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
-    bool double_sided = false;     // only shading normals care; every face casts shadows
+    bool double_sided = false; // only shading normals care; every face casts shadows
 };
 
 // One material's triangles. Normals and uvs are empty or one per position.
@@ -35,8 +36,8 @@ struct Mesh {
     std::string name;
     std::vector<vec3> positions, normals;
     std::vector<vec2> uvs;
-    std::vector<vec3> colors;                // vertex colours times base_color; empty = white
+    std::vector<vec3> colors; // vertex colours times base_color; empty = white
     std::vector<glm::uvec3> triangles;
-    int material = -1;                       // -1 = white Lambert
+    int material = -1; // -1 = white Lambert
 };
 }

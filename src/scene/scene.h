@@ -21,28 +21,30 @@ struct Node {
     Keyed<vec3> translation{vec3(0)};
     Keyed<quat> rotation{quat(1, 0, 0, 0)};
     Keyed<vec3> scale{vec3(1)};
-    std::optional<mat4> matrix;      // instead of the three
+    std::optional<mat4> matrix; // instead of the three
 };
 
-struct Instance { int node = -1, mesh = -1; };
+struct Instance {
+    int node = -1, mesh = -1;
+};
 
 struct CameraSource {
     std::string name;
-    int node = -1;                   // glTF camera: looks along the node's -Z ...
-    Keyed<vec3> position{vec3(0, 1, 4)}, target{vec3(0)}, up{vec3(0, 1, 0)};   // ... else these
-    Keyed<float> vertical_fov{0.8f};   // radians
+    int node = -1; // glTF camera: looks along the node's -Z ...
+    Keyed<vec3> position{vec3(0, 1, 4)}, target{vec3(0)}, up{vec3(0, 1, 0)}; // ... else these
+    Keyed<float> vertical_fov{0.8f};                                         // radians
     float ortho_height = 0, near = 0.01f, far = infinity;
 };
 
 struct LightSource {
     std::string name;
     LightKind kind = LightKind::point;
-    int node = -1;                   // glTF light: at the node's origin, along its -Z ...
-    Keyed<vec3> position{vec3(0)}, direction{vec3(0, -1, 0)};   // ... else these
+    int node = -1;                                            // glTF light: at the node's origin, along its -Z ...
+    Keyed<vec3> position{vec3(0)}, direction{vec3(0, -1, 0)}; // ... else these; any length above 0
     Keyed<vec3> color{vec3(1)};
-    Keyed<float> intensity{1.0f};    // candela or lux
+    Keyed<float> intensity{1.0f}; // candela or lux
     Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};
-    Keyed<float> inner_cone{0.0f}, outer_cone{pi / 4};   // radians, half angles
+    Keyed<float> inner_cone{0.0f}, outer_cone{pi / 4}; // radians, half angles
     Keyed<float> radius{0.0f}, angle{0.0f};
     float range = infinity;
     bool shadows = true;
@@ -56,25 +58,25 @@ struct MediumSource {
     Keyed<float> extinction{0.1f}, g{0.0f};
     Keyed<vec3> albedo{vec3(0.95f)}, emission{vec3(0)};
     PhaseKind phase = PhaseKind::henyey_greenstein;
-    Box bounds = everywhere();                     // homogeneous, height: in the medium's own space
+    Box bounds = everywhere(); // homogeneous, height: in the medium's own space
     Keyed<vec3> translation{vec3(0)}, scale{vec3(1)};
     Keyed<quat> rotation{quat(1, 0, 0, 0)};
     Keyed<float> height_base{0.0f}, height_falloff{1.0f};
-    std::optional<FogRecipe> recipe;               // noise
-    float voxel_size = 0;                          // noise: instead of the recipe's, metres
-    VdbSequence sequence;                          // vdb
+    std::optional<FogRecipe> recipe; // noise
+    float voxel_size = 0;            // noise: instead of the recipe's, metres
+    VdbSequence sequence;            // vdb
 };
 
 enum class BackgroundKind { color, sky, image };
 
 struct Background {
     BackgroundKind kind = BackgroundKind::color;
-    Keyed<vec3> color{vec3(0)};                          // color; horizon of the sky
-    Keyed<vec3> zenith{vec3(0)}, ground{vec3(0)};        // sky
-    std::shared_ptr<const Image<vec3>> image;            // image
-    bool lat_long = false;                               // wrapped around the scene; else a plate behind the picture
+    Keyed<vec3> color{vec3(0)};                   // color; horizon of the sky
+    Keyed<vec3> zenith{vec3(0)}, ground{vec3(0)}; // sky
+    std::shared_ptr<const Image<vec3>> image;     // image
+    bool lat_long = false;                        // wrapped around the scene; else a plate behind the picture
     Keyed<float> intensity{1.0f};
-    float rotation = 0;                                  // radians about Y, lat-long
+    float rotation = 0; // radians about Y, lat-long
 };
 
 // A hand-placed beam card for the billboard technique.
@@ -89,34 +91,35 @@ struct Billboard {
 struct Scene {
     std::filesystem::path file;
     double frame_rate = 24;
-    int first_frame = 1, last_frame = 1;     // what --frames means when it is not given
+    int first_frame = 1, last_frame = 1; // what --frames means when it is not given
     ivec2 resolution{640, 360};
-    Keyed<float> exposure{0.0f};             // EV for PNGs
+    Keyed<float> exposure{0.0f}; // EV for PNGs
     std::vector<Node> nodes;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;
     std::vector<Material> materials;
     std::vector<Texture> textures;
     std::vector<CameraSource> cameras;
-    int camera = 0;                          // the default one
+    int camera = 0; // the default one
     std::vector<LightSource> lights;
-    Keyed<vec3> ambient{vec3(0)};            // uniform radiance from everywhere, unshadowed
+    Keyed<vec3> ambient{vec3(0)}; // uniform radiance from everywhere, unshadowed
     std::vector<MediumSource> media;
     Background background;
     std::vector<Billboard> billboards;
-    std::vector<std::filesystem::path> inputs;   // every file read, for hashes and reloading
-    std::vector<std::string> warnings;           // one line each, said once
+    std::vector<std::filesystem::path> inputs; // every file read, for hashes and reloading
+    std::vector<std::string> warnings;         // one line each, said once
 };
 
 enum class LightUnits { spec, unitless, raw };
 
 struct LoadOptions {
-    LightUnits light_units = LightUnits::spec;   // of the glTF's lights: candela/lux · Blender "unitless" (×683/4π,
-                                                 // suns ×683) · Blender "raw" watts (×683/4π, suns ×683·1)
+    // Of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
+    // (points and spots also spread over the sphere, 683 / 4 pi).
+    LightUnits light_units = LightUnits::spec;
 };
 
 // Reads a scene file, or a bare .gltf/.glb (framed by a default camera when it has none). Throws Error.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
-mat4 node_matrix(const Scene& scene, int node, double seconds);   // local to world
+mat4 node_matrix(const Scene& scene, int node, double seconds); // local to world
 }

@@ -1,0 +1,12 @@
+// The shape of a glTF document: every member that is used has the right type, lies in its range, and every index points
+// to something. Checked on the raw JSON, before any library reads it.
+#pragma once
+#include "base/json.h"
+
+namespace tyndall {
+// Throws Error (refused) naming file and JSON pointer.
+void check_gltf_shape(const Json& document, std::string_view file);
+
+// The array of a collection ("nodes"; "lights" of KHR_lights_punctual), or null.
+const Json* gltf_collection(const Json& document, std::string_view name);
+}

@@ -1,0 +1,128 @@
+#include "scene/image_file.h"
+
+#include "base/error.h"
+#include "base/file.h"
+
+#include <array>
+#include <memory>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_HDR
+#define STBI_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace tyndall {
+namespace {
+struct Free {
+    void operator()(void* memory) const { stbi_image_free(memory); }
+};
+
+const stbi_uc* start(std::string_view bytes) { return reinterpret_cast<const stbi_uc*>(bytes.data()); }
+
+void check_length(std::string_view bytes, std::string_view where) {
+    if (bytes.size() > size_t{1} << 30) refuse(where, "the image file is over 1 GiB");
+}
+
+[[noreturn]] void refuse_undecodable(std::string_view where) {
+    refuse(where, std::string("the image cannot be decoded: ") + stbi_failure_reason());
+}
+
+// IEC 61966-2-1.
+float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
+
+const std::array<float, 256>& linear_table() {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> values;
+        for (int i = 0; i < 256; ++i) values[i] = linear(i / 255.0f);
+        return values;
+    }();
+    return table;
+}
+
+Image<vec3> decode_radiance(std::string_view bytes, std::string_view where) {
+    ivec2 size;
+    int channels;
+    const std::unique_ptr<float, Free> data(
+        stbi_loadf_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 3));
+    if (!data) refuse_undecodable(where);
+    Image<vec3> image(size);
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        image.pixels[i] = {data.get()[3 * i], data.get()[3 * i + 1], data.get()[3 * i + 2]};
+        if (!is_finite(image.pixels[i])) refuse(where, "the image holds a value that is not a number");
+    }
+    return image;
+}
+}
+
+ImageFormat image_format(std::string_view bytes) {
+    if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
+    if (bytes.starts_with("\xff\xd8\xff")) return ImageFormat::jpeg;
+    if (bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE")) return ImageFormat::radiance;
+    return ImageFormat::other;
+}
+
+ivec2 image_size(std::string_view bytes, std::string_view where) {
+    check_length(bytes, where);
+    ivec2 size;
+    int channels;
+    if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels))
+        refuse(where, std::string("not a usable image header: ") + stbi_failure_reason());
+    if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_image_side)
+        refuse(where, "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
+                          " pixels; at most 16384 on a side can be used");
+    return size;
+}
+
+Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
+    const ImageFormat format = image_format(bytes);
+    if (format != ImageFormat::png && format != ImageFormat::jpeg) refuse(where, "the image is neither PNG nor JPEG");
+    ivec2 size = image_size(bytes, where);
+    int channels;
+    const std::unique_ptr<stbi_uc, Free> data(
+        stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 4));
+    if (!data) refuse_undecodable(where);
+
+    const std::array<float, 256>& table = linear_table();
+    Image<vec4> image(size);
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        const stbi_uc* texel = data.get() + 4 * i;
+        image.pixels[i] = {table[texel[0]], table[texel[1]], table[texel[2]], texel[3] / 255.0f};
+    }
+    return image;
+}
+
+Image<vec3> read_picture(const std::filesystem::path& path, std::string_view where) {
+    const std::string bytes = read_file(path, uint64_t{1} << 30);
+    if (image_format(bytes) == ImageFormat::radiance) {
+        image_size(bytes, where);
+        return decode_radiance(bytes, where);
+    }
+    if (image_format(bytes) == ImageFormat::other)
+        refuse(where, "\"" + path.filename().string() + "\" is neither PNG, JPEG nor Radiance .hdr");
+    const Image<vec4> texels = decode_texture(bytes, where);
+    Image<vec3> image(texels.size);
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = vec3(texels.pixels[i]) * texels.pixels[i].w;
+    return image;
+}
+
+Image<vec4> halved(const Image<vec4>& image) {
+    Image<vec4> result(glm::max(image.size / 2, ivec2(1)));
+    for (int y = 0; y < result.size.y; ++y)
+        for (int x = 0; x < result.size.x; ++x) {
+            vec4 sum(0), plain(0);
+            for (int corner = 0; corner < 4; ++corner) {
+                const vec4 texel = image.at(std::min(2 * x + (corner & 1), image.size.x - 1),
+                                            std::min(2 * y + (corner >> 1), image.size.y - 1));
+                sum += vec4(vec3(texel) * texel.w, texel.w), plain += texel;
+            }
+            result.at(x, y) = sum.w > 0 ? vec4(vec3(sum) / sum.w, sum.w / 4) : plain / 4.0f;
+        }
+    return result;
+}
+}

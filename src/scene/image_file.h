@@ -1,0 +1,28 @@
+// PNG, JPEG and Radiance pictures as linear light. The only user of stb_image.
+#pragma once
+#include "base/image.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tyndall {
+inline constexpr int largest_image_side = 16384;
+
+enum class ImageFormat { png, jpeg, radiance, other };
+
+// Told from the first bytes, never from the name.
+ImageFormat image_format(std::string_view bytes);
+
+// Size from the header alone. Throws Error (refused) naming `where` when there is none or a side is over the limit.
+ivec2 image_size(std::string_view bytes, std::string_view where);
+
+// sRGB bytes to linear colour, alpha as it is. Throws Error (refused) naming `where`.
+Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
+
+// A picture behind the scene: sRGB PNG or JPEG, or Radiance .hdr. Throws Error (refused, unreadable) naming `where`.
+Image<vec3> read_picture(const std::filesystem::path& path, std::string_view where);
+
+// Half the size, each texel the mean of four (alpha-weighted colour); odd edges repeat their last texel.
+Image<vec4> halved(const Image<vec4>& image);
+}

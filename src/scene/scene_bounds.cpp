@@ -1,0 +1,101 @@
+#include "scene/scene_bounds.h"
+
+#include "scene/scene_file.h"
+
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) box.grow(mesh.positions[triangle[corner]]);
+    return box;
+}
+
+Box finite(const Box& box) { return is_finite(box.low) && is_finite(box.high) ? box : Box{}; }
+
+std::string number_text(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+// The brightest a white surface anywhere inside the bounds would be lit, by every light together, in lux.
+float brightest_illuminance(const Scene& scene, const Box& bounds) {
+    const float radius = std::max(0.5f * glm::length(bounds.size()), 1e-3f);
+    float sum = 0;
+    for (const LightSource& light : scene.lights) {
+        const float intensity = light.intensity.at(0) * max_component(light.color.at(0));
+        sum += light.kind == LightKind::sun ? intensity : intensity / (radius * radius);
+    }
+    return sum;
+}
+}
+
+Box scene_bounds(const Scene& scene, double seconds) {
+    std::vector<Box> boxes;
+    for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
+    Box bounds;
+    for (const Instance& instance : scene.instances)
+        bounds.grow(finite(transform(node_matrix(scene, instance.node, seconds), boxes[instance.mesh])));
+    for (const MediumSource& medium : scene.media) {
+        const Box local = medium.kind == MediumKind::noise ? medium.recipe->bounds : medium.bounds;
+        if (medium.kind == MediumKind::vdb || !is_finite(local.low) || !is_finite(local.high)) continue;
+        const mat4 placed = glm::translate(mat4(1), medium.translation.at(seconds)) *
+                            glm::mat4_cast(medium.rotation.at(seconds)) * glm::scale(mat4(1), medium.scale.at(seconds));
+        bounds.grow(finite(transform(placed, local)));
+    }
+    return bounds;
+}
+
+void add_missing_camera(Scene& scene) {
+    if (!scene.cameras.empty()) return;
+    CameraSource camera;
+    camera.name = "default";
+    camera.vertical_fov = glm::radians(45.0f);
+    const Box bounds = scene_bounds(scene, 0);
+    if (!bounds.empty()) {
+        // Far enough for the sphere around the bounds to fit in a picture at least as wide as high.
+        const float radius = std::max(0.5f * glm::length(bounds.size()), 1e-3f);
+        const float distance = 1.05f * radius / std::sin(0.5f * camera.vertical_fov.values[0]);
+        camera.target = bounds.center();
+        camera.position = bounds.center() + distance * glm::normalize(vec3(0.45f, 0.3f, 1.0f));
+        camera.near = std::min(camera.near, 1e-3f * distance);
+    }
+    scene.cameras.push_back(camera);
+    warn(scene, scene.file.string() + ": there is no camera; one that sees everything is used");
+}
+
+void add_missing_light_and_fog(Scene& scene) {
+    const std::string file = scene.file.string();
+    Box bounds = scene_bounds(scene, 0);
+    if (bounds.empty()) bounds = {vec3(-5), vec3(5)};
+
+    if (scene.lights.empty()) {
+        LightSource sun;
+        sun.name = "default sun", sun.kind = LightKind::sun;
+        sun.direction = glm::normalize(vec3(-0.5f, -0.7f, -0.4f));
+        sun.intensity = 3.0f;
+        scene.lights.push_back(sun);
+        scene.ambient = vec3(0.1f);
+        warn(scene, file + ": there is no light; a sun of 3 lux and some ambient light are used");
+    } else if (const float lux = brightest_illuminance(scene, bounds); lux > 30 || (lux > 0 && lux < 0.3f)) {
+        const float stops = std::round(-std::log2(lux / 3));
+        scene.exposure = std::clamp(stops, -64.0f, 64.0f);
+        warn(scene, file + ": the lights give about " + number_text("%.3g", lux) + " lux; PNGs are exposed by " +
+                        number_text("%+.0f", stops) + " EV");
+    }
+
+    // Half of the light gets through the fog's longest way.
+    const float diagonal = std::max(glm::length(bounds.size()), 1e-3f);
+    MediumSource fog;
+    fog.name = "default fog";
+    fog.extinction = 0.7f / (1.5f * diagonal);
+    fog.g = 0.3f;
+    fog.bounds = {bounds.low - 0.25f * diagonal, bounds.high + 0.25f * diagonal};
+    scene.media.push_back(fog);
+    warn(scene, file + ": a glTF has no fog; thin fog of " + number_text("%.3g", fog.extinction.values[0]) +
+                    " per metre around its contents is used");
+}
+}

@@ -1,0 +1,14 @@
+// What stands in for things a scene does not say: a camera that sees everything, light, fog.
+#pragma once
+#include "scene/scene.h"
+
+namespace tyndall {
+// Around every instance at a moment, and every medium whose extent is known without opening volumes.
+Box scene_bounds(const Scene& scene, double seconds);
+
+// Adds a camera that frames the scene when it has none, with a warning.
+void add_missing_camera(Scene& scene);
+
+// For a bare glTF: a sun when it has no light, thin fog, and an exposure for its lights, each with a warning.
+void add_missing_light_and_fog(Scene& scene);
+}
