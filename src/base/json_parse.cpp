@@ -11,7 +11,7 @@
 namespace tyndall {
 namespace {
 constexpr size_t most_levels = 64;
-constexpr size_t most_values = size_t{1} << 22;
+constexpr size_t most_values = size_t{1} << 20;
 
 std::string position_text(std::string_view text, size_t position) {
     std::string_view before = text.substr(0, position ? std::min(position - 1, text.size()) : 0);

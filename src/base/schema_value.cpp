@@ -139,7 +139,9 @@ std::vector<std::string> allowed_types(const Json& schema) {
 }
 
 bool has_type(const Json& value, const std::string& type) {
-    if (type == "integer") return value.kind == Json::Kind::number && is_whole(value.number);
+    constexpr double exact = 0x1p53; // beyond, neighbouring integers become one number
+    if (type == "integer")
+        return value.kind == Json::Kind::number && is_whole(value.number) && std::fabs(value.number) <= exact;
     return type == type_name(value);
 }
 

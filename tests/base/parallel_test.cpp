@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <tbb/task_arena.h>
 #include <xmmintrin.h>
 
 #include <atomic>
@@ -71,25 +72,26 @@ TEST(Parallel, AnExceptionPassesThroughNestedLoops) {
     EXPECT_THROW(nested(), std::runtime_error);
 }
 
-// A waiting thread that took up another outer piece would come back to a lock it already holds.
+// A waiting thread that took up another outer piece would come back to a lock it already holds. More threads than cores
+// and uneven inner pieces make them wait for each other.
 TEST(Parallel, AnOuterBodyIsNeverEnteredTwiceOnOneStack) {
-    set_thread_count(4);
+    set_thread_count(8);
     std::atomic<int64_t> total = 0;
     std::atomic<int> entered_again = 0;
-    parallel_for(200, [&](int64_t) {
+    const auto outer_body = [&](int64_t i) {
         thread_local bool inside = false;
         if (inside) ++entered_again;
         inside = true;
         parallel_for(8, [&](int64_t j) {
-            std::this_thread::sleep_for(
-                std::chrono::microseconds(20 * j)); // uneven, so that threads wait for each other
+            std::this_thread::sleep_for(std::chrono::microseconds((i + j) % 8 == 0 ? 2000 : 50));
             total += j;
         });
         inside = false;
-    });
+    };
+    tbb::task_arena(8).execute([&] { parallel_for(1000, outer_body); });
     set_thread_count(0);
     EXPECT_EQ(entered_again, 0);
-    EXPECT_EQ(total, 200 * 28);
+    EXPECT_EQ(total, 1000 * 28);
 }
 
 TEST(Parallel, ResultsLandInTheirPlaceForAnyThreadCount) {
