@@ -1,13 +1,13 @@
 // From leaves and tiles to bricks: find what every brick is made of, pack the ones that differ inside, drop the rest.
 #include "base/error.h"
 #include "base/parallel.h"
-#include "volume/bricks.h"
+#include "volume/brick_sources.h"
 #include "volume/half.h"
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <cassert>
+#include <array>
 
 namespace tyndall {
 namespace {
@@ -15,68 +15,13 @@ constexpr int64_t largest_index = int64_t{256} << 20; // bytes
 constexpr int64_t longest_axis = 1 << 20;             // bricks: floats still tell its voxels apart
 constexpr int64_t farthest_voxel = int64_t{1} << 30;
 
-struct VoxelBox {
-    ivec3 low{std::numeric_limits<int>::max()}, high{std::numeric_limits<int>::min()};
-
-    bool empty() const { return high.x < low.x; }
-    void grow(const VoxelBox& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
-};
-
-// What of a leaf is not 0. Bit d of `parts`: some voxel that the brick at -d (d = 4·dx + 2·dy + dz) has as a corner.
-struct LeafSummary {
-    VoxelBox box;
-    uint8_t parts = 0;
-};
-
-// Everything a brick can be made of, by cell of 8³ voxels: n > 0 = leaf n-1, n < 0 = tile -n-1 covers it, 0 = nothing.
-struct Sources {
-    std::vector<const Leaf*> leaves;
-    std::vector<LeafSummary> summaries;
-    std::vector<Leaf> partial;   // made from tiles that cover a cell in part
-    std::vector<uint16_t> tiles; // values as halves
-    std::vector<int32_t> cells;
-};
-
 // The eight cells whose voxels are corners of one brick, d = 4·dx + 2·dy + dz.
 using Corners = std::array<int32_t, 8>;
 
 struct Packed {
     uint16_t largest = 0;
     bool uniform = false;
-    double mass = 0; // sum of the 8³ voxels that are the brick's own
 };
-
-LeafSummary summary_of(const Leaf& leaf) {
-    LeafSummary summary;
-    for (int v = 0; v < 512; ++v) {
-        if (half_from_float(leaf.values[v]) == 0) continue;
-        const ivec3 at(v >> 6, (v >> 3) & 7, v & 7);
-        summary.box.grow({leaf.origin + at, leaf.origin + at});
-        for (int d = 0; d < 8; ++d) {
-            const bool used = (!(d & 4) || at.x == 0) && (!(d & 2) || at.y == 0) && (!(d & 1) || at.z == 0);
-            summary.parts |= static_cast<uint8_t>(used << d);
-        }
-    }
-    return summary;
-}
-
-void summarize_leaves(const SparseVolume& volume, Sources& sources) {
-    for (const Leaf& leaf : volume.leaves) sources.leaves.push_back(&leaf);
-    sources.summaries.resize(volume.leaves.size());
-    parallel_ranges(static_cast<int64_t>(volume.leaves.size()), 16, [&](int64_t begin, int64_t end) {
-        for (int64_t i = begin; i < end; ++i) sources.summaries[i] = summary_of(volume.leaves[i]);
-    });
-    for (const Tile& tile : volume.tiles) sources.tiles.push_back(half_from_float(tile.value));
-}
-
-VoxelBox filled_box(const SparseVolume& volume, const Sources& sources) {
-    VoxelBox box;
-    for (const LeafSummary& summary : sources.summaries)
-        if (summary.parts) box.grow(summary.box);
-    for (size_t i = 0; i < volume.tiles.size(); ++i)
-        if (sources.tiles[i]) box.grow({volume.tiles[i].low, volume.tiles[i].high});
-    return box;
-}
 
 // Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
 void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
@@ -98,49 +43,6 @@ void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
     pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
     pool.index.assign(cells, 0);
     pool.maximum.assign(cells, 0);
-}
-
-int64_t cell_at(const BrickPool& pool, ivec3 cell) {
-    return (int64_t{cell.x} * pool.size.y + cell.y) * pool.size.z + cell.z;
-}
-
-// A tile covers most cells whole; where it covers one in part, a leaf is made for that cell.
-void add_tile(const BrickPool& pool, const Tile& tile, int32_t tile_index, Sources& sources) {
-    const ivec3 low = tile.low - pool.low, high = tile.high - pool.low;
-    const ivec3 first = low / 8, last = high / 8;
-    for (int x = first.x; x <= last.x; ++x)
-        for (int y = first.y; y <= last.y; ++y)
-            for (int z = first.z; z <= last.z; ++z) {
-                const ivec3 corner = ivec3(x, y, z) * 8;
-                int32_t& cell = sources.cells[cell_at(pool, ivec3(x, y, z))];
-                const ivec3 from = glm::max(low - corner, ivec3(0)), to = glm::min(high - corner, ivec3(7));
-                if (from == ivec3(0) && to == ivec3(7)) {
-                    cell = -tile_index - 1;
-                    continue;
-                }
-                if (cell == 0) {
-                    sources.partial.push_back(Leaf{corner + pool.low});
-                    cell = static_cast<int32_t>(sources.leaves.size() + sources.partial.size());
-                }
-                assert(cell > static_cast<int32_t>(sources.leaves.size()));
-                Leaf& leaf = sources.partial[cell - 1 - sources.leaves.size()];
-                for (int i = from.x; i <= to.x; ++i)
-                    for (int j = from.y; j <= to.y; ++j)
-                        std::fill_n(&leaf.values[i * 64 + j * 8 + from.z], to.z - from.z + 1, tile.value);
-            }
-}
-
-void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources) {
-    sources.cells.assign(pool.index.size(), 0);
-    for (size_t i = 0; i < volume.leaves.size(); ++i)
-        if (sources.summaries[i].parts)
-            sources.cells[cell_at(pool, (volume.leaves[i].origin - pool.low) / 8)] = static_cast<int32_t>(i + 1);
-    for (size_t i = 0; i < volume.tiles.size(); ++i)
-        if (sources.tiles[i]) add_tile(pool, volume.tiles[i], static_cast<int32_t>(i), sources);
-    for (const Leaf& leaf : sources.partial) {
-        sources.leaves.push_back(&leaf);
-        sources.summaries.push_back(summary_of(leaf));
-    }
 }
 
 Corners corners_of(const BrickPool& pool, const Sources& sources, ivec3 cell) {
@@ -184,29 +86,25 @@ std::vector<ivec3> listed_bricks(BrickPool& pool, const Sources& sources) {
 
 // Writes the 9³ corner values of a brick.
 Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
-    const auto row = [&](int d, int x, int y, int count, uint16_t* to) {
-        const int32_t source = corners[d];
-        if (source > 0) {
-            const float* from = &sources.leaves[source - 1]->values[x * 64 + y * 8];
-            for (int z = 0; z < count; ++z) to[z] = half_from_float(from[z]);
-        } else {
-            std::fill_n(to, count, source < 0 ? sources.tiles[-source - 1] : uint16_t{0});
-        }
-    };
-    Packed packed;
+    static constexpr std::array<float, 8> nothing{};
+    float buffer[729];
     for (int x = 0; x < 9; ++x)
         for (int y = 0; y < 9; ++y) {
-            const int d = 4 * (x >> 3) + 2 * (y >> 3);
-            uint16_t* to = values + (x * 9 + y) * 9;
-            row(d, x & 7, y & 7, 8, to);
-            row(d + 1, x & 7, y & 7, 1, to + 8);
-            float sum = 0;
-            for (int z = 0; z < 8; ++z) sum += float_from_half(to[z]);
-            packed.mass += d == 0 ? sum : 0;
+            float* to = buffer + (x * 9 + y) * 9;
+            for (const int z : {0, 8}) {
+                const int32_t source = corners[4 * (x >> 3) + 2 * (y >> 3) + (z >> 3)];
+                const Leaf* leaf = source > 0 ? sources.leaves[source - 1] : nullptr;
+                const float* from = leaf ? &leaf->values[(x & 7) * 64 + (y & 7) * 8] : nothing.data();
+                if (source < 0)
+                    std::fill_n(to + z, z ? 1 : 8, float_from_half(sources.tiles[-source - 1]));
+                else if (z == 0)
+                    std::copy_n(from, 8, to);
+                else
+                    to[8] = from[0];
+            }
         }
-    packed.largest = *std::max_element(values, values + 729);
-    packed.uniform = std::all_of(values, values + 729, [&](uint16_t value) { return value == packed.largest; });
-    return packed;
+    const HalfRange range = halves_from_floats(buffer, 729, values);
+    return {range.high, range.low == range.high};
 }
 
 std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
@@ -234,9 +132,8 @@ void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
         int32_t& id = pool.index[cell];
         if (id == 0) continue;
         ++filled;
-        const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true, 0};
+        const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true};
         pool.maximum[cell] = float_from_half(brick.largest);
-        pool.mass += brick.uniform ? 512.0 * pool.maximum[cell] : brick.mass;
         if (brick.uniform) {
             int32_t& constant = constant_of[brick.largest];
             if (constant == 0) {
@@ -259,11 +156,10 @@ void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
 
 std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
     auto pool = std::make_shared<BrickPool>();
-    Sources sources;
-    summarize_leaves(volume, sources);
-    const VoxelBox box = filled_box(volume, sources);
-    if (!box.empty()) {
-        size_pool(volume.name, box, *pool);
+    Sources sources = make_sources(volume);
+    if (!sources.box.empty()) {
+        size_pool(volume.name, sources.box, *pool);
+        pool->mass = sources.mass;
         fill_cells(*pool, volume, sources);
         const std::vector<ivec3> list = listed_bricks(*pool, sources);
         finish_index(packed_bricks(volume.name, list, sources, *pool), *pool);

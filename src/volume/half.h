@@ -1,6 +1,7 @@
 // Half floats (IEEE 754 binary16) of values that are never negative, without special instructions.
 #pragma once
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 
 namespace tyndall {
@@ -20,6 +21,12 @@ inline uint16_t half_from_float(float value) {
     const uint32_t normal = (bits - (112u << 23) + 0xfff + ((bits >> 13) & 1)) >> 13;
     return static_cast<uint16_t>(value < 0x1p-14f ? subnormal : normal);
 }
+
+// The same for many floats. Returns the smallest and the largest of them as stored.
+struct HalfRange {
+    uint16_t low = 0, high = 0;
+};
+HalfRange halves_from_floats(const float* from, size_t count, uint16_t* to);
 
 inline float float_from_half(uint16_t half) {
     return half < 0x400 ? static_cast<float>(half) * smallest_half

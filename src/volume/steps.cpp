@@ -66,8 +66,9 @@ void find_runs(const StepRule& rule, Scratch& scratch) {
     }
 }
 
-// As many equal shares of a run's cost as it needs steps; a sum of many shares may miss a whole number by rounding.
-double wanted_steps(const Run& run) { return std::max(1.0, std::ceil(run.cost - 1e-9)); }
+// As many equal shares of a run's cost as it needs steps. Rounded inputs just above a whole number do not ask for one
+// more.
+double wanted_steps(const Run& run) { return std::max(1.0, std::ceil(run.cost * (1 - 1e-6))); }
 
 void append_step(double low, double high, std::vector<Step>& steps) {
     const Step step{static_cast<float>(low), static_cast<float>(high)};

@@ -1,0 +1,104 @@
+#include "volume/brick_sources.h"
+
+#include "base/parallel.h"
+#include "volume/half.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tyndall {
+namespace {
+LeafSummary summary_of(const Leaf& leaf) {
+    LeafSummary summary;
+    int filled_z = 0;
+    ivec3 low(7), high(0);
+    std::array<float, 8> sums{}; // of each z
+    for (int row = 0; row < 64; ++row) {
+        int filled = 0; // bit z
+        for (int z = 0; z < 8; ++z) {
+            const float value = leaf.values[row * 8 + z];
+            filled |= (value > smallest_half / 2) << z;
+            sums[z] += value > 0 ? std::min(value, largest_half) : 0;
+        }
+        if (filled == 0) continue;
+        const int x = row / 8, y = row % 8;
+        low = glm::min(low, ivec3(x, y, 7)), high = glm::max(high, ivec3(x, y, 0));
+        filled_z |= filled;
+        for (int d = 0; d < 8; ++d) {
+            const bool used = (!(d & 4) || x == 0) && (!(d & 2) || y == 0) && (!(d & 1) || (filled & 1));
+            summary.parts |= static_cast<uint8_t>(used << d);
+        }
+    }
+    if (summary.parts == 0) return summary;
+    low.z = std::countr_zero(static_cast<unsigned>(filled_z));
+    high.z = std::bit_width(static_cast<unsigned>(filled_z)) - 1;
+    summary.box = {leaf.origin + low, leaf.origin + high};
+    for (const float sum : sums) summary.mass += sum;
+    return summary;
+}
+
+// Grows the box of all fog and its mass by leaves and tiles.
+void sum_up(const SparseVolume& volume, Sources& sources) {
+    for (const LeafSummary& summary : sources.summaries)
+        if (summary.parts) sources.box.grow(summary.box), sources.mass += summary.mass;
+    for (size_t i = 0; i < volume.tiles.size(); ++i) {
+        if (sources.tiles[i] == 0) continue;
+        const Tile& tile = volume.tiles[i];
+        const dvec3 size(dvec3(tile.high) - dvec3(tile.low) + 1.0);
+        sources.box.grow({tile.low, tile.high});
+        sources.mass += size.x * size.y * size.z * std::min(tile.value, largest_half);
+    }
+}
+
+// A tile covers most cells whole; where it covers one in part, a leaf is made for that cell.
+void add_tile(const BrickPool& pool, const Tile& tile, int32_t tile_index, Sources& sources) {
+    const ivec3 low = tile.low - pool.low, high = tile.high - pool.low;
+    const ivec3 first = low / 8, last = high / 8;
+    for (int x = first.x; x <= last.x; ++x)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int z = first.z; z <= last.z; ++z) {
+                const ivec3 corner = ivec3(x, y, z) * 8;
+                int32_t& cell = sources.cells[cell_at(pool, ivec3(x, y, z))];
+                if (cell > 0 && cell <= static_cast<int32_t>(sources.leaves.size())) continue;
+                const ivec3 from = glm::max(low - corner, ivec3(0)), to = glm::min(high - corner, ivec3(7));
+                if (from == ivec3(0) && to == ivec3(7)) {
+                    cell = -tile_index - 1;
+                    continue;
+                }
+                if (cell == 0) {
+                    sources.partial.push_back(Leaf{corner + pool.low});
+                    cell = static_cast<int32_t>(sources.leaves.size() + sources.partial.size());
+                }
+                Leaf& leaf = sources.partial[cell - 1 - sources.leaves.size()];
+                for (int i = from.x; i <= to.x; ++i)
+                    for (int j = from.y; j <= to.y; ++j)
+                        std::fill_n(&leaf.values[i * 64 + j * 8 + from.z], to.z - from.z + 1, tile.value);
+            }
+}
+}
+
+Sources make_sources(const SparseVolume& volume) {
+    Sources sources;
+    for (const Leaf& leaf : volume.leaves) sources.leaves.push_back(&leaf);
+    sources.summaries.resize(volume.leaves.size());
+    parallel_ranges(static_cast<int64_t>(volume.leaves.size()), 16, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i) sources.summaries[i] = summary_of(volume.leaves[i]);
+    });
+    for (const Tile& tile : volume.tiles) sources.tiles.push_back(half_from_float(tile.value));
+    sum_up(volume, sources);
+    return sources;
+}
+
+void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources) {
+    sources.cells.assign(pool.index.size(), 0);
+    for (size_t i = 0; i < volume.leaves.size(); ++i)
+        if (sources.summaries[i].parts)
+            sources.cells[cell_at(pool, (volume.leaves[i].origin - pool.low) / 8)] = static_cast<int32_t>(i + 1);
+    for (size_t i = 0; i < volume.tiles.size(); ++i)
+        if (sources.tiles[i]) add_tile(pool, volume.tiles[i], static_cast<int32_t>(i), sources);
+    for (const Leaf& leaf : sources.partial) {
+        sources.leaves.push_back(&leaf);
+        sources.summaries.push_back(summary_of(leaf));
+    }
+}
+}
