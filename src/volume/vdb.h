@@ -9,8 +9,8 @@
 
 namespace tyndall {
 struct VdbWriteOptions {
-    bool half = true;          // 16-bit floats on disk
-    bool blosc = true;         // else ZIP
+    bool half = true;  // 16-bit floats on disk
+    bool blosc = true; // else ZIP
     std::string creator = "tyndall " TYNDALL_VERSION;
 };
 
@@ -19,9 +19,9 @@ struct VdbWriteOptions {
 void write_vdb(const std::filesystem::path& file, const SparseVolume& volume, const VdbWriteOptions& options = {});
 
 struct VdbGridInfo {
-    std::string name, type, grid_class;    // "density", "float", "fog volume"
-    bool usable = false;                   // can be rendered as fog
-    std::string why_not;                   // when it cannot
+    std::string name, type, grid_class; // "density", "float", "fog volume"
+    bool usable = false;                // can be rendered as fog
+    std::string why_not;                // when it cannot
     dmat4 index_to_world{1};
     vec3 voxel_size{0};
     ivec3 active_low{0}, active_high{-1};
@@ -44,10 +44,11 @@ VdbInfo vdb_info(const std::filesystem::path& file);
 
 // What was mended while reading; say it to the user once per file.
 struct VdbReadReport {
-    uint64_t non_finite = 0, negative = 0;   // voxels set to 0
-    float background = 0;                    // non-zero: fog outside the active box was dropped
-    std::string grid;                        // the one that was read
-    std::string summary() const;             // empty when there is nothing to say
+    uint64_t non_finite = 0, negative = 0; // voxels set to 0
+    float background = 0;                  // non-zero: fog outside the active box was dropped
+    std::string grid;                      // the one that was read
+    bool empty = false;                    // it holds no active voxels
+    std::string summary() const;           // empty when there is nothing to say
 };
 
 // Reads one grid as fog. `grid`: a name, name[index] for the index-th of that name, or empty for the only usable one
