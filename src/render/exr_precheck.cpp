@@ -52,6 +52,7 @@ void read_channels(Cursor cursor, ExrClaims& claims) {
 }
 
 void read_window(Cursor cursor, ivec2& low, ivec2& high) {
+    if (cursor.left.size() != 16) refuse(cursor.file, "a window has the wrong size");
     low.x = cursor.integer(), low.y = cursor.integer(), high.x = cursor.integer(), high.y = cursor.integer();
     for (const int c : {low.x, low.y, high.x, high.y})
         if (c < -largest_coordinate || c > largest_coordinate) refuse(cursor.file, "a window is out of range");
