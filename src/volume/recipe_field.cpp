@@ -11,18 +11,16 @@ double loop_phase(const FogRecipe& recipe, double seconds) {
     return wrapped_turn(std::fmod(seconds, recipe.period) / recipe.period);
 }
 
-// Turns done by a moment; whole ones per loop, at least one when there is any motion.
-double turns(const FogRecipe& recipe, double seconds, double speed) {
+// Turns done by a moment, 0 <= turn < 1.
+double turn_at(const FogRecipe& recipe, double seconds, double speed) {
     if (recipe.period <= 0) return wrapped_turn(speed * seconds);
-    const double whole =
-        speed == 0 ? 0 : std::copysign(std::max(1.0, std::round(std::abs(speed) * recipe.period)), speed);
-    return wrapped_turn(whole * loop_phase(recipe, seconds));
+    return wrapped_turn(turns_per_loop(recipe, speed) * loop_phase(recipe, seconds));
 }
 
 // Pure carriage repeats only if the fog repeats in space, every wind · period metres. So two unlike layers are carried
 // half a period apart, each at the wind's own speed and without weight at the moment it jumps back.
 std::vector<NoiseLayer> layers(const FogRecipe& recipe, double seconds) {
-    const double turn = turns(recipe, seconds, recipe.noise.evolve);
+    const double turn = turn_at(recipe, seconds, recipe.noise.evolve);
     const dvec3 wind(recipe.wind);
     if (recipe.wind == vec3(0)) return {{.turn = turn}};
     if (recipe.period <= 0) return {{.turn = turn, .displacement = wind * seconds}};
@@ -42,7 +40,7 @@ std::vector<NoiseLayer> layers(const FogRecipe& recipe, double seconds) {
 void add_swirl(FogField& field, const FogRecipe& recipe, double seconds) {
     if (recipe.swirl == 0) return;
     const double frequency = 1 / double{recipe.swirl_scale};
-    field.swirl = noise_octave(frequency, recipe.noise.seed ^ swirl_salt, turns(recipe, seconds, recipe.swirl_speed),
+    field.swirl = noise_octave(frequency, recipe.noise.seed ^ swirl_salt, turn_at(recipe, seconds, recipe.swirl_speed),
                                field.origin);
     // Each of the curl's three components is a difference of two slopes.
     field.swirl_gain = recipe.swirl / (std::sqrt(6.0f) * noise_slope_spread);
@@ -50,6 +48,11 @@ void add_swirl(FogField& field, const FogRecipe& recipe, double seconds) {
     field.swirl_stretch =
         std::abs(field.swirl_gain) * static_cast<float>(frequency) * (noise_bend_peak + noise_twist_peak);
 }
+}
+
+double turns_per_loop(const FogRecipe& recipe, double speed) {
+    if (speed == 0 || recipe.period <= 0) return 0;
+    return std::copysign(std::max(1.0, std::round(std::abs(speed) * recipe.period)), speed);
 }
 
 FogField fog_field(const FogRecipe& recipe, double seconds) {

@@ -20,5 +20,8 @@ struct FogField {
     float height_base = 0, height_rate = 0;                      // · exp(-rate · (y - base))
 };
 
+// What a repeating recipe makes of a speed in turns per second: whole turns per period, at least one.
+double turns_per_loop(const FogRecipe& recipe, double speed);
+
 FogField fog_field(const FogRecipe& recipe, double seconds);
 }
