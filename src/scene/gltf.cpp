@@ -30,8 +30,8 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
         for (const std::string& warning : container.warnings) document.warn("", warning);
         const Json json = parse_json(container.json, document.file);
         check_gltf_shape(json, document.file);
+        check_gltf_extensions(document, json);
         parse_gltf(document, json);
-        check_gltf_extensions(document);
         load_gltf_buffers(document, json, container);
         list_gltf_images(document, json);
     }

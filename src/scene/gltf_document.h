@@ -53,6 +53,9 @@ std::string gltf_pointer(std::string_view collection, size_t index, std::string_
 // gltf_container.cpp: header and chunks of a .glb checked. Throws Error (refused, unreadable).
 GltfContainer read_gltf_container(const std::filesystem::path& path);
 
+// gltf_extensions.cpp: the version, and whether every required extension can be read.
+void check_gltf_extensions(GltfDocument& document, const Json& json);
+
 // gltf_files.cpp: bytes behind URIs. Nothing outside the document's directory is opened; only regular files are.
 std::string gltf_uri_bytes(GltfDocument& document, const std::string& uri, const std::string& pointer, uint64_t most);
 void load_gltf_buffers(GltfDocument& document, const Json& json, const GltfContainer& container);
@@ -65,7 +68,6 @@ uint64_t gltf_element_bytes(const tinygltf::Accessor& accessor);
 
 // gltf_ranges.cpp: accessors within buffer views within buffers, the node hierarchy a forest, animations consistent.
 void check_gltf_ranges(const GltfDocument& document);
-void check_gltf_extensions(GltfDocument& document);
 
 // gltf_accessor.cpp: elements as numbers, sparse ones filled in, normalised integers scaled.
 enum class Scaling { as_declared, normalized }; // normalized: integers always become 0..1 or -1..1

@@ -194,7 +194,6 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
             document.warn(gltf_pointer("materials", index),
                           "the emission uses another set of texture coordinates; the base colour's is used for both");
     }
-    if (source.extensions.count("KHR_materials_unlit")) document.count("materials without shading are lit like others");
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::mask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::blend;
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);

@@ -126,7 +126,18 @@ void compact(const Vertices& vertices, Mesh& mesh) {
             }
             triangle[corner] = place[from];
         }
-    mend_normals(mesh);
+    if (!mesh.normals.empty()) mend_normals(mesh);
+}
+
+// Whether everything a primitive refers to came with the file: a buffer may be a mere placeholder.
+bool has_data(const GltfDocument& document, const tinygltf::Primitive& primitive) {
+    const auto filled = [&](int accessor) {
+        const int view = document.model.accessors[accessor].bufferView;
+        return view < 0 || document.lacking[document.model.bufferViews[view].buffer].empty();
+    };
+    for (const auto& [name, accessor] : primitive.attributes)
+        if (!filled(accessor)) return false;
+    return primitive.indices < 0 || filled(primitive.indices);
 }
 
 // Index of the scene's mesh; -1 when the primitive draws no triangle.
@@ -140,6 +151,7 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
         if (primitive.extensions.count(compression) && document.model.accessors[position->second].bufferView < 0)
             refuse(document.place(pointer), std::string("the mesh is compressed with ") + compression +
                                                 ", which cannot be read; export without it");
+    if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are left out"), -1;
     if (!primitive.targets.empty()) document.count("meshes with morph targets are shown in their base shape");
 
     int uv_set = 0;

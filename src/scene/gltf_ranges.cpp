@@ -19,8 +19,6 @@ void check_buffer_views(const GltfDocument& document) {
                    "bytes " + std::to_string(view.byteOffset) + " to " +
                        std::to_string(view.byteOffset + view.byteLength) + " of a buffer that has " +
                        std::to_string(size));
-        if (view.byteStride % 4)
-            refuse(document.place(gltf_pointer("bufferViews", i, "byteStride")), "is no multiple of 4");
     }
 }
 

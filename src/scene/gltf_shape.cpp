@@ -151,7 +151,46 @@ const Json* gltf_collection(const Json& document, std::string_view name) {
     return value && value->kind == Json::Kind::array ? value : nullptr;
 }
 
+namespace {
+const std::vector<Json>& items_of(const Json& document, std::string_view collection) {
+    static const std::vector<Json> none;
+    const Json* array = gltf_collection(document, collection);
+    return array ? array->items : none;
+}
+
+// What a member says may need another one beside it.
+void check_needs(const Json& document, std::string_view file) {
+    const auto complain = [&](std::string_view collection, size_t i, const std::string& what) {
+        const std::string_view parent = collection == "lights" ? "/extensions/KHR_lights_punctual" : "";
+        refuse(json_place(file, json_pointer(json_pointer(parent, collection), i)), what);
+    };
+    const auto need_own_object = [&](std::string_view collection, std::string_view only) {
+        const std::vector<Json>& all = items_of(document, collection);
+        for (size_t i = 0; i < all.size(); ++i) {
+            const std::string type = all[i].string_or("type", "");
+            if ((only.empty() || only == type) && !all[i].has(type))
+                complain(collection, i, quote_json(type) + " is missing");
+        }
+    };
+    need_own_object("cameras", "");
+    need_own_object("lights", "spot");
+
+    const std::vector<Json>& views = items_of(document, "bufferViews");
+    for (size_t i = 0; i < views.size(); ++i)
+        if (std::fmod(views[i].number_or("byteStride", 4), 4) != 0)
+            complain("bufferViews", i, "byteStride is no multiple of 4");
+    const std::vector<Json>& meshes = items_of(document, "meshes");
+    for (size_t i = 0; i < meshes.size(); ++i)
+        for (const Json& primitive : meshes[i].find("primitives")->items)
+            if (const Json* indices = primitive.find("indices"))
+                if (!items_of(document, "accessors")[static_cast<size_t>(indices->number)].has("bufferView"))
+                    complain("meshes", i,
+                             "the indices are in accessor " + format_json(*indices) + ", which has no buffer view");
+}
+}
+
 void check_gltf_shape(const Json& document, std::string_view file) {
     ShapeCheck(document, file).object(document, gltf_shape::root, "");
+    check_needs(document, file);
 }
 }
