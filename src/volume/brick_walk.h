@@ -51,23 +51,23 @@ void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, iv
     ivec3 cell, step;
     dvec3 border, across; // t at the next border of each axis, t from border to border
     for (int axis = 0; axis < 3; ++axis) {
-        const double at = ray.origin[axis] + range.low * ray.direction[axis];
+        const double at = ray.origin[axis] + range.low * ray.direction[axis], direction = ray.direction[axis];
         cell[axis] = std::clamp(static_cast<int>(std::floor(at / edge)), first[axis], last[axis]);
-        const double direction = ray.direction[axis];
         step[axis] = direction > 0 ? 1 : -1;
         const double to_border = edge * (cell[axis] + (direction > 0)) - at;
         border[axis] = direction == 0 ? infinity : range.low + to_border / direction;
         across[axis] = direction == 0 ? infinity : edge / std::abs(direction);
     }
-    double low = range.low;
-    while (low < range.high) {
-        const int axis = border.x < border.y ? (border.x < border.z ? 0 : 2) : (border.y < border.z ? 1 : 2);
-        const double high = std::min(border[axis], range.high);
+    for (double low = range.low;;) {
+        const double next = std::min(border.x, std::min(border.y, border.z)), high = std::min(next, range.high);
         if (high > low) visit(cell, low, high), low = high;
-        if (border[axis] >= range.high) return;
-        cell[axis] += step[axis];
-        border[axis] += across[axis];
-        if (cell[axis] < first[axis] || cell[axis] > last[axis]) return;
+        if (next >= range.high) return;
+
+        // Over every border that lies here; through an edge or a corner several at once.
+        const bool x = border.x == next, y = border.y == next, z = border.z == next;
+        cell += ivec3(x ? step.x : 0, y ? step.y : 0, z ? step.z : 0);
+        border += dvec3(x ? across.x : 0, y ? across.y : 0, z ? across.z : 0);
+        if (glm::any(glm::lessThan(cell, first)) || glm::any(glm::greaterThan(cell, last))) return;
     }
 }
 

@@ -42,13 +42,12 @@ template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, cons
 void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, double voxels, std::vector<Span>& spans) {
     const BrickPool& pool = *medium.bricks;
     const LocalRay local = local_ray(pool, ray);
-    const double voxel = 1 / glm::length(local.direction), extinction = medium.optics.extinction;
+    const double varied_rate = glm::length(local.direction) / voxels, extinction = medium.optics.extinction;
     const size_t first = spans.size();
     walk_bricks(pool, local, {0, t_end}, [&](ivec3, int64_t at, double low, double high) {
-        const double limit = pool.index[at] < 0 ? std::numeric_limits<double>::infinity() : voxels * voxel;
-        const Span span{low, high, extinction * pool.maximum[at], limit};
+        const Span span{low, high, extinction * pool.maximum[at], pool.index[at] < 0 ? 0 : varied_rate};
         const bool joins = spans.size() > first && spans.back().high == low &&
-                           spans.back().extinction == span.extinction && spans.back().limit == limit;
+                           spans.back().extinction == span.extinction && spans.back().rate == span.rate;
         if (joins)
             spans.back().high = high;
         else
@@ -74,10 +73,9 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
 
 void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans) {
     if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule.voxels, spans);
-    constexpr double no_limit = std::numeric_limits<double>::infinity();
     walk_bands(ray, medium, [&](Stretch stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
-        if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, no_limit});
+        if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, 0});
     });
 }
 
@@ -88,17 +86,17 @@ void append_near_spans(const Ray& ray, vec3 point, double ratio, double longest,
     const double inner = std::max(distance, closest);
     if (!(ratio > 0) || ratio * inner >= longest) return;
 
-    // Shells of doubling radius; the step of a shell is what its inner radius allows.
+    // Shells of doubling radius; the rate of a shell is what its inner radius asks for.
     int shells = 1;
     while (ratio * std::ldexp(inner, shells) < longest && shells < 64) ++shells;
     const auto reach = [&](int shell) {
         const double radius = std::ldexp(inner, shell);
         return std::sqrt(std::max(radius * radius - distance * distance, 0.0));
     };
-    const auto step = [&](int shell) { return ratio * std::ldexp(inner, shell); };
-    for (int k = shells - 1; k > 0; --k) spans.push_back({middle - reach(k + 1), middle - reach(k), 0, step(k)});
-    spans.push_back({middle - reach(1), middle + reach(1), 0, step(0)});
-    for (int k = 1; k < shells; ++k) spans.push_back({middle + reach(k), middle + reach(k + 1), 0, step(k)});
+    const auto rate = [&](int shell) { return 1 / (ratio * std::ldexp(inner, shell)); };
+    for (int k = shells - 1; k > 0; --k) spans.push_back({middle - reach(k + 1), middle - reach(k), 0, rate(k)});
+    spans.push_back({middle - reach(1), middle + reach(1), 0, rate(0)});
+    for (int k = 1; k < shells; ++k) spans.push_back({middle + reach(k), middle + reach(k + 1), 0, rate(k)});
 }
 
 void overlay(const std::vector<Span>& first, const std::vector<Span>& second, bool keep_second,
@@ -115,11 +113,11 @@ void overlay(const std::vector<Span>& first, const std::vector<Span>& second, bo
         const double high = std::min(a_end, b_end);
         if (a == low && b == low)
             result.push_back(
-                {low, high, first[i].extinction + second[j].extinction, std::min(first[i].limit, second[j].limit)});
+                {low, high, first[i].extinction + second[j].extinction, std::max(first[i].rate, second[j].rate)});
         else if (a == low)
-            result.push_back({low, high, first[i].extinction, first[i].limit});
+            result.push_back({low, high, first[i].extinction, first[i].rate});
         else if (keep_second)
-            result.push_back({low, high, second[j].extinction, second[j].limit});
+            result.push_back({low, high, second[j].extinction, second[j].rate});
         at = high;
         if (i < first.size() && first[i].high <= at) ++i;
         if (j < second.size() && second[j].high <= at) ++j;

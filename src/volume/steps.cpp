@@ -12,17 +12,20 @@ struct Run {
     double cost = 0; // steps it takes, a real number
 };
 
+// Steps per metre that a rule asks for, made ready for many spans.
+struct Rates {
+    double by_length, by_depth;
+
+    explicit Rates(const StepRule& rule) : by_length(1.0 / rule.length), by_depth(1.0 / rule.optical_depth) {}
+    double of(const Span& span) const { return std::max({by_length, span.rate, span.extinction * by_depth}); }
+};
+
 // Reused from ray to ray: nothing is allocated once the longest ray has been seen.
 struct Scratch {
     std::vector<Span> spans, more, merged;
     std::vector<double> rates; // steps per metre of each span
     std::vector<Run> runs;
 };
-
-double step_length(const Span& span, const StepRule& rule) {
-    const double length = std::min<double>(span.limit, rule.length);
-    return span.extinction > 0 ? std::min(length, rule.optical_depth / span.extinction) : length;
-}
 
 void collect_spans(const Ray& ray, std::span<const Medium> media, const StepRule& rule, Scratch& scratch) {
     scratch.spans.clear();
@@ -42,12 +45,12 @@ void collect_spans(const Ray& ray, std::span<const Medium> media, const StepRule
 }
 
 // Cuts the spans where a local light asks for smaller steps.
-void refine_near(const Ray& ray, const StepRule& rule, Scratch& scratch) {
-    double longest = 0;
-    for (const Span& span : scratch.spans) longest = std::max(longest, step_length(span, rule));
+void refine_near(const Ray& ray, const StepRule& rule, const Rates& rates, Scratch& scratch) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const Span& span : scratch.spans) lowest = std::min(lowest, rates.of(span));
     for (const vec3 point : rule.near_points) {
         scratch.more.clear();
-        append_near_spans(ray, point, rule.near_ratio, longest, scratch.more);
+        append_near_spans(ray, point, rule.near_ratio, 1 / lowest, scratch.more);
         if (scratch.more.empty()) continue;
         scratch.merged.clear();
         overlay(scratch.spans, scratch.more, false, scratch.merged);
@@ -55,12 +58,12 @@ void refine_near(const Ray& ray, const StepRule& rule, Scratch& scratch) {
     }
 }
 
-void find_runs(const StepRule& rule, Scratch& scratch) {
+void find_runs(const Rates& rates, Scratch& scratch) {
     scratch.rates.clear(), scratch.runs.clear();
     for (size_t i = 0; i < scratch.spans.size(); ++i) {
         const Span& span = scratch.spans[i];
         if (i == 0 || span.low > scratch.spans[i - 1].high) scratch.runs.push_back({i, i, 0});
-        scratch.rates.push_back(1 / step_length(span, rule));
+        scratch.rates.push_back(rates.of(span));
         scratch.runs.back().end = i + 1;
         scratch.runs.back().cost += (span.high - span.low) * scratch.rates.back();
     }
@@ -76,21 +79,27 @@ void append_step(double low, double high, std::vector<Step>& steps) {
 }
 
 void place_run(const Scratch& scratch, const Run& run, int count, std::vector<Step>& steps) {
-    double low = scratch.spans[run.first].low, before = 0;
-    int placed = 1;
+    const size_t first = steps.size();
+    steps.resize(first + static_cast<size_t>(count));
+    Step* step = steps.data() + first;
+    const double share = run.cost / count;
+    double before = 0, placed = 1;
+    float low = static_cast<float>(scratch.spans[run.first].low);
+    const auto end_step = [&](double t) {
+        const float high = static_cast<float>(t);
+        *step = {low, high};
+        step += low < high;
+        low = high;
+    };
     for (size_t i = run.first; i < run.end; ++i) {
         const Span& span = scratch.spans[i];
-        const double cost = (span.high - span.low) * scratch.rates[i];
-        for (; placed < count; ++placed) {
-            const double target = run.cost * placed / count;
-            if (target >= before + cost) break;
-            const double high = span.low + (target - before) / scratch.rates[i];
-            append_step(low, high, steps);
-            low = high;
-        }
-        before += cost;
+        const double after = before + (span.high - span.low) * scratch.rates[i], length = 1 / scratch.rates[i];
+        for (; placed < count && share * placed < after; ++placed)
+            end_step(span.low + (share * placed - before) * length);
+        before = after;
     }
-    append_step(low, scratch.spans[run.end - 1].high, steps);
+    end_step(scratch.spans[run.end - 1].high);
+    steps.resize(static_cast<size_t>(step - steps.data()));
 }
 
 // More runs than steps: each step spans several runs and what lies between them.
@@ -108,8 +117,9 @@ void append_steps(const Ray& ray, std::span<const Medium> media, const StepRule&
     if (!is_finite(ray.origin) || !is_finite(ray.direction)) return;
     static thread_local Scratch scratch;
     collect_spans(ray, media, rule, scratch);
-    refine_near(ray, rule, scratch);
-    find_runs(rule, scratch);
+    const Rates rates(rule);
+    if (!rule.near_points.empty()) refine_near(ray, rule, rates, scratch);
+    find_runs(rates, scratch);
 
     const size_t most = static_cast<size_t>(rule.most), runs = scratch.runs.size();
     if (runs >= most) return place_joined(scratch, most, steps);

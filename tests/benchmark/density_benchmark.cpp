@@ -65,25 +65,22 @@ struct Packet {
     alignas(64) float origin[48], direction[48];
 };
 
-// Rays of 4×4 neighbouring pixels, a voxel apart, through the middle of the grid in a random direction.
-std::vector<Packet> packets(int count) {
-    std::vector<Packet> result(count);
-    for (int i = 0; i < count; ++i) {
-        const auto random = [&](uint32_t use) { return 2 * random_unit(i, use, 0, 1) - 1; };
-        const vec3 forward = glm::normalize(vec3(random(0), random(1), random(2)) + vec3(0, 0, 1e-3f));
-        vec3 u, v;
-        make_frame(forward, u, v);
-        const vec3 target = vec3(127.5f) + 60.0f * vec3(random(3), random(4), random(5));
+// Rays of 4×4 neighbouring pixels each, row by row of a 256×256 picture; pixels a voxel apart in the middle of the fog.
+std::vector<Packet> packets() {
+    std::vector<Packet> result(64 * 64);
+    const vec3 forward = glm::normalize(vec3(0.5f, -0.3f, 1)), middle(127.5f), eye = middle - 400.0f * forward;
+    vec3 u, v;
+    make_frame(forward, u, v);
+    for (int i = 0; i < 64 * 64; ++i)
         for (int lane = 0; lane < 16; ++lane) {
-            const vec3 through = target + static_cast<float>(lane % 4) * u + static_cast<float>(lane / 4) * v;
-            const vec3 eye = target - 300.0f * forward, direction = glm::normalize(through - eye);
-            const vec3 origin = through - 100.0f * direction;
+            const float x = static_cast<float>(4 * (i % 64) + lane % 4) - 127.5f;
+            const float y = static_cast<float>(4 * (i / 64) + lane / 4) - 127.5f;
+            const vec3 direction = glm::normalize(middle + x * u + y * v - eye), origin = eye + 300.0f * direction;
             for (int axis = 0; axis < 3; ++axis) {
                 result[i].origin[axis * 16 + lane] = origin[axis];
                 result[i].direction[axis * 16 + lane] = direction[axis];
             }
         }
-    }
     return result;
 }
 
@@ -94,7 +91,7 @@ void coherent_density(benchmark::State& state, const char* isa) {
         state.SkipWithError(error.what());
         return;
     }
-    const std::vector<Packet> rays = packets(256);
+    const std::vector<Packet> rays = packets();
     const int steps = 285; // 200 voxels
     size_t next = 0;
     for (auto _ : state) {
@@ -123,6 +120,41 @@ void random_density(benchmark::State& state) {
                                                       benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(random_density);
+
+// Steps of one ray at the voxel limit, and the cost of each brick it crosses.
+void step_placing(benchmark::State& state) {
+    const std::vector<Packet> rays = packets();
+    const StepRule rule{0.25f, 4, 1e6f, 4096, {}, 0.25f};
+    std::vector<Step> steps;
+    size_t next = 0;
+    double bricks = 0, placed = 0;
+    for (auto _ : state) {
+        const Packet& packet = rays[next++ % rays.size()];
+        const float *o = packet.origin, *d = packet.direction;
+        steps.clear();
+        append_steps({{o[0], o[16], o[32]}, {d[0], d[16], d[32]}, 200}, std::span(&blob_medium(), 1), rule, steps);
+        benchmark::DoNotOptimize(steps.data());
+        placed += static_cast<double>(steps.size());
+        bricks += 200.0 / 8 * (std::abs(d[0]) + std::abs(d[16]) + std::abs(d[32]));
+    }
+    using benchmark::Counter;
+    state.counters["steps"] = placed / static_cast<double>(state.iterations());
+    state.counters["bricks"] = bricks / static_cast<double>(state.iterations());
+    state.counters["per_brick"] = Counter(bricks, Counter::kIsRate | Counter::kInvert);
+}
+BENCHMARK(step_placing);
+
+void exact_depth(benchmark::State& state) {
+    const std::vector<Packet> rays = packets();
+    size_t next = 0;
+    for (auto _ : state) {
+        const Packet& packet = rays[next++ % rays.size()];
+        const float *o = packet.origin, *d = packet.direction;
+        const Ray ray{{o[0], o[16], o[32]}, {d[0], d[16], d[32]}, 200};
+        benchmark::DoNotOptimize(optical_depth(blob_medium(), ray));
+    }
+}
+BENCHMARK(exact_depth)->Unit(benchmark::kMicrosecond);
 
 void brick_building(benchmark::State& state) {
     const SparseVolume volume = blobs();
