@@ -5,7 +5,6 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
-#include <tbb/task_scheduler_observer.h>
 
 #include <xmmintrin.h>
 
@@ -19,13 +18,6 @@ std::unique_ptr<tbb::global_control>& limit() {
     static std::unique_ptr<tbb::global_control> control;
     return control;
 }
-
-constexpr unsigned flush_to_zero_and_denormals_are_zero = 0x8040;
-
-struct FlushOnEntry : tbb::task_scheduler_observer {
-    FlushOnEntry() { observe(true); }
-    void on_scheduler_entry(bool) override { _mm_setcsr(_mm_getcsr() | flush_to_zero_and_denormals_are_zero); }
-};
 
 // Runs a loop over [0, count) in which every task rounds as the calling thread does, and a thread that waits for it
 // takes up nothing else: an outer loop's body is never entered a second time on the same stack, so it may hold a lock.
@@ -63,7 +55,7 @@ void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int6
 }
 
 void flush_denormals() {
-    static FlushOnEntry observer;
+    constexpr unsigned flush_to_zero_and_denormals_are_zero = 0x8040;
     _mm_setcsr(_mm_getcsr() | flush_to_zero_and_denormals_are_zero);
 }
 }

@@ -16,7 +16,7 @@ void parallel_for(int64_t count, const std::function<void(int64_t)>& body);
 // Calls body(begin, end) on pieces of at least `grain` items.
 void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int64_t, int64_t)>& body);
 
-// Flushes denormals to zero on this thread and on pool threads: fog tails are full of them. Call it first of all: loops inside
-// libraries keep the setting of the moment the pool was first used.
+// Flushes denormals to zero on this thread, and so in every loop it starts: fog tails are full of them. Loops inside
+// libraries follow when this comes before anything has used the pool.
 void flush_denormals();
 }

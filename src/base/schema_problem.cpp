@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
-#include <regex>
 
 namespace tyndall {
 const Json& resolved(const Json& schema, const Json& root) {
@@ -50,7 +49,7 @@ std::vector<const Json*> member_schemas(const std::string& key, const Json& sche
     if (named) schemas.push_back(named);
     if (patterns)
         for (const auto& [pattern, one] : patterns->members)
-            if (std::regex_search(key, std::regex(pattern))) schemas.push_back(&one);
+            if (matches(key, pattern)) schemas.push_back(&one);
     const Json* additional = schema.find("additionalProperties");
     if (schemas.empty() && additional) schemas.push_back(additional);
     return schemas;

@@ -35,6 +35,9 @@ std::string expected_types(const std::vector<std::string>& types, const Json& va
 // '"near", "far"', cut with dots when it gets long.
 std::string quoted_list(const std::vector<std::string>& names);
 
+// Whether a regular expression (ECMAScript) fits some part of a text.
+bool matches(const std::string& text, const std::string& pattern);
+
 // Whether two documents mean the same; the members of an object may be in any order.
 bool equal(const Json& a, const Json& b);
 }
