@@ -49,11 +49,12 @@ std::vector<std::string_view> vector_isas() {
 TEST(Densities, EqualTheScalarSample) {
     const Medium medium = medium_of(varied_volume());
     const Box box = medium.bricks->bounds;
+    const float tolerance = vector_isas().empty() ? 2e-5f : 0; // the same bits where multiply-adds fuse
     for (uint32_t packet = 0; packet < 1000; ++packet) {
         const Points points = random_points(box.low - 2.0f, box.high + 2.0f, packet);
         const auto density = densities_at(medium, points);
         for (int lane = 0; lane < 16; ++lane)
-            EXPECT_NEAR(density[lane], sample_density(*medium.bricks, points.at(lane)), 1e-6);
+            EXPECT_NEAR(density[lane], sample_density(*medium.bricks, points.at(lane)), tolerance);
     }
 }
 
