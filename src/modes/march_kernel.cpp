@@ -16,15 +16,23 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
+// Memory that a thread keeps from packet to packet. Plain floats: containers know nothing of vector registers.
+struct Scratch {
+    std::array<std::vector<Step>, 16> steps;
+    std::vector<std::array<float, 16>> extinction; // of each medium at the current points
+};
+
 struct Packet {
     Vec3s origin, direction;
-    std::array<std::vector<Step>, 16> steps;
-    std::vector<Floats> extinction; // of each medium at the current points
-    size_t longest = 0;             // most steps of any lane
+    Scratch& scratch;
+    size_t longest = 0; // most steps of any lane
+
+    HWY_INLINE Floats extinction(size_t medium) const { return load(scratch.extinction[medium].data()); }
 };
 
 struct Totals {
     Vec3s radiance;
+    Floats depth; // optical depth so far: a sum rounds less than a product of transmittances
     Floats transmittance;
 };
 
@@ -39,7 +47,7 @@ void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
     alignas(64) float v[6][16] = {};
     packet.longest = 0;
     for (size_t lane = 0; lane < 16; ++lane) {
-        packet.steps[lane].clear();
+        packet.scratch.steps[lane].clear();
         const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
         for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
         if (lane >= batch.rays.size()) continue;
@@ -59,8 +67,8 @@ void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
                             settings.max_steps,
                             march.near_points,
                             settings.near_light};
-        append_steps(ray, march.snapshot.media, rule, packet.steps[lane]);
-        packet.longest = std::max(packet.longest, packet.steps[lane].size());
+        append_steps(ray, march.snapshot.media, rule, packet.scratch.steps[lane]);
+        packet.longest = std::max(packet.longest, packet.scratch.steps[lane].size());
     }
     packet.origin = {load(v[0]), load(v[1]), load(v[2])};
     packet.direction = {load(v[3]), load(v[4]), load(v[5])};
@@ -70,8 +78,8 @@ void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
 Points step_points(const Packet& packet, size_t k, const float* jitter) {
     alignas(64) float at[16], length[16];
     for (size_t lane = 0; lane < 16; ++lane) {
-        const bool there = k < packet.steps[lane].size();
-        const Step step = there ? packet.steps[lane][k] : Step{0, 0};
+        const bool there = k < packet.scratch.steps[lane].size();
+        const Step step = there ? packet.scratch.steps[lane][k] : Step{0, 0};
         length[lane] = step.high - step.low;
         at[lane] = step.low + jitter[lane] * length[lane];
     }
@@ -150,7 +158,7 @@ Vec3s scattered_from(const March& march, size_t light_index, const Points& point
     Vec3s scattering = splat(vec3(0));
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const Optics& optics = march.snapshot.media[m].optics;
-        const Floats weight = packet.extinction[m] * phase_value(optics.phase, cosine);
+        const Floats weight = packet.extinction(m) * phase_value(optics.phase, cosine);
         scattering = fused(splat(optics.albedo), weight, scattering);
     }
     const Floats dimmed = exp(-light_depth16(march.depths[light_index], points.position, wanted));
@@ -158,14 +166,15 @@ Vec3s scattered_from(const March& march, size_t light_index, const Points& point
     return scattering * amount * splat(light.intensity * light.volume_scale);
 }
 
-// Extinction of all media at the points; fills packet.extinction.
-Floats extinction_at(const March& march, const Points& points, Packet& packet) {
+// Extinction of all media at the points; remembers each in the packet's scratch.
+Floats extinction_at(const March& march, const Points& points, const Packet& packet) {
     Floats total = 0.0f;
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const Medium& medium = march.snapshot.media[m];
-        packet.extinction[m] =
-            zero_unless(points.active, density16(medium, points.position) * medium.optics.extinction);
-        total = total + packet.extinction[m];
+        const Floats density = density16(medium, points.position);
+        const Floats extinction = zero_unless(points.active, density * medium.optics.extinction);
+        store(extinction, packet.scratch.extinction[m].data());
+        total = total + extinction;
     }
     return total;
 }
@@ -176,7 +185,7 @@ Vec3s glow_at(const March& march, const Packet& packet) {
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const Optics& optics = march.snapshot.media[m].optics;
         const vec3 per_extinction = optics.albedo * march.snapshot.ambient + optics.emission / optics.extinction;
-        glow = fused(splat(per_extinction), packet.extinction[m], glow);
+        glow = fused(splat(per_extinction), packet.extinction(m), glow);
     }
     return glow;
 }
@@ -189,9 +198,10 @@ void store_per_light(const Vec3s& light, size_t light_index, size_t light_count,
 }
 
 void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
-    static thread_local Packet packet;
+    static thread_local Scratch scratch;
+    scratch.extinction.resize(march.snapshot.media.size());
+    Packet packet{splat(vec3(0)), splat(vec3(0)), scratch};
     const size_t light_count = march.snapshot.lights.size();
-    packet.extinction.resize(march.snapshot.media.size());
     place_steps(march, batch, packet);
 
     alignas(64) float jitter[16];
@@ -200,7 +210,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
         jitter[lane] = given ? batch.jitter[lane] : 0.5f;
     }
 
-    Totals totals{splat(vec3(0)), 1.0f};
+    Totals totals{splat(vec3(0)), 0.0f, 1.0f};
     alignas(64) float steps_taken[16] = {};
     Floats taken = 0.0f;
     for (size_t k = 0; k < packet.longest; ++k) {
@@ -224,7 +234,8 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
             totals.radiance = totals.radiance + added;
             if (!batch.per_light.empty()) store_per_light(added, light, light_count, batch);
         }
-        totals.transmittance = totals.transmittance * exp(-depth);
+        totals.depth = totals.depth + depth;
+        totals.transmittance = exp(-totals.depth);
     }
 
     alignas(64) float rgbt[4][16];
