@@ -1,6 +1,7 @@
 #include "base/file.h"
 
 #include <bit>
+#include <cstring>
 
 namespace tyndall {
 namespace {
@@ -9,6 +10,10 @@ constexpr uint64_t multiplier_1 = 0x87c37b91114253d5u, multiplier_2 = 0x4cf5ad43
 // Up to eight bytes, least significant first.
 uint64_t little_endian(std::string_view bytes) {
     uint64_t value = 0;
+    if (bytes.size() == 8 && std::endian::native == std::endian::little) {
+        std::memcpy(&value, bytes.data(), 8);
+        return value;
+    }
     for (size_t i = bytes.size(); i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[i]);
     return value;
 }
