@@ -15,7 +15,9 @@ struct Path {
     float skip = 0;     // surfaces nearer than this are behind: the near plane, or the surface just left
     float through = 1;  // share of light that gets through fog and BLEND surfaces so far
     uint32_t pixel = 0; // index in the full picture
+    vec2 screen{0};     // position in the picture, 0..1
     int lane = 0;
+    int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
 
 struct Stretches { // of the paths still on their way, packed
@@ -26,10 +28,13 @@ struct Stretches { // of the paths still on their way, packed
     Ray tested[16]; // the rays as given to the occluders
 
     bool hit(int i) const { return hits.instance[i] >= 0; }
+    bool hit_again(int i) const {
+        return hit(i) && hits.instance[i] == path[i].instance && hits.triangle[i] == path[i].triangle;
+    }
 };
 
 // Steps off a surface: beyond the rounding error of the point, below anything visible.
-float surface_skip(vec3 point, float travelled) { return 4e-6f * std::max(travelled, max_component(glm::abs(point))); }
+float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
 
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
     const vec2 position = sample_position(view, pixel, sample);
@@ -41,6 +46,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
     path.skip = view.camera.near / along;
     path.pixel = static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
+    path.screen = position / vec2(view.size);
     path.lane = lane;
     return path;
 }
@@ -114,8 +120,8 @@ void add_surfaces(const FrameTracer& tracer, int layer, int sample, const Stretc
     }
 }
 
-void add_background(const FrameTracer& tracer, const Path& path, vec2 screen, PixelSample& result) {
-    result.color += path.through * background_radiance(tracer.snapshot.background, path.ray.direction, screen);
+void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
+    result.color += path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
     result.alpha = 1 - path.through;
 }
 
@@ -135,6 +141,7 @@ bool advance(const FrameTracer& tracer, std::span<const SurfacePoint> surfaces, 
         path.ray.origin = path.ray.at(t);
         path.ray.t_max -= t;
         path.skip = surface_skip(path.ray.origin, t);
+        path.instance = s.hits.instance[which[k]], path.triangle = s.hits.triangle[which[k]];
         s.path[left++] = path;
     }
     s.count = left;
@@ -149,12 +156,10 @@ bool PixelSample::finite() const {
 void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
                    std::span<vec3> per_light) {
     Stretches s;
-    vec2 screen[16];
     s.count = static_cast<int>(pixels.size());
     for (int i = 0; i < s.count; ++i) {
         samples[i] = {};
         s.path[i] = camera_path(tracer.view, pixels[i], sample, i, samples[i]);
-        screen[i] = sample_position(tracer.view, pixels[i], sample) / vec2(tracer.view.size);
     }
     std::fill(per_light.begin(), per_light.end(), vec3(0));
 
@@ -167,10 +172,11 @@ void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int
         size_t met = 0;
         for (int i = 0; i < s.count; ++i) {
             if (!s.hit(i)) {
-                add_background(tracer, s.path[i], screen[s.path[i].lane], samples[s.path[i].lane]);
+                add_background(tracer, s.path[i], samples[s.path[i].lane]);
                 continue;
             }
             surfaces[met] = tracer.snapshot.occluders->surface(s.tested[i], s.hits, i);
+            if (s.hit_again(i)) surfaces[met].alpha = 0;
             if (layer + 1 == most_layers) surfaces[met].alpha = 1;
             which[met++] = i;
         }

@@ -56,8 +56,12 @@ float png_exposure(const Pipeline& pipeline, int frame) {
     return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
 }
 
+// The error again, with its frame before its place and the reason kept whole.
 [[noreturn]] void fail_in_frame(int frame, const Error& error) {
-    fail(error.code, "frame " + std::to_string(frame), error.what());
+    const std::string text = error.what(), name = "frame " + std::to_string(frame);
+    const size_t split = text.rfind(": ", 200);
+    if (split == text.npos) fail(error.code, name, text);
+    fail(error.code, name + ": " + text.substr(0, split), text.substr(split + 2));
 }
 
 void check_picture(const Scene& scene, const RenderJob& job) {

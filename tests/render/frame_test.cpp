@@ -136,6 +136,23 @@ TEST(Frame, KeepsBetweenNearAndFar) {
     EXPECT_NEAR(layers.transmittance.at(0, 0), std::exp(-0.1f * 8 / -corner.direction.z), 1e-6f);
 }
 
+TEST(Frame, CrossesATransparentSurfaceOnceAtAnyAngle) {
+    Scene scene;
+    add_plane(scene, 0, 3000, vec3(1), 0.5f);
+    for (vec3& position : scene.meshes[0].positions) position = vec3(position.x, 0, -position.y); // a floor
+    const Snapshot snapshot = snapshot_of(scene);
+    View view = plain_view({128, 128}, 2);
+    view.camera.position = vec3(101.3f, 0.02f, -37.7f), view.camera.vertical_fov = 0.2f;
+    const Layers layers = rendered(mode_of(prepare_nothing), view, snapshot);
+    int floor = 0;
+    for (const vec3& color : layers.color.pixels) {
+        // Both samples hit the floor, one does, or none.
+        ASSERT_TRUE(color.x == 0.5f || color.x == 0.25f || color.x == 0) << color.x;
+        floor += color.x == 0.5f;
+    }
+    EXPECT_NEAR(floor, 64 * 128, 2 * 128);
+}
+
 TEST(Frame, TakesTheSixtyFourthLayerAsOpaque) {
     Scene scene;
     for (int i = 0; i < 70; ++i) add_plane(scene, -1 - 0.1f * i, 50, vec3(1), 0.125f);
