@@ -21,13 +21,10 @@ TEST(Random, MixAvalanches) {
     }
 }
 
-TEST(Random, MixIsABijection) {
-    std::vector<bool> seen(1 << 20);
-    int repeats = 0;
-    // Of 2^20 images the upper 20 bits of a random function would repeat; a bijection never repeats all 32.
+TEST(Random, MixNeverRepeats) {
     std::set<uint32_t> images;
-    for (uint32_t i = 0; i < 100000; ++i) repeats += !images.insert(mix(i)).second;
-    EXPECT_EQ(repeats, 0);
+    for (uint32_t i = 0; i < 100000; ++i) images.insert(mix(i));
+    EXPECT_EQ(images.size(), 100000u); // a random function would repeat once with probability 0.69
 }
 
 TEST(Random, HashDependsOnEveryArgumentAndTheirOrder) {
@@ -42,7 +39,8 @@ TEST(Random, HashDependsOnEveryArgumentAndTheirOrder) {
 
 TEST(Random, ValuesAreFixedForEver) {
     static_assert(mix(0) == 0);
-    EXPECT_EQ(mix(1), mix(1));
+    EXPECT_EQ(mix(1), 0x688990c0u);
+    EXPECT_EQ(hash(1, 2, 3), 0xad1dea1fu);
     EXPECT_EQ(to_unit(0xffffffffu), 1 - 0x1p-24f);
     EXPECT_EQ(to_unit(0), 0.0f);
     EXPECT_EQ(reverse_bits(1), 1u << 31);
