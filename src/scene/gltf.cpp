@@ -31,6 +31,7 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
         const Json json = parse_json(container.json, document.file);
         check_gltf_shape(json, document.file);
         check_gltf_extensions(document, json);
+        check_gltf_needs(json, document.file);
         parse_gltf(document, json);
         load_gltf_buffers(document, json, container);
         list_gltf_images(document, json);

@@ -137,7 +137,7 @@ std::string object_name(const tinygltf::Node& node, const std::string& own, cons
     return !node.name.empty() ? node.name : !own.empty() ? own : otherwise;
 }
 
-CameraSource camera_source(const tinygltf::Camera& source) {
+CameraSource camera_source(GltfDocument& document, const tinygltf::Camera& source) {
     CameraSource camera;
     if (source.type == "orthographic") {
         camera.ortho_height = static_cast<float>(2 * std::abs(source.orthographic.ymag));
@@ -145,7 +145,9 @@ CameraSource camera_source(const tinygltf::Camera& source) {
         camera.far = static_cast<float>(source.orthographic.zfar);
         return camera;
     }
-    camera.vertical_fov = static_cast<float>(source.perspective.yfov);
+    const float widest = glm::radians(170.0f);
+    if (source.perspective.yfov > widest) document.count("cameras that see more than 170 degrees see 170");
+    camera.vertical_fov = std::min(static_cast<float>(source.perspective.yfov), widest);
     camera.near = static_cast<float>(source.perspective.znear);
     if (source.perspective.zfar > 0) camera.far = static_cast<float>(source.perspective.zfar);
     return camera;
@@ -156,6 +158,8 @@ float unit_factor(LightUnits units, LightKind kind) {
     if (units == LightUnits::spec) return 1;
     return units == LightUnits::raw && kind != LightKind::sun ? 683 / (4 * pi) : 683.0f;
 }
+
+bool known_light(std::string_view type) { return type == "point" || type == "spot" || type == "directional"; }
 
 LightSource light_source(const GltfDocument& document, int index) {
     const tinygltf::Light& source = document.model.lights[index];
@@ -216,12 +220,16 @@ void add_gltf_cameras_and_lights(GltfDocument& document) {
         if (document.nodes[i] < 0) continue;
         const tinygltf::Node& node = model.nodes[i];
         if (node.camera >= 0) {
-            CameraSource camera = camera_source(model.cameras[node.camera]);
+            CameraSource camera = camera_source(document, model.cameras[node.camera]);
             camera.name = unique_name(object_name(node, model.cameras[node.camera].name, "camera"), camera_names);
             camera.node = document.nodes[i];
             document.scene->cameras.push_back(camera);
         }
         if (const int index = light_index(node); index >= 0) {
+            if (!known_light(model.lights[index].type)) {
+                document.count("lights of unknown types are left out");
+                continue;
+            }
             LightSource light = light_source(document, index);
             light.name = unique_name(object_name(node, model.lights[index].name, "light"), light_names);
             light.node = document.nodes[i];

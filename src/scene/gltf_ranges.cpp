@@ -22,6 +22,13 @@ void check_buffer_views(const GltfDocument& document) {
     }
 }
 
+// Bytes from the start of an element to its last component: the last column of a matrix needs no padding.
+uint64_t extent(const tinygltf::Accessor& accessor, uint64_t size) {
+    const uint64_t component = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(accessor.componentType));
+    const uint64_t columns = accessor.type == TINYGLTF_TYPE_MAT2 ? 2 : accessor.type == TINYGLTF_TYPE_MAT3 ? 3 : 1;
+    return columns == 1 ? size : size - size / columns + columns * component;
+}
+
 // count elements of `size` bytes, `stride` apart, from `offset` of the view.
 void check_span(const GltfDocument& document, int view_index, uint64_t offset, uint64_t count, uint64_t size,
                 uint64_t stride, const std::string& pointer) {
@@ -44,8 +51,8 @@ void check_accessors(const GltfDocument& document) {
                 refuse(document.place(gltf_pointer("bufferViews", accessor.bufferView, "byteStride")),
                        "is " + std::to_string(stride) + ", less than the " + std::to_string(size) +
                            " bytes of an element of accessor " + std::to_string(i));
-            check_span(document, accessor.bufferView, accessor.byteOffset, accessor.count, size, stride ? stride : size,
-                       pointer);
+            check_span(document, accessor.bufferView, accessor.byteOffset, accessor.count, extent(accessor, size),
+                       stride ? stride : size, pointer);
         } else if (accessor.count > most_elements_of_zeros) {
             refuse(document.place(pointer + "/count"),
                    "is " + std::to_string(accessor.count) + ": too many for an accessor without a buffer view");
@@ -58,8 +65,8 @@ void check_accessors(const GltfDocument& document) {
             tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType));
         check_span(document, sparse.indices.bufferView, sparse.indices.byteOffset, sparse.count, index_size, index_size,
                    pointer + "/sparse/indices");
-        check_span(document, sparse.values.bufferView, sparse.values.byteOffset, sparse.count, size, size,
-                   pointer + "/sparse/values");
+        check_span(document, sparse.values.bufferView, sparse.values.byteOffset, sparse.count, extent(accessor, size),
+                   size, pointer + "/sparse/values");
     }
 }
 

@@ -157,9 +157,13 @@ const std::vector<Json>& items_of(const Json& document, std::string_view collect
     const Json* array = gltf_collection(document, collection);
     return array ? array->items : none;
 }
+}
 
-// What a member says may need another one beside it.
-void check_needs(const Json& document, std::string_view file) {
+void check_gltf_shape(const Json& document, std::string_view file) {
+    ShapeCheck(document, file).object(document, gltf_shape::root, "");
+}
+
+void check_gltf_needs(const Json& document, std::string_view file) {
     const auto complain = [&](std::string_view collection, size_t i, const std::string& what) {
         const std::string_view parent = collection == "lights" ? "/extensions/KHR_lights_punctual" : "";
         refuse(json_place(file, json_pointer(json_pointer(parent, collection), i)), what);
@@ -179,18 +183,16 @@ void check_needs(const Json& document, std::string_view file) {
     for (size_t i = 0; i < views.size(); ++i)
         if (std::fmod(views[i].number_or("byteStride", 4), 4) != 0)
             complain("bufferViews", i, "byteStride is no multiple of 4");
-    const std::vector<Json>& meshes = items_of(document, "meshes");
-    for (size_t i = 0; i < meshes.size(); ++i)
-        for (const Json& primitive : meshes[i].find("primitives")->items)
-            if (const Json* indices = primitive.find("indices"))
-                if (!items_of(document, "accessors")[static_cast<size_t>(indices->number)].has("bufferView"))
-                    complain("meshes", i,
-                             "the indices are in accessor " + format_json(*indices) + ", which has no buffer view");
-}
-}
-
-void check_gltf_shape(const Json& document, std::string_view file) {
-    ShapeCheck(document, file).object(document, gltf_shape::root, "");
-    check_needs(document, file);
+    const std::vector<Json>&meshes = items_of(document, "meshes"), &accessors = items_of(document, "accessors");
+    for (size_t i = 0; i < meshes.size(); ++i) {
+        const std::vector<Json>& primitives = meshes[i].find("primitives")->items;
+        for (size_t k = 0; k < primitives.size(); ++k) {
+            const Json* indices = primitives[k].find("indices");
+            if (indices && !accessors[static_cast<size_t>(indices->number)].has("bufferView"))
+                refuse(
+                    json_place(file, "/meshes/" + std::to_string(i) + "/primitives/" + std::to_string(k) + "/indices"),
+                    "accessor " + format_json(*indices) + " has no buffer view");
+        }
+    }
 }
 }

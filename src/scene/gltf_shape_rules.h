@@ -168,7 +168,7 @@ constexpr Rule animation[] = {text("name"), objects("channels", channel, require
 
 // Cameras and lights.
 constexpr double half_turn = 3.14159265358979323846;
-constexpr Rule perspective[] = {positive("yfov", half_turn, required), positive("znear", 1e30, required),
+constexpr Rule perspective[] = {positive("yfov", 1e30, required), positive("znear", 1e30, required),
                                 positive("zfar", 1e30), positive("aspectRatio", 1e30)};
 constexpr Rule orthographic[] = {number("xmag", -1e30, 1e30, required), number("ymag", -1e30, 1e30, required),
                                  number("znear", 0, 1e30, required), positive("zfar", 1e30, required)};
@@ -176,9 +176,8 @@ constexpr std::string_view camera_types[] = {"perspective", "orthographic"};
 constexpr Rule camera[] = {text("name"), words("type", camera_types, required), object("perspective", perspective),
                            object("orthographic", orthographic)};
 constexpr Rule spot[] = {number("innerConeAngle", 0, half_turn / 2), number("outerConeAngle", 0, half_turn / 2)};
-constexpr std::string_view light_types[] = {"point", "spot", "directional"};
 constexpr Rule light[] = {text("name"),
-                          words("type", light_types, required),
+                          text("type", required),
                           numbers("color", 3, 0, 1e30),
                           number("intensity", 0, 1e30),
                           positive("range", 1e30),

@@ -25,6 +25,12 @@ struct Free {
 
 const stbi_uc* start(std::string_view bytes) { return reinterpret_cast<const stbi_uc*>(bytes.data()); }
 
+int big_endian(std::string_view bytes) {
+    uint32_t value = 0;
+    for (int i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[i]);
+    return static_cast<int>(std::min(value, 0x7fffffffu));
+}
+
 void check_length(std::string_view bytes, std::string_view where) {
     if (bytes.size() > size_t{1} << 30) refuse(where, "the image file is over 1 GiB");
 }
@@ -69,10 +75,13 @@ ImageFormat image_format(std::string_view bytes) {
 
 ivec2 image_size(std::string_view bytes, std::string_view where) {
     check_length(bytes, where);
-    ivec2 size;
+    ivec2 size(0);
     int channels;
-    if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels))
+    if (image_format(bytes) == ImageFormat::png && bytes.size() >= 24) {
+        size = {big_endian(bytes.substr(16)), big_endian(bytes.substr(20))};
+    } else if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels)) {
         refuse(where, std::string("not a usable image header: ") + stbi_failure_reason());
+    }
     if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_image_side)
         refuse(where, "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
                           " pixels; at most 16384 on a side can be used");
