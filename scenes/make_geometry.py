@@ -119,23 +119,31 @@ def moved(triangles, offset=(0, 0, 0), turn=(0, 1, 0), degrees=0.0):
     return [tuple((tuple(p + o for p, o in zip(turned(v), offset)), turned(n)) for v, n in t) for t in triangles]
 
 
-def lathe(profile, sides, keep=lambda ring, side: True, inward=False):
-    """Turns (radius, height) points about Y; `keep` leaves out patches."""
+def lathe(profile, sides, hole=None, inward=False):
+    """Turns (radius, height) points about Y; hole(x, y) in patches around and up says where there is nothing, and which
+    way patches there are cut in two."""
     result, sign = [], -1 if inward else 1
     for ring in range(len(profile) - 1):
         (r0, y0), (r1, y1) = profile[ring], profile[ring + 1]
         slope = unit((y1 - y0, r0 - r1, 0))
         for side in range(sides):
-            if not keep(ring, side):
-                continue
             a0, a1 = 2 * math.pi * side / sides, 2 * math.pi * (side + 1) / sides
             at = lambda r, y, a: (r * math.cos(a), y, -r * math.sin(a))
             normal = lambda a: tuple(sign * c for c in (slope[0] * math.cos(a), slope[1], -slope[0] * math.sin(a)))
             corners = [at(r0, y0, a0), at(r0, y0, a1), at(r1, y1, a1), at(r1, y1, a0)]
             normals = [normal(a0), normal(a1), normal(a1), normal(a0)]
+            rising = hole is not None and hole(side + 0.5, ring + 0.5)[1]
+            if rising:  # cut from the other corner
+                corners, normals = corners[1:] + corners[:1], normals[1:] + normals[:1]
+            halves = quad(*corners, normals)
+            if hole is not None:
+                place = {0: (0, 0), 1: (1, 0), 2: (1, 1), 3: (0, 1)}
+                order = [1, 2, 3, 0] if rising else [0, 1, 2, 3]
+                middles = [[sum(place[order[k]][c] for k in ks) / 3 for c in (0, 1)] for ks in ((0, 1, 2), (0, 2, 3))]
+                halves = [h for h, m in zip(halves, middles) if not hole(side + m[0], ring + m[1])[0]]
             if inward:
-                corners, normals = corners[::-1], normals[::-1]
-            result += [t for t in quad(*corners, normals) if area(t) > 1e-10]
+                halves = [t[::-1] for t in halves]
+            result += [t for t in halves if area(t) > 1e-10]
     return result
 
 
@@ -175,7 +183,7 @@ def window():
     floor = []
     for i in range(15):  # boards along z with hair-wide gaps
         floor += box((x0 + 0.4 * i + 0.004, -0.2, z0), (x0 + 0.4 * (i + 1) - 0.004, 0, z1))
-    m.node("floor", [(boards, floor + box((x0, -0.3, z0), (x1, -0.21, z1)))])
+    m.node("floor", [(boards, floor + box((x0 - 0.2, -0.3, z0 - 0.2), (x1 + 0.2, -0.05, z1 + 0.2)))])
 
     frames, slats = [], []
     for a, b in openings:
@@ -283,19 +291,17 @@ def lantern():
     table += lathe([(0.3, 0), (0.26, 0.04), (0.06, 0.1), (0.05, 0.72)], 24)
     m.node("table", [(wood, table)])
 
-    rings, sides, radius = 30, 72, 0.26
-    squash = 1.15
+    rings, sides, radius, squash = 44, 120, 0.26, 1.15
     profile = [(radius * math.sin(math.pi * i / rings), -squash * radius * math.cos(math.pi * i / rings)) for i in range(rings + 1)]
 
-    def solid(ring, side):  # bands of diamond holes
-        if ring < 4 or ring > 24 or ring in (14, 15):
-            return True
-        across, down = side % 6, (ring - 4) % 5
-        if (ring - 4) // 5 % 2:
-            across = (across + 3) % 6
-        return not (abs(across - 2.5) + abs(down - 2) < 1.6)
+    def diamond(x, y):  # rows of diamonds, every other row shifted by half; patches are cut along their edges
+        band = (y - 6) // 8
+        if not 0 <= band < 4:
+            return False, False
+        across, up = (x + (5 if band % 2 else 0)) % 10 - 5, (y - 6) % 8 - 4
+        return abs(across) + abs(up) < 3, across * up > 0
 
-    shell = lathe(profile, sides, solid) + lathe([(0.97 * r, 0.97 * y) for r, y in profile], sides, solid, inward=True)
+    shell = lathe(profile, sides, diamond) + lathe([(0.97 * r, 0.97 * y) for r, y in profile], sides, diamond, inward=True)
     foot = lathe([(0.17, -0.40), (0.15, -0.36), (0.07, -0.32), (0.06, -0.29)], 32)
     knob = lathe([(0.05, 0.29), (0.03, 0.32), (0.045, 0.35), (0.001, 0.40)], 24)
     m.node("lantern", [(brass, shell + foot + knob)], (0, 1.16, 0), ((0, 1, 0), [(0, 0), (2, 45), (4, 90), (6, 135), (8, 180)]))
