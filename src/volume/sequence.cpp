@@ -60,17 +60,14 @@ std::optional<int64_t> mapped_frame(int64_t frame, int64_t first, int64_t last, 
 
 VdbSequence find_sequence(const std::string& pattern, const fs::path& base_directory) {
     const fs::path path = base_directory / pattern;
+    const std::string name = path.filename().string();
     VdbSequence sequence;
     sequence.pattern = path.string();
-    if (!has_frame_token(pattern)) {
+    if (!has_frame_token(name)) { // a directory may be called anything
         check_readable(path);
         return sequence;
     }
 
-    const std::string name = path.filename().string();
-    if (!has_frame_token(name))
-        fail(ExitCode::unreadable, sequence.pattern,
-             "the frame number must stand in the file name, not in a directory");
     const NameParts parts = split_name(name);
     std::error_code error;
     fs::directory_iterator entries(path.has_parent_path() ? path.parent_path() : fs::path("."), error);

@@ -22,8 +22,8 @@ struct AuthoredTile {
 
 struct AuthoredGrid {
     std::string name = "density";
-    std::string type = "float"; // float, double, int32, int64, bool, mask, vec3s, vec3d, vec3i
-    std::string grid_class = "fog volume";
+    std::string type = "float";         // float, double, int32, int64, bool, mask, vec3s, vec3d, vec3i
+    std::string grid_class = "unknown"; // of a fog volume the library packs nothing with ZIP
     bool half = false;
     float background = 0;
     dmat4 index_to_world{1};
