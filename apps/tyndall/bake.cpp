@@ -59,7 +59,7 @@ int run_bake(const Options& texts, const Globals& globals) {
 Run add_bake(CLI::App& app) {
     CLI::App* command = app.add_subcommand("bake", "make fog from a recipe: a sequence of OpenVDB files");
     auto texts = std::make_shared<Options>();
-    command->add_option("RECIPE", texts->recipe, "fog recipe (.json), for instance volumes/dust.json")
+    command->add_option("RECIPE", texts->recipe, "fog recipe (.json), for instance volumes/drifting_dust.json")
         ->type_name("")
         ->required();
     command->add_option("-o,--output", texts->output, "files to write; #### stands for the frame number")
@@ -74,7 +74,7 @@ Run add_bake(CLI::App& app) {
         ->type_name("NAME");
     command->add_flag("--resume", texts->resume, "keep frames that are already there and still right");
     command->footer("Example: two seconds of drifting dust with 4 cm voxels\n"
-                    "  tyndall bake volumes/dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"
+                    "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"
                     "Then look at a frame with tyndall info, or name the files in a scene's media.");
     return [texts](const Globals& globals) { return run_bake(*texts, globals); };
 }

@@ -91,8 +91,9 @@ void check_file(const std::string& file, Problems& problems) {
     case FileKind::exr:
         return check_exr(file, problems);
     case FileKind::recipe:
-        read_recipe(file);
-        return;
+        return static_cast<void>(read_recipe(file));
+    case FileKind::schema:
+        return; // lies beside scenes and recipes; being JSON is all it needs
     case FileKind::gltf:
     case FileKind::scene:
         return check_scene(file, problems);

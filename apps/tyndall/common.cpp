@@ -154,6 +154,6 @@ std::string vector_text(vec3 v) {
 }
 
 std::string count_text(uint64_t count, std::string_view noun) {
-    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : "s");
+    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
 }
 }

@@ -15,19 +15,19 @@ std::string first_bytes(const std::filesystem::path& file) {
     return bytes;
 }
 
-// A scene says so with its version; a recipe has none of a scene's keys.
+// By the schema it names, else by a key that only one of them has.
 FileKind json_kind(const std::filesystem::path& file) {
     const Json document = parse_json(read_file(file), file.string());
-    if (document.has("asset")) return FileKind::gltf;
     const std::string schema = document.string_or("$schema", "");
     if (schema.ends_with("recipe.schema.json")) return FileKind::recipe;
-    if (document.has("tyndall") || schema.ends_with("scene.schema.json")) return FileKind::scene;
-    for (const char* key : {"noise", "voxel_size", "threshold", "wind"})
+    if (schema.ends_with("scene.schema.json")) return FileKind::scene;
+    if (schema.find("json-schema.org") != schema.npos) return FileKind::schema;
+    if (document.has("asset")) return FileKind::gltf;
+    for (const char* key : {"bounds", "voxel_size", "noise", "density"})
         if (document.has(key)) return FileKind::recipe;
-    for (const char* key : {"gltf", "media", "camera", "lights", "background"})
+    for (const char* key : {"tyndall", "gltf", "camera", "lights", "media", "background"})
         if (document.has(key)) return FileKind::scene;
-    refuse(file.string(),
-           "neither a scene nor a fog recipe: a scene begins with \"tyndall\": 1, a recipe has \"noise\"");
+    refuse(file.string(), "neither a scene nor a fog recipe: a scene has \"tyndall\": 1, a recipe has \"bounds\"");
 }
 }
 

@@ -1,31 +1,28 @@
 // tyndall info: what is in a file.
 #include "info.h"
+
+#include "base/error.h"
 #include "common.h"
 #include "file_kind.h"
 
 namespace tyndall {
 namespace {
-int run_info(const std::string& file, const Globals& globals) {
-    std::string report;
+std::string report_of(const std::string& file, bool json) {
     switch (file_kind(file)) {
     case FileKind::vdb:
-        report = vdb_report(file, globals.json);
-        break;
+        return vdb_report(file, json);
     case FileKind::gltf:
-        report = gltf_report(file, globals.json);
-        break;
+        return gltf_report(file, json);
     case FileKind::scene:
-        report = scene_report(file, globals.json);
-        break;
+        return scene_report(file, json);
     case FileKind::recipe:
-        report = recipe_report(file, globals.json);
-        break;
+        return recipe_report(file, json);
     case FileKind::exr:
-        report = exr_report(file, globals.json);
+        return exr_report(file, json);
+    case FileKind::schema:
         break;
     }
-    print_report(report);
-    return 0;
+    refuse(file, "a JSON schema, for editors; there is nothing to render or bake");
 }
 }
 
@@ -38,6 +35,9 @@ Run add_info(CLI::App& app) {
     command->footer("Example: the grids of a volume, their size in the world and how dense they are\n"
                     "  tyndall info fog.0001.vdb\n"
                     "With --json the same for scripts; lengths in metres, light in candela and lux.");
-    return [file](const Globals& globals) { return run_info(*file, globals); };
+    return [file](const Globals& globals) {
+        print_report(report_of(*file, globals.json));
+        return 0;
+    };
 }
 }

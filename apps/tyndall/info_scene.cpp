@@ -144,7 +144,8 @@ std::string scene_report(const std::filesystem::path& file, bool json) {
 
 std::string recipe_report(const std::filesystem::path& file, bool json) {
     const FogRecipe recipe = read_recipe(file);
-    const vec3 across = glm::ceil(recipe.bounds.size() / recipe.voxel_size);
+    const dvec3 size = dvec3(recipe.bounds.high) - dvec3(recipe.bounds.low);
+    const vec3 across = glm::ceil(size / recipe.voxel_size - 1e-6);
     if (json)
         return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
                                         {"kind", json_of("recipe")},

@@ -60,17 +60,12 @@ std::string transform_line(const VdbGridInfo& grid) {
            vector_text(vec3(m[2])) + "\n";
 }
 
-std::string grid_text(const VdbGridInfo& grid) {
+// What was found among the values; only grids of densities are looked through.
+std::string value_lines(const VdbGridInfo& grid) {
     const ivec3 across = voxels_across(grid);
     const Box bounds = world_bounds(grid);
-    std::string text = "  " + printable(grid.name, 80) + ": " + printable(grid.type, 80) + ", " +
-                       (grid.grid_class.empty() ? "no class" : printable(grid.grid_class, 40)) + ", " +
-                       (grid.usable ? "usable as fog" : "not usable as fog: " + printable(grid.why_not)) + "\n";
-    text += formatted("    voxels        %d x %d x %d of %s m, %llu active in %llu leaves and %llu tiles, %s\n",
-                      across.x, across.y, across.z, vector_text(grid.voxel_size).c_str(),
-                      static_cast<unsigned long long>(grid.active_voxels), static_cast<unsigned long long>(grid.leaves),
-                      static_cast<unsigned long long>(grid.tiles),
-                      bytes_text(static_cast<double>(grid.memory_bytes)).c_str());
+    std::string text = formatted("    extent        %d x %d x %d voxels of %s m\n", across.x, across.y, across.z,
+                                 vector_text(grid.voxel_size).c_str());
     text += bounds.empty()
                 ? "    world         empty\n"
                 : "    world         " + vector_text(bounds.low) + " to " + vector_text(bounds.high) + " m\n";
@@ -79,10 +74,25 @@ std::string grid_text(const VdbGridInfo& grid) {
                       static_cast<double>(grid.maximum), static_cast<double>(grid.mean),
                       static_cast<double>(grid.background));
     if (grid.non_finite || grid.negative)
-        text +=
-            formatted("    faults        %llu not finite, %llu negative: read as 0\n",
-                      static_cast<unsigned long long>(grid.non_finite), static_cast<unsigned long long>(grid.negative));
-    return text + metadata_lines(grid.metadata, "    ");
+        text += "    faults        " + std::to_string(grid.non_finite) + " not finite, " +
+                std::to_string(grid.negative) + " negative: read as 0\n";
+    return text;
+}
+
+std::string grid_text(const VdbGridInfo& grid) {
+    std::string text = "  " + printable(grid.name, 80) + ": " + printable(grid.type, 80) + ", " +
+                       (grid.grid_class.empty() ? "no class" : printable(grid.grid_class, 40)) + ", " +
+                       (grid.usable ? "usable as fog" : "not usable as fog: " + printable(grid.why_not)) + "\n";
+    text += "    active        " + count_text(grid.active_voxels, "voxel") + " in " + std::to_string(grid.leaves) +
+            " leaves and " + count_text(grid.tiles, "tile") + ", " +
+            bytes_text(static_cast<double>(grid.memory_bytes)) + "\n";
+    if (grid.usable || !world_bounds(grid).empty()) text += value_lines(grid);
+
+    // What stands above already, in other words, is left out.
+    std::vector<std::pair<std::string, std::string>> more;
+    for (const auto& entry : grid.metadata)
+        if (!entry.first.starts_with("file_") && entry.first != "name" && entry.first != "class") more.push_back(entry);
+    return text + metadata_lines(more, "    ");
 }
 }
 

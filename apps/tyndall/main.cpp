@@ -24,7 +24,12 @@ extern "C" void on_stop(int signal) {
     alarm(seconds_to_stop);
 }
 
-extern "C" void on_alarm(int) { _exit(128 + stop_signal); }
+// The work did not stop in time. What it was writing keeps its temporary name, which the next run removes.
+extern "C" void on_alarm(int) {
+    constexpr char line[] = "tyndall: stopped; finished files are kept, --resume continues\n";
+    if (write(STDERR_FILENO, line, sizeof line - 1) < 0) _exit(128 + stop_signal);
+    _exit(128 + stop_signal);
+}
 
 void handle_signals() {
     std::signal(SIGPIPE, SIG_IGN); // a closed pipe and a file over the size limit are errors of the write
@@ -42,9 +47,9 @@ void open_standard_streams() {
 
 constexpr const char* introduction = R"(Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.
 
-  tyndall bake   volumes/dust.json  -o fog.####.vdb --frames 1-48    make fog from a recipe
-  tyndall render scenes/window.json -o out.####.exr --png            light a scene and render its frames
-  tyndall info   fog.0001.vdb                                        what is in a file
+  tyndall bake   volumes/drifting_dust.json -o fog.####.vdb --frames 1-48    make fog from a recipe
+  tyndall render scenes/window.json -o out.####.exr --png                    light a scene, render its frames
+  tyndall info   fog.0001.vdb                                                what is in a file
 
 tyndall --help lists all commands; tyndall COMMAND --help explains one, with an example.
 )";
@@ -69,8 +74,8 @@ void add_globals(CLI::App& app, Globals& globals, GlobalTexts& texts) {
                          "bar, none (default: bar on a terminal, alf elsewhere)")
               ->type_name("STYLE"));
     group(app.add_flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr"));
-    group(app.add_flag("-q,--quiet", globals.quiet, "errors only"));
-    group(app.add_flag("-v,--verbose", globals.verbose, "say more"));
+    group(app.add_flag("-q,--quiet", globals.quiet, "no progress and no remarks: finished files and errors only"));
+    group(app.add_flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks"));
 }
 
 void apply_globals(Globals& globals, const GlobalTexts& texts) {
@@ -142,6 +147,7 @@ int run(int argc, char** argv) {
     app.get_formatter()->column_width(28);
     app.get_formatter()->label("Positionals", "What");
     app.get_formatter()->label("REQUIRED", "(required)");
+    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
     app.require_subcommand(0, 1);
     app.footer(exit_codes);
     Globals globals;
@@ -149,7 +155,11 @@ int run(int argc, char** argv) {
     add_globals(app, globals, texts);
     const std::vector<Run> commands{add_bake(app), add_render(app), add_info(app), add_check(app), add_modes(app)};
     const std::vector<CLI::App*> names = app.get_subcommands({});
-    for (CLI::App* command : names) command->fallthrough();
+    for (CLI::App* command : names) {
+        command->fallthrough()->group("Commands");
+        command->footer(command->get_footer() +
+                        "\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
+    }
 
     try {
         app.parse(argc, argv);

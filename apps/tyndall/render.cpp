@@ -80,6 +80,8 @@ RenderJob make_job(const Options& texts) {
     if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
     job.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
+    if (!texts.exposure.empty() && !texts.png)
+        fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
     if (!texts.exposure.empty())
         job.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
     if (!texts.aov.empty()) job.exr.layers = parsed_layers(texts.aov);
@@ -115,6 +117,8 @@ std::string limit_line(const Limit& limit) {
 // What the picture will not show: warnings of the files, then limits of the mode; mere remarks only when verbose.
 void say_limits(const Scene& scene, const std::vector<Limit>& limits, const Globals& globals) {
     if (globals.quiet) return;
+    if (globals.verbose)
+        for (const auto& input : scene.inputs) say("reads " + printable(input.string(), 460));
     for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
     for (const Limit& limit : limits)
         if (globals.verbose || limit.severity != Severity::info) say(limit_line(limit));

@@ -28,8 +28,7 @@ def recipe(**changes):
         "bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]},
         "voxel_size": 0.0625,
         "noise": {"octaves": 3, "scale": 0.7, "seed": 5},
-        "threshold": 0.4,
-        "gain": 3,
+        "density": {"threshold": 0.4, "gain": 3},
         "wind": [0.5, 0, 0],
     }
     fog.update(changes)

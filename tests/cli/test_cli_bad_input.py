@@ -4,7 +4,7 @@ import os
 import resource
 import unittest
 
-from program import SHARED, TRIANGLE, ProgramTest, glb, gltf, recipe, run, scene
+from program import SANITIZED, SHARED, TRIANGLE, ProgramTest, glb, gltf, recipe, run, scene
 
 
 class Render(ProgramTest):
@@ -126,7 +126,7 @@ class Volume(ProgramTest):
         before = self.files()
         result = run("render", path, "-o", self.path("out.####.exr"))
         self.assertEqual(result.returncode, 4, result.stderr)
-        self.assertIn("fog.####.vdb", result.stderr.splitlines()[-1])
+        self.assertIn("fog.0003.vdb", result.stderr.splitlines()[-1])
         self.assertEqual(sorted(set(self.files()) - set(before)), ["out.0001.exr", "out.0002.exr"])
         for choice in ["hold", "skip"]:
             self.succeed("render", path, "-o", self.path(f"{choice}.####.exr"), "--missing", choice)
@@ -250,6 +250,7 @@ class Output(ProgramTest):
         self.assertEqual(self.path("fog.vdb").read_bytes(), fog)
 
 
+@unittest.skipIf(SANITIZED, "sanitizers need the address space themselves")
 class Memory(ProgramTest):
     def test_too_little_memory(self):
         def limit():
@@ -298,7 +299,7 @@ class Check(ProgramTest):
         bad = self.write("bad.json", scene(frame_rate=0))
         lines = self.check(1, path, bad, fog)
         self.assertEqual(len(lines), 3, lines)
-        for line, words in zip(lines, [["fog.0002.vdb"], ["fog.####.vdb", "3"], ["bad.json", "/frame_rate"]]):
+        for line, words in zip(lines, [["fog.0002.vdb"], ["fog.0003.vdb"], ["bad.json", "/frame_rate"]]):
             self.assertTrue(line.startswith(str(self.directory)), line)
             for word in words:
                 self.assertIn(word, line)

@@ -9,6 +9,10 @@ from program import SANITIZED, SHARED, ProgramTest, run
 
 LONGEST = 240 if SANITIZED else 60  # seconds one file may take
 
+# Files the validator warns about only, and which are refused here: types that are not in the standard, a field of view
+# beyond a half turn, data over the network, and a matrix whose padding lies outside its buffer.
+STRICTER = {"unknown_type.gltf", "perspective_yfov.gltf", "non_relative_uri.gltf", "get_elements_matrix.gltf"}
+
 
 def framing(low, high):
     """A camera that sees a box, and a sun over its shoulder."""
@@ -40,7 +44,7 @@ class Data(ProgramTest):
                      "1", "-q", timeout=LONGEST)
         self.assertLess(time.monotonic() - start, LONGEST)
         if result.returncode == 0:
-            self.assertEqual(result.stderr, "")
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)  # the frame, and nothing to complain
             self.assertTrue(output.exists())
             return True
         self.assertIn(result.returncode, (3, 4), result.stderr)
@@ -81,7 +85,7 @@ class Data(ProgramTest):
         report = pathlib.Path(f"{path}.report.json")
         if not report.exists() and "malformed" not in path.parts:
             self.assertTrue(rendered or "Draco" in str(path), "a sound file has to render")
-        elif report.exists() and json.loads(report.read_text())["issues"]["numErrors"] == 0:
+        elif path.name not in STRICTER and report.exists() and json.loads(report.read_text())["issues"]["numErrors"] == 0:
             self.assertTrue(rendered, "the validator finds no error in it")
 
     def test_pictures(self):

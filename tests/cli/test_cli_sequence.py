@@ -109,7 +109,7 @@ class Resume(Sequence):
         # Fog of the same name with other content.
         self.succeed(*self.render("out"))
         before = first.read_bytes()
-        self.write("recipe.json", recipe(gain=2))
+        self.write("recipe.json", recipe(density={"threshold": 0.3, "gain": 2}))
         self.succeed(*self.bake())
         self.succeed(*self.render("out", "--resume"))
         self.assertNotEqual(first.read_bytes(), before)

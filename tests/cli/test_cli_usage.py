@@ -83,7 +83,7 @@ class CommandLine(ProgramTest):
         for option, values in cases.items():
             for value in values:
                 with self.subTest(option=option, value=value):
-                    self.refuse(2, [], *self.render(option, value))
+                    self.refuse(2, [], *self.render("--png", option, value))
 
     def test_wrong_values_of_global_options(self):
         for option, value in [("--threads", "0"), ("--threads", "-1"), ("--threads", "1025"), ("--threads", "two"),
@@ -95,6 +95,9 @@ class CommandLine(ProgramTest):
         for option, value in [("--voxel-size", "0"), ("--voxel-size", "-1"), ("--voxel-size", "nan"),
                               ("--compression", "lzma"), ("--frames", "1-5:2")]:
             self.refuse(2, [], *bake, option, value)
+
+    def test_options_without_effect_are_refused(self):
+        self.refuse(2, ["--exposure", "--png"], *self.render("--exposure", "1"))
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
         for option in ["--orders", "--target-error", "--time-budget", "--history", "--time-samples"]:
@@ -174,10 +177,12 @@ class Streams(ProgramTest):
         json.loads(result.stdout)
         self.assertIn("ALF_PROGRESS", result.stderr)
 
-    def test_quiet_means_errors_only(self):
-        path = self.write("scene.json", scene(frames="1"))
-        result = self.succeed("render", path, "-o", self.path("out.####.exr"), "-q")
-        self.assertEqual((result.stdout, result.stderr), ("", ""))
+    def test_quiet_leaves_finished_files_only(self):
+        path = self.write("scene.json", scene(frames="1-2", ambient=1))
+        result = self.succeed("render", path, "-o", self.path("out.####.exr"), "-q", "-v")
+        self.assertEqual(result.stdout, "")
+        self.assertEqual(len(result.stderr.splitlines()), 2, result.stderr)
+        self.assertEqual(self.succeed("check", path, "-q").stderr, "")
 
 
 if __name__ == "__main__":
