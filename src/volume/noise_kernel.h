@@ -33,14 +33,14 @@ HWY_INLINE IntVec cell_number(FloatVec whole, int32_t base) {
     return hn::Add(bits, splat_int(static_cast<uint32_t>(base) - 0x4b400000u));
 }
 
-// The product is rounded once more after the whole cells are gone, so that far from the origin no digits are lost.
+// Far from the origin the first product is off by parts of a cell: the second, freed of whole cells, is not.
 HWY_INLINE LatticeAxis lattice_axis(const NoiseOctave& octave, int axis, FloatVec x) {
     const FloatVec frequency = splat(octave.frequency), base = splat(octave.fraction[axis]);
-    const FloatVec whole = hn::Floor(hn::MulAdd(x, frequency, base));
-    const FloatVec fraction = hn::Add(hn::MulSub(x, frequency, whole), base);
+    const FloatVec near = hn::Floor(hn::MulAdd(x, frequency, base));
+    const FloatVec within = hn::Add(hn::MulSub(x, frequency, near), base), carry = hn::Floor(within);
     LatticeAxis result;
-    result.fraction = hn::Max(hn::Min(fraction, splat(1)), splat(0));
-    result.low = hn::Mul(cell_number(whole, octave.cell[axis]), splat_int(axis_primes[axis]));
+    result.fraction = hn::Sub(within, carry);
+    result.low = hn::Mul(cell_number(hn::Add(near, carry), octave.cell[axis]), splat_int(axis_primes[axis]));
     result.high = hn::Add(result.low, splat_int(axis_primes[axis]));
     return result;
 }

@@ -24,4 +24,7 @@ struct FogField {
 double turns_per_loop(const FogRecipe& recipe, double speed);
 
 FogField fog_field(const FogRecipe& recipe, double seconds);
+
+// How far the swirl displaces the coordinates of points, metres.
+void recipe_swirl(const FogRecipe& recipe, double seconds, std::span<const vec3> points, std::span<vec3> displacements);
 }
