@@ -4,6 +4,9 @@
 #include "fixtures.h"
 #include "render/sequence.h"
 
+#include <sys/resource.h>
+
+#include <csignal>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -203,6 +206,7 @@ TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
     fog.extinction = Keyed<float>(0.0f); // the volumes are hashed, not read
     fog.sequence.pattern = in.file("fog.####.vdb"), fog.sequence.files = {1, 2};
     scene.media.push_back(fog);
+    scene.inputs.insert(scene.inputs.end(), {in.file("fog.0001.vdb"), in.file("fog.0002.vdb")});
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2});
     job.resume = true;
     run(scene, job);
@@ -266,6 +270,22 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
     job.missing = MissingFrame::hold;
     EXPECT_EQ(run(scene, job).frames.size(), 4u);
+}
+
+TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
+    const TemporaryDirectory in, out;
+    const Scene scene = moving_scene(in);
+    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
+    rlimit limit{};
+    ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit small{1000, limit.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const std::string text = error_text(ExitCode::unwritable, [&] { run(scene, job); });
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(text.substr(0, 8), "frame 1:");
+    EXPECT_TRUE(out.names().empty());
 }
 
 TEST(Sequence, CancellingKeepsWholeFramesOnly) {
