@@ -69,7 +69,8 @@ struct Gradient {
     FloatVec x, y, z;
 };
 
-HWY_INLINE IntVec corner_hash(IntVec xy, IntVec z) { return hn::Mul(hn::Xor(xy, z), splat_int(0x27d4eb2du)); }
+inline constexpr uint32_t hash_factor = 0x27d4eb2du;
+HWY_INLINE IntVec corner_hash(IntVec xy, IntVec z) { return hn::Mul(hn::Xor(xy, z), splat_int(hash_factor)); }
 
 // The gradient a hash chooses; where a register holds only eight of them, without the sign that flip_by() adds.
 HWY_INLINE Gradient gradient(const GradientTable& table, IntVec hash) {
@@ -98,29 +99,57 @@ HWY_INLINE FloatVec ramp(const GradientTable& table, IntVec hash, FloatVec x, Fl
     return flip_by(hash, hn::MulAdd(g.x, x, hn::MulAdd(g.y, y, hn::Mul(g.z, z))));
 }
 
-// The value of an octave, -√3/2..√3/2.
-HWY_INLINE FloatVec gradient_noise(const NoiseOctave& octave, const LatticeAxis& x, const LatticeAxis& y,
-                                   const LatticeAxis& z) {
-    const GradientTable table(octave);
-    const FloatVec x0 = x.fraction, y0 = y.fraction, z0 = z.fraction, one = splat(1);
-    const FloatVec x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
+// The eight ramps of a cell, mixed by the faded fractions; `corner_ramp(i, j, k, dx, dy, dz)` gives one of them.
+template<class CornerRamp>
+HWY_INLINE FloatVec mixed_ramps(FloatVec x0, FloatVec y0, FloatVec z0, const CornerRamp& corner_ramp) {
+    const FloatVec one = splat(1), x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
     const FloatVec tx = fade(x0), ty = fade(y0), tz = fade(z0);
-    const IntVec seed = splat_int(octave.seed), low = hn::Xor(x.low, seed), high = hn::Xor(x.high, seed);
-    const auto edge = [&](IntVec xy, FloatVec dx, FloatVec dy) {
-        return lerp(ramp(table, corner_hash(xy, z.low), dx, dy, z0), ramp(table, corner_hash(xy, z.high), dx, dy, z1),
-                    tz);
+    const auto edge = [&](int i, int j, FloatVec dx, FloatVec dy) {
+        return lerp(corner_ramp(i, j, 0, dx, dy, z0), corner_ramp(i, j, 1, dx, dy, z1), tz);
     };
-    const FloatVec a = lerp(edge(hn::Xor(low, y.low), x0, y0), edge(hn::Xor(low, y.high), x0, y1), ty);
-    const FloatVec b = lerp(edge(hn::Xor(high, y.low), x1, y0), edge(hn::Xor(high, y.high), x1, y1), ty);
-    return lerp(a, b, tx);
+    return lerp(lerp(edge(0, 0, x0, y0), edge(0, 1, x0, y1), ty), lerp(edge(1, 0, x1, y0), edge(1, 1, x1, y1), ty), tx);
+}
+
+HWY_INLINE FloatVec noise_in_many_cells(const NoiseOctave& octave, const LatticeAxis& x, const LatticeAxis& y,
+                                        const LatticeAxis& z) {
+    const GradientTable table(octave);
+    const IntVec seed = splat_int(octave.seed), x_hash[2] = {hn::Xor(x.low, seed), hn::Xor(x.high, seed)};
+    const IntVec y_hash[2] = {y.low, y.high}, z_hash[2] = {z.low, z.high};
+    return mixed_ramps(x.fraction, y.fraction, z.fraction,
+                       [&](int i, int j, int k, FloatVec dx, FloatVec dy, FloatVec dz) {
+                           const IntVec hash = corner_hash(hn::Xor(x_hash[i], y_hash[j]), z_hash[k]);
+                           return ramp(table, hash, dx, dy, dz);
+                       });
+}
+
+// All points in the cell of these hashed numbers: its gradients are the same in every lane.
+HWY_INLINE FloatVec noise_in_one_cell(const NoiseOctave& octave, FloatVec x, FloatVec y, FloatVec z, uint32_t x_low,
+                                      uint32_t y_low, uint32_t z_low) {
+    const uint32_t x_hash[2] = {x_low ^ octave.seed, (x_low + axis_primes[0]) ^ octave.seed};
+    const uint32_t y_hash[2] = {y_low, y_low + axis_primes[1]}, z_hash[2] = {z_low, z_low + axis_primes[2]};
+    return mixed_ramps(x, y, z, [&](int i, int j, int k, FloatVec dx, FloatVec dy, FloatVec dz) {
+        const uint32_t entry = (x_hash[i] ^ y_hash[j] ^ z_hash[k]) * hash_factor >> 28;
+        const FloatVec gx = splat(octave.gradient_x[entry]), gy = splat(octave.gradient_y[entry]);
+        return hn::MulAdd(gx, dx, hn::MulAdd(gy, dy, hn::Mul(splat(octave.gradient_z[entry]), dz)));
+    });
+}
+
+// The value of an octave, -√3/2..√3/2. Neighbouring points often share a cell of a coarse octave: twice as fast.
+HWY_INLINE FloatVec octave_noise(const NoiseOctave& octave, FloatVec px, FloatVec py, FloatVec pz) {
+    const LatticeAxis x = lattice_axis(octave, 0, px), y = lattice_axis(octave, 1, py), z = lattice_axis(octave, 2, pz);
+    const IntTag tag;
+    const int32_t first[3] = {hn::GetLane(x.low), hn::GetLane(y.low), hn::GetLane(z.low)};
+    const IntVec apart = hn::Or(hn::Or(hn::Xor(x.low, hn::Set(tag, first[0])), hn::Xor(y.low, hn::Set(tag, first[1]))),
+                                hn::Xor(z.low, hn::Set(tag, first[2])));
+    if (hn::AllTrue(tag, hn::Eq(apart, hn::Zero(tag))))
+        return noise_in_one_cell(octave, x.fraction, y.fraction, z.fraction, static_cast<uint32_t>(first[0]),
+                                 static_cast<uint32_t>(first[1]), static_cast<uint32_t>(first[2]));
+    return noise_in_many_cells(octave, x, y, z);
 }
 
 // Adds an octave to a sum.
 HWY_INLINE FloatVec add_octave(const NoiseOctave& octave, bool billow, FloatVec value, FloatVec sum) {
     return hn::MulAdd(splat(octave.scale), billow ? hn::Abs(value) : value, sum);
-}
-HWY_INLINE FloatVec octave_noise(const NoiseOctave& octave, FloatVec x, FloatVec y, FloatVec z) {
-    return gradient_noise(octave, lattice_axis(octave, 0, x), lattice_axis(octave, 1, y), lattice_axis(octave, 2, z));
 }
 }
 HWY_AFTER_NAMESPACE();
