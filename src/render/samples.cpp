@@ -11,11 +11,11 @@ enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
 
 // A ray on its way: where its next stretch starts and how much of what follows reaches the eye.
 struct Path {
-    Ray ray;            // from the eye or the last BLEND surface
-    float skip = 0;     // surfaces nearer than this are behind: the near plane, or the surface just left
-    float through = 1;  // share of light that gets through fog and BLEND surfaces so far
-    uint32_t pixel = 0; // index in the full picture
-    vec2 screen{0};     // position in the picture, 0..1
+    Ray ray;           // from the eye or the last BLEND surface
+    float skip = 0;    // surfaces nearer than this are behind: the near plane, or the surface just left
+    float through = 1; // share of light that gets through fog and BLEND surfaces so far
+    uint32_t seed = 0; // of the pixel in this frame
+    vec2 screen{0};    // position in the picture, 0..1
     int lane = 0;
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
@@ -36,6 +36,12 @@ struct Stretches { // of the paths still on their way, packed
 // Steps off a surface: beyond the rounding error of the point, below anything visible.
 float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
 
+// The first number of sample2() alone.
+float stratified(int sample, uint32_t seed) {
+    const uint32_t shuffled = owen_scramble(static_cast<uint32_t>(sample), hash(seed, 0u));
+    return to_unit(owen_scramble(reverse_bits(shuffled), hash(seed, 1u)));
+}
+
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
     const vec2 position = sample_position(view, pixel, sample);
     const vec2 off = position - (vec2(pixel) + 0.5f);
@@ -45,7 +51,9 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     path.ray = camera_ray(view.camera, view.size, position);
     const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
     path.skip = view.camera.near / along;
-    path.pixel = static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
+    const uint32_t index =
+        static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
+    path.seed = hash(index, view.frame, view.seed);
     path.screen = position / vec2(view.size);
     path.lane = lane;
     return path;
@@ -65,7 +73,6 @@ void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s) {
 
 void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std::span<PixelSample> samples,
              std::span<vec3> per_light) {
-    const View& view = tracer.view;
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
     Ray rays[16];
     uint32_t ids[16];
@@ -73,8 +80,8 @@ void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std
     Scatter scatter[16];
     for (int i = 0; i < s.count; ++i) {
         rays[i] = {s.path[i].ray.origin, s.path[i].ray.direction, s.length[i]};
-        ids[i] = hash(s.path[i].pixel, sample, layer, view.frame, view.seed, use_id);
-        jitter[i] = sample2(sample, hash(s.path[i].pixel, layer, view.frame, view.seed, use_jitter)).x;
+        ids[i] = hash(s.path[i].seed, sample, layer, use_id);
+        jitter[i] = stratified(sample, hash(s.path[i].seed, layer, use_jitter));
     }
 
     std::vector<vec3> light_parts(lights * s.count, vec3(0));
@@ -99,13 +106,11 @@ void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std
 void add_surfaces(const FrameTracer& tracer, int layer, int sample, const Stretches& s,
                   std::span<const SurfacePoint> surfaces, std::span<const int> which, std::span<PixelSample> samples,
                   std::span<vec3> per_light) {
-    const View& view = tracer.view;
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
     vec2 u[16];
     vec3 radiance[16];
     for (size_t k = 0; k < which.size(); ++k) {
-        const Sample2 random =
-            sample2(sample, hash(s.path[which[k]].pixel, layer, view.frame, view.seed, use_soft_light));
+        const Sample2 random = sample2(sample, hash(s.path[which[k]].seed, layer, use_soft_light));
         u[k] = {random.x, random.y};
     }
     std::vector<vec3> light_parts(lights * which.size(), vec3(0));
