@@ -41,10 +41,11 @@ inline FogRecipe random_recipe(std::mt19937& random, float across) {
         return std::uniform_real_distribution<float>(low, high)(random);
     };
     FogRecipe recipe;
-    recipe.bounds.low = vec3(uniform(-50, 50), uniform(-5, 5), uniform(-50, 50));
-    recipe.bounds.high =
-        recipe.bounds.low + vec3(across * uniform(0.8f, 1), across * uniform(0.8f, 1), across * uniform(0.8f, 1));
-    recipe.voxel_size = 0.05;
+    // Binary fractions: voxel centres are the same floats in the world and about the middle of the bounds.
+    const auto exact = [](vec3 v) { return glm::round(v * 16.0f) / 16.0f; };
+    recipe.bounds.low = exact(vec3(uniform(-50, 50), uniform(-5, 5), uniform(-50, 50)));
+    recipe.bounds.high = recipe.bounds.low + exact(across * vec3(uniform(0.8f, 1), uniform(0.8f, 1), uniform(0.8f, 1)));
+    recipe.voxel_size = 0.0625;
     recipe.noise = {.octaves = 1 + static_cast<int>(random() % 6),
                     .scale = std::exp(uniform(-1.2f, 1.5f)),
                     .lacunarity = uniform(1.8f, 2.3f),

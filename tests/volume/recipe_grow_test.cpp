@@ -29,7 +29,8 @@ struct Comparison {
 };
 
 // Counts voxels with fog that grow() left out, and values that are not those of the recipe.
-Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, GrowReport* report = nullptr) {
+Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, GrowReport* report = nullptr,
+                                    float tolerance = 0) {
     const std::vector<float> expected = brute_force(recipe, seconds);
     const SparseVolume volume = grow(recipe, seconds, report);
     const ivec3 size = voxels_of(recipe);
@@ -43,11 +44,9 @@ Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, Gro
             else
                 EXPECT_EQ(leaf.values[i], 0) << "outside the bounds";
         }
-    // Voxel centres reach recipe_density() through world floats: the last digits may differ, and at the least density.
     for (size_t i = 0; i < grown.size(); ++i) {
-        const float slack = 2e-3f * std::max(recipe.gain, 1.0f);
-        result.missing += grown[i] == 0 && expected[i] > least_density + slack * 0.02f;
-        result.different += std::abs(grown[i] - expected[i]) > slack;
+        result.missing += grown[i] == 0 && expected[i] != 0;
+        result.different += std::abs(grown[i] - expected[i]) > tolerance;
     }
     const ivec3 leaves = (size + 7) / 8;
     result.leaves = int64_t{leaves.x} * leaves.y * leaves.z, result.full_leaves = volume.leaves.size();
@@ -72,8 +71,8 @@ void expect_no_hole(int recipes, float across, uint32_t seed, int64_t least_leav
     EXPECT_LT(full, leaves * 9 / 10) << "hardly any empty leaf was tested";
 }
 
-TEST(RecipeGrow, LeavesOutNothing) { expect_no_hole(40, 4, 1, 20000); }
-TEST(RecipeGrow, NightlyLeavesOutNothingInAMillionLeaves) { expect_no_hole(310, 7.5f, 2, 1000000); }
+TEST(RecipeGrow, LeavesOutNothing) { expect_no_hole(40, 5, 1, 20000); }
+TEST(RecipeGrow, NightlyLeavesOutNothingInAMillionLeaves) { expect_no_hole(310, 9.5f, 2, 1000000); }
 
 TEST(RecipeGrow, ComputesLittleForNothing) {
     // Fog of several octaves that fills a tenth to a half of space: voxels computed to the last octave in leaves that
@@ -99,10 +98,10 @@ TEST(RecipeGrow, ComputesLittleForNothing) {
     EXPECT_LT(report.wasted, report.finished / 20);
 }
 
+// Voxel centres that are no binary fractions reach recipe_density() rounded to floats: the last digits may differ.
 TEST(RecipeGrow, BusyFogEqualsItsDefinition) {
     for (const double seconds : {0.0, 1.3, 2.0}) {
-        const Comparison found = compare_with_brute_force(busy_fog(), seconds);
-        EXPECT_EQ(found.missing, 0);
+        const Comparison found = compare_with_brute_force(busy_fog(), seconds, nullptr, 1e-3f);
         EXPECT_EQ(found.different, 0);
         EXPECT_GT(found.full_leaves, found.leaves / 10);
     }
