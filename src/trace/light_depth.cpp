@@ -25,10 +25,10 @@ namespace tyndall {
 HWY_EXPORT(light_depths_kernel);
 
 namespace {
-// Mean depth over the fog's bounds, by a (0,2)-sequence with a golden-ratio third coordinate. Fog without bounds is
-// taken where the scene is.
+// Mean depth over the fog's bounds, by Roberts' R3 sequence (steps of 1/φ, 1/φ², 1/φ³ with φ⁴ = φ + 1). Fog without
+// bounds is taken where the scene is.
 float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
-    constexpr int packets = 64;
+    constexpr uint32_t packets = 256;
     Box fog;
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     if (fog.empty()) return 0;
@@ -43,9 +43,8 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
         alignas(64) int32_t active[16];
         for (uint32_t lane = 0; lane < 16; ++lane) {
             const uint32_t i = packet * 16 + lane;
-            const Sample2 u = sample2(i, 0);
-            const float third = to_unit(i * 0x9e3779b9u + 0x80000000u);
-            const vec3 point = fog.low + vec3(u.x, u.y, third) * fog.size();
+            const vec3 u(to_unit(i * 3518319155u), to_unit(i * 2882110345u), to_unit(i * 2360945575u));
+            const vec3 point = fog.low + u * fog.size();
             v[0][lane] = point.x, v[1][lane] = point.y, v[2][lane] = point.z;
             active[lane] = -1;
         }

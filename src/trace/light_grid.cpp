@@ -145,6 +145,49 @@ void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
     grid.scale = vec3(grid.size - 1) / extent;
     grid.offset = -fit.low * grid.scale;
 }
+
+// Columns along the sun's rays.
+void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, float cells,
+             LightDepthGrid& grid) {
+    grid.kind = LightKind::sun;
+    const Fit fit = tightest(media, light.direction, grid,
+                             [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
+    const vec3 extent = fit.high - fit.low;
+    set_size(fit, vec3(std::max(extent.x, extent.y) / cells), grid);
+}
+
+// Distances along columns that spread from a local light. Cells are cubes two thirds of the way out; `width` is the
+// size of a cell across, at distance 1.
+void fit_distances(const Light& light, Fit fit, vec2 cell, float width, LightDepthGrid& grid) {
+    fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
+    if (!(fit.high.z > fit.low.z)) return;
+    const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
+    set_size(fit, vec3(cell, width * reference), grid);
+}
+
+void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, vec3 axis,
+                   float angle, float cells, LightDepthGrid& grid) {
+    grid.kind = LightKind::spot;
+    const float tangent = std::tan(std::max(angle, 1e-3f));
+    const Fit fit = tightest(media, axis, grid,
+                             [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
+    if (fit.empty()) return;
+    const float width = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
+    fit_distances(light, fit, vec2(width), width, grid);
+}
+
+// All directions: the octahedron's square of side 2 holds 4π, and fog all around is seen across about 4/3 of a side.
+void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, LightDepthGrid& grid) {
+    grid.kind = LightKind::point;
+    Fit fit;
+    fit.grow(0, -1, 1), fit.grow(1, -1, 1);
+    for (const Block& block : blocks) {
+        const float distance = glm::length(block.center - light.position);
+        fit.grow(2, distance - block.radius, distance + block.radius);
+    }
+    const float width = 1.5f / cells;
+    fit_distances(light, fit, vec2(width), width * 0.5f * std::sqrt(4 * pi), grid);
+}
 }
 
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution) {
@@ -154,47 +197,21 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
     Box fog;
     for (const Block& block : blocks) fog.grow(block.center);
     const float cells = static_cast<float>(std::max(resolution, 1));
-
+    grid.position = light.kind == LightKind::sun ? fog.center() : light.position;
     if (light.kind == LightKind::sun) {
-        grid.kind = LightKind::sun;
-        grid.position = fog.center();
-        const Fit fit = tightest(media, light.direction, grid,
-                                 [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
-        const vec3 extent = fit.high - fit.low;
-        set_size(fit, vec3(std::max(extent.x, extent.y) / cells), grid);
+        fit_sun(media, blocks, light, cells, grid);
         return grid;
     }
 
     // Perspective columns when one cone holds all that matters, else all directions.
-    grid.position = light.position;
-    const vec3 towards = fog.center() - light.position;
     const bool spot = light.kind == LightKind::spot && light.outer_cone <= widest_cone;
+    const vec3 towards = fog.center() - light.position;
     const vec3 axis = spot ? light.direction : glm::length(towards) > 0 ? glm::normalize(towards) : vec3(0, 0, 1);
     const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);
-    Fit fit;
-    vec3 cell;
-    if (spot || angle < widest_view) {
-        grid.kind = LightKind::spot;
-        const float tangent = std::tan(std::max(angle, 1e-3f));
-        fit = tightest(media, axis, grid,
-                       [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
-        if (fit.empty()) return grid;
-        cell.x = cell.y = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
-    } else {
-        grid.kind = LightKind::point;
-        for (const Block& block : blocks) {
-            const float distance = glm::length(block.center - light.position);
-            fit.grow(2, distance - block.radius, distance + block.radius);
-        }
-        fit.low.x = fit.low.y = -1, fit.high.x = fit.high.y = 1;
-        cell.x = cell.y = 1.5f / cells;
-    }
-    fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
-    if (!(fit.high.z > fit.low.z)) return grid;
-    // Cells are cubes two thirds of the way out.
-    const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
-    cell.z = cell.x * reference * (grid.kind == LightKind::point ? 1.77f : 1.0f);
-    set_size(fit, cell, grid);
+    if (spot || angle < widest_view)
+        fit_cone_grid(media, blocks, light, axis, angle, cells, grid);
+    else
+        fit_octahedron(blocks, light, cells, grid);
     return grid;
 }
 }

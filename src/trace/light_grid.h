@@ -5,10 +5,10 @@
 #include <span>
 
 namespace tyndall {
-// A grid of the light's kind fitted to the brick media, with empty cells; size 0 when the light reaches none of them.
+// A grid fitted to the brick media, without its depths; size 0 when the light reaches none of them. `resolution`: cells
+// across the longer side of the fog as the light sees it; along the light they are about as long as wide.
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution);
 
-// Integrates the media along the columns of a fitted grid. `start` is the distance along w of the first corner, `step`
-// the one between corners.
+// Integrates the media along the columns of a fitted grid, in parallel over columns.
 void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid);
 }

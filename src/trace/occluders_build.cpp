@@ -72,7 +72,7 @@ void attach(RTCDevice device, OccluderSet& set, const OccluderGeometry& geometry
     rtcReleaseGeometry(handle);
 
     set.triangles += triangles.size();
-    set.has_blends |= geometry.masks() || geometry.blends();
+    set.has_alpha |= geometry.masks() || geometry.blends();
     for (const glm::uvec3 corners : triangles)
         for (int k = 0; k < 3; ++k) set.bounds.grow(geometry.positions[corners[k]]);
 }

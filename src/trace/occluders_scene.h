@@ -48,7 +48,7 @@ struct OccluderSet {
     std::vector<mat4> matrices;               // ... and where each stood
     Box bounds;
     uint64_t triangles = 0, dropped = 0;
-    bool has_blends = false;
+    bool has_alpha = false;
 
     OccluderSet() = default;
     OccluderSet(const OccluderSet&) = delete;
@@ -79,6 +79,7 @@ struct ShadowContext {
     int count[16];
 
     ShadowContext();
+    void forget(); // all light left, no sheet passed; needed before Embree meets geometries with alpha
 };
 
 // Embree's callbacks for geometries with alpha.

@@ -61,16 +61,19 @@ void trace_closest(const OccluderSet& set, std::span<const Ray> rays, float t_mi
     }
 }
 
-// Lanes of shadow rays that Embree may see: -1. Clears `visibility` of the others that were asked for, but leaves rays
-// without any length free.
-template<int width> void put_shadow_rays(const Occluders::ShadowRays& rays, int base, int* valid, float* visibility) {
+// Which lanes Embree may see (-1): asked for, fit and with any length. Unfit ones become blocked, ones without length
+// free. Free of branches, so that the compiler makes vectors of it.
+template<int width> void choose_lanes(const Occluders::ShadowRays& rays, int base, int* valid, float* visibility) {
+    const auto large = [](float value) { return !(std::abs(value) <= largest_coordinate); }; // or NaN
     for (int i = 0; i < width; ++i) {
         const int k = base + i;
-        const bool fit = in_range(rays.ox[k]) & in_range(rays.oy[k]) & in_range(rays.oz[k]) & in_range(rays.dx[k]) &
-                         in_range(rays.dy[k]) & in_range(rays.dz[k]) & (rays.t_min[k] >= 0) & in_range(rays.t_min[k]) &
-                         (rays.t_max[k] == rays.t_max[k]);
-        valid[i] = rays.active[k] != 0 && fit && rays.t_max[k] > rays.t_min[k] ? -1 : 0;
-        if (rays.active[k] != 0) visibility[k] = fit ? 1.0f : 0.0f;
+        const int origin = large(rays.ox[k]) | large(rays.oy[k]) | large(rays.oz[k]);
+        const int direction = large(rays.dx[k]) | large(rays.dy[k]) | large(rays.dz[k]);
+        const int ends = large(rays.t_min[k]) | !(rays.t_min[k] >= 0) | (rays.t_max[k] != rays.t_max[k]);
+        const int unfit = origin | direction | ends, asked = rays.active[k] != 0;
+        const float answer = unfit ? 0.0f : 1.0f;
+        visibility[k] = asked ? answer : visibility[k];
+        valid[i] = -(asked & (unfit ^ 1) & (rays.t_max[k] > rays.t_min[k]));
     }
 }
 
@@ -78,7 +81,7 @@ template<class Packet, int width>
 void trace_transmission(const OccluderSet* const* sets, const Occluders::ShadowRays& rays, int base,
                         float* visibility) {
     alignas(64) int valid[width];
-    put_shadow_rays<width>(rays, base, valid, visibility);
+    choose_lanes<width>(rays, base, valid, visibility);
     Packet packet;
     constexpr size_t bytes = width * sizeof(float);
     std::memcpy(packet.org_x, rays.ox + base, bytes), std::memcpy(packet.org_y, rays.oy + base, bytes);
@@ -88,15 +91,20 @@ void trace_transmission(const OccluderSet* const* sets, const Occluders::ShadowR
     for (int i = 0; i < width; ++i) packet.time[i] = 0, packet.mask[i] = ~0u, packet.id[i] = i, packet.flags[i] = 0;
 
     ShadowContext context;
-    context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     for (int which = 0; which < 2; ++which) {
-        if (sets[which]->triangles == 0) continue;
-        occlude(sets[which]->scene, valid, &context.embree, packet);
+        const OccluderSet& set = *sets[which];
+        if (set.triangles == 0) continue;
+        if (set.has_alpha) context.forget();
+        occlude(set.scene, valid, &context.embree, packet);
+        for (int i = 0; i < width; ++i) {
+            const int blocked = packet.tfar[i] < 0;
+            visibility[base + i] = blocked & valid[i] ? 0.0f : visibility[base + i];
+            valid[i] &= blocked - 1;
+        }
+        if (!set.has_alpha) continue;
         for (int i = 0; i < width; ++i)
-            if (valid[i] && packet.tfar[i] < 0) valid[i] = 0, visibility[base + i] = 0;
+            if (valid[i]) visibility[base + i] *= static_cast<float>(context.left[i]);
     }
-    for (int i = 0; i < width; ++i)
-        if (valid[i]) visibility[base + i] = static_cast<float>(context.left[i]);
 }
 }
 
@@ -127,8 +135,10 @@ float Occluders::transmission(const Ray& ray, float t_min) const {
     if (!in_range(ray.origin) || !in_range(ray.direction) || !in_range(t_min) || !(t_min >= 0)) return 0;
     if (!(ray.t_max > t_min)) return std::isnan(ray.t_max) ? 0.0f : 1.0f;
     ShadowContext context;
+    float visibility = 1;
     for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()}) {
         if (set->triangles == 0) continue;
+        if (set->has_alpha) context.forget();
         RTCRay single{ray.origin.x,
                       ray.origin.y,
                       ray.origin.z,
@@ -143,7 +153,8 @@ float Occluders::transmission(const Ray& ray, float t_min) const {
                       0};
         rtcOccluded1(set->scene, &context.embree, &single);
         if (single.tfar < 0) return 0;
+        if (set->has_alpha) visibility *= static_cast<float>(context.left[0]);
     }
-    return static_cast<float>(context.left[0]);
+    return visibility;
 }
 }

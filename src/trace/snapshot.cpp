@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// Rotation part of a node's matrix; an axis that vanishes takes the frame of the others.
+// Where a node stands and which way it looks, free of its scale.
 struct Frame {
     vec3 position, up, forward;
 };

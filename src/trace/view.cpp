@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int cells = 512;
+constexpr int cells = 4096;
 using Quantiles = std::array<float, cells + 1>; // position in [-1,1] below which i/cells of the filter lies
 
 // Gaussian of standard deviation radius/3, lowered to be 0 at the radius.

@@ -1,0 +1,290 @@
+#include "trace/snapshot.h"
+
+#include "base/error.h"
+#include "base/scratch.h"
+#include "trace/fog.h"
+#include "trace/scene_fixtures.h"
+#include "volume/fog_fixtures.h"
+#include "volume/vdb.h"
+
+#include <gmock/gmock.h>
+
+namespace tyndall {
+namespace {
+using namespace test;
+
+MediumSource noise_source() {
+    MediumSource source;
+    source.name = "mist";
+    source.kind = MediumKind::noise;
+    FogRecipe recipe;
+    recipe.voxel_size = 0.1f;
+    recipe.threshold = 0.4f;
+    source.recipe = recipe;
+    return source;
+}
+
+MediumSource file_source(const std::filesystem::path& file) {
+    MediumSource source;
+    source.name = "cloud";
+    source.kind = MediumKind::vdb;
+    source.sequence.pattern = file.string();
+    return source;
+}
+
+template<class T> Keyed<T> from_to(T a, T b) {
+    Keyed<T> keyed;
+    keyed.times = {0, 1};
+    keyed.values = {a, b};
+    return keyed;
+}
+
+TEST(Snapshot, EvaluatesLightsAndDropsDarkOnes) {
+    Scene scene;
+    Node node;
+    node.translation = vec3(1, 2, 3);
+    node.rotation = glm::angleAxis(pi / 2, vec3(0, 1, 0)); // -z turns to -x
+    node.scale = vec3(3);
+    scene.nodes = {node};
+    LightSource lamp;
+    lamp.name = "lamp", lamp.kind = LightKind::spot, lamp.node = 0;
+    lamp.intensity = from_to(0.0f, 10.0f);
+    lamp.color = vec3(1, 0.5f, 0);
+    lamp.inner_cone = 1.0f, lamp.outer_cone = 0.5f;
+    LightSource dark;
+    dark.intensity = 0.0f;
+    scene.lights = {lamp, dark};
+
+    EXPECT_TRUE(make_snapshot(scene, {0, 0}).lights.empty());
+    const Snapshot snapshot = make_snapshot(scene, {12, 0.5});
+    EXPECT_EQ(snapshot.frame, 12);
+    ASSERT_EQ(snapshot.lights.size(), 1u);
+    const Light& light = snapshot.lights[0];
+    EXPECT_EQ(light.position, vec3(1, 2, 3));
+    EXPECT_NEAR(glm::distance(light.direction, vec3(-1, 0, 0)), 0, 1e-6);
+    EXPECT_EQ(light.intensity, vec3(5, 2.5f, 0));
+    EXPECT_EQ(light.inner_cone, 0.5f);
+    EXPECT_EQ(snapshot.bounds.low, vec3(1, 2, 3));
+}
+
+TEST(Snapshot, LightWithoutDirectionIsRefused) {
+    Scene scene;
+    scene.file = "room.json";
+    LightSource light;
+    light.name = "sun", light.kind = LightKind::sun;
+    light.direction = vec3(0);
+    scene.lights = {light};
+    EXPECT_THAT([&] { make_snapshot(scene, {}); }, testing::ThrowsMessage<Error>(testing::HasSubstr("light sun")));
+}
+
+TEST(Snapshot, AnalyticMediaMoveWithTheirTransform) {
+    Scene scene;
+    MediumSource box;
+    box.extinction = from_to(0.0f, 1.0f);
+    box.bounds = {vec3(-1), vec3(1)};
+    box.translation = vec3(5, 0, 0);
+    box.scale = vec3(2, 1, 1);
+    MediumSource layer;
+    layer.kind = MediumKind::height;
+    layer.bounds = {vec3(-infinity, 0, -infinity), vec3(infinity, 3, infinity)};
+    layer.translation = vec3(0, 1, 0);
+    layer.height_base = from_to(0.0f, 2.0f);
+    scene.media = {box, layer};
+
+    EXPECT_EQ(make_snapshot(scene, {0, 0}).media.size(), 1u); // the box has no extinction yet
+    const Snapshot snapshot = make_snapshot(scene, {0, 1});
+    ASSERT_EQ(snapshot.media.size(), 2u);
+    EXPECT_EQ(snapshot.media[0].world_bounds.low, vec3(3, -1, -1));
+    EXPECT_EQ(snapshot.media[0].world_bounds.high, vec3(7, 1, 1));
+    EXPECT_EQ(snapshot.media[1].world_bounds.low, vec3(-infinity, 1, -infinity));
+    EXPECT_EQ(snapshot.media[1].world_bounds.high, vec3(infinity, 4, infinity));
+    EXPECT_EQ(snapshot.media[1].height_base, 2);
+    EXPECT_EQ(snapshot.bounds.low, vec3(3, -1, -1));
+    EXPECT_EQ(snapshot.bounds.high, vec3(7, 1, 1));
+    EXPECT_NEAR(optical_depth(snapshot.media[0], {vec3(0), vec3(1, 0, 0)}), 4, 1e-5);
+}
+
+TEST(Snapshot, MovedBoxesCoverTheirCorners) {
+    const mat4 matrix = glm::rotate(glm::translate(mat4(1), vec3(1, 2, 3)), 0.5f, glm::normalize(vec3(1, 1, 0)));
+    const Box box = moved_box(matrix, {vec3(-1, -2, -3), vec3(3, 2, 1)});
+    const Box expected = transform(matrix, {vec3(-1, -2, -3), vec3(3, 2, 1)});
+    EXPECT_NEAR(glm::distance(box.low, expected.low), 0, 1e-5);
+    EXPECT_NEAR(glm::distance(box.high, expected.high), 0, 1e-5);
+}
+
+TEST(Snapshot, FlatMediumIsRefused) {
+    Scene scene;
+    MediumSource source;
+    source.name = "sheet";
+    source.scale = vec3(1, 0, 1);
+    scene.media = {source};
+    EXPECT_THAT([&] { make_snapshot(scene, {}); }, testing::ThrowsMessage<Error>(testing::HasSubstr("medium sheet")));
+}
+
+TEST(Snapshot, StillFogIsGrownOnceAndDriftingFogAnew) {
+    Scene scene;
+    scene.media = {noise_source(), noise_source()};
+    scene.media[1].recipe->wind = vec3(1, 0, 0);
+    const Snapshot first = make_snapshot(scene, {0, 0});
+    ASSERT_EQ(first.media.size(), 2u);
+    const Snapshot next = make_snapshot(scene, {1, 0.5}, &first);
+    EXPECT_EQ(next.media[0].bricks, first.media[0].bricks);
+    EXPECT_NE(next.media[1].bricks, first.media[1].bricks);
+    EXPECT_EQ(make_snapshot(scene, {1, 0.5}, &next).media[1].bricks, next.media[1].bricks);
+}
+
+// What a frame holds must not depend on the frame before.
+TEST(Snapshot, ReuseGivesTheSameBits) {
+    Scene scene;
+    scene.media = {noise_source()};
+    scene.media[0].translation = from_to(vec3(0), vec3(3, 1, 2));
+    scene.media[0].rotation = from_to(quat(1, 0, 0, 0), glm::angleAxis(1.0f, vec3(0, 1, 0)));
+    const Snapshot first = make_snapshot(scene, {0, 0.1});
+    const Snapshot second = make_snapshot(scene, {1, 0.2}, &first);
+    const Snapshot third = make_snapshot(scene, {2, 0.3}, &second);
+    const Snapshot fresh = make_snapshot(scene, {2, 0.3});
+    const BrickPool &a = *third.media[0].bricks, &b = *fresh.media[0].bricks;
+    EXPECT_EQ(a.index_to_world, b.index_to_world);
+    EXPECT_EQ(a.world_to_index, b.world_to_index);
+    EXPECT_EQ(a.bounds.low, b.bounds.low);
+    EXPECT_EQ(a.anchor, b.anchor);
+    EXPECT_EQ(a.values, b.values);
+    EXPECT_EQ(third.fog_sources[0].bricks, first.fog_sources[0].bricks);
+    EXPECT_EQ(make_snapshot(scene, {2, 0.3}, &third).media[0].bricks, third.media[0].bricks);
+    EXPECT_EQ(third.media[0].world_bounds.low, b.bounds.low);
+}
+
+TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
+    const Scratch scratch;
+    const auto file = scratch / "fog.vdb";
+    SparseVolume volume = constant_box(16, 0.5f);
+    volume.index_to_world = glm::translate(dmat4(1), dvec3(4, 0, 0));
+    write_vdb(file, volume);
+    Scene scene;
+    scene.media = {file_source(file)};
+    scene.media[0].translation = vec3(0, 10, 0);
+    const Snapshot first = make_snapshot(scene, {1, 0});
+    ASSERT_EQ(first.media.size(), 1u);
+    EXPECT_NEAR(first.media[0].world_bounds.center().x, 11.5f, 1e-3);
+    EXPECT_NEAR(first.media[0].world_bounds.center().y, 17.5f, 1e-3);
+    const Snapshot same = make_snapshot(scene, {2, 1}, &first);
+    EXPECT_EQ(same.media[0].bricks, first.media[0].bricks);
+
+    write_vdb(file, constant_box(24, 0.5f));
+    const Snapshot changed = make_snapshot(scene, {3, 2}, &same);
+    EXPECT_NE(changed.media[0].bricks, first.media[0].bricks);
+    EXPECT_NEAR(changed.media[0].bricks->mass, 0.5 * 24 * 24 * 24, 1);
+}
+
+TEST(Snapshot, ClippedSequencesHaveNoFog) {
+    const Scratch scratch;
+    write_vdb(scratch / "fog.0002.vdb", constant_box(16, 0.5f));
+    Scene scene;
+    scene.media = {file_source(scratch / "fog.####.vdb")};
+    scene.media[0].sequence.files = {2};
+    scene.media[0].sequence.mode = SequenceMode::clip;
+    EXPECT_TRUE(make_snapshot(scene, {1, 0}).media.empty());
+    EXPECT_EQ(make_snapshot(scene, {2, 0}).media.size(), 1u);
+    scene.media[0].sequence.mode = SequenceMode::hold;
+    EXPECT_EQ(make_snapshot(scene, {1, 0}).media.size(), 1u);
+}
+
+TEST(Snapshot, MissingFileIsNamed) {
+    Scene scene;
+    scene.media = {file_source("/nowhere/fog.vdb")};
+    EXPECT_THAT([&] { make_snapshot(scene, {}); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("/nowhere/fog.vdb")));
+}
+
+TEST(Snapshot, DroppedTrianglesAreSaidOnce) {
+    Scene scene;
+    add_mesh(scene, quad(vec3(0), vec3(1, 0, 0), vec3(2, 0, 0)));
+    const Snapshot first = make_snapshot(scene, {0, 0});
+    EXPECT_THAT(first.notes, testing::ElementsAre(testing::HasSubstr("2 triangles")));
+    EXPECT_TRUE(make_snapshot(scene, {1, 1}, &first).notes.empty());
+}
+
+TEST(Snapshot, CamerasFromNodesAreOrthonormal) {
+    Scene scene;
+    Node node;
+    node.translation = vec3(1, 2, 3);
+    node.rotation = glm::angleAxis(0.4f, glm::normalize(vec3(1, 2, 0)));
+    node.scale = vec3(-2, 3, 0.5f); // mirrored: the camera is not
+    scene.nodes = {node};
+    CameraSource source;
+    source.name = "shot", source.node = 0;
+    source.vertical_fov = from_to(0.5f, 1.0f);
+    source.near = 0.2f, source.far = 90;
+    scene.cameras = {source};
+    const Camera camera = camera_at(scene, 0, 0.5);
+    EXPECT_EQ(camera.position, vec3(1, 2, 3));
+    EXPECT_NEAR(camera.vertical_fov, 0.75f, 1e-6);
+    EXPECT_EQ(camera.near, 0.2f);
+    EXPECT_EQ(camera.far, 90);
+    EXPECT_NEAR(glm::length(camera.right), 1, 1e-6);
+    EXPECT_NEAR(dot(camera.right, camera.up), 0, 1e-6);
+    EXPECT_NEAR(glm::distance(glm::cross(camera.right, camera.up), -camera.forward), 0, 1e-6);
+    const mat3 turned = glm::mat3_cast(node.rotation.values[0]);
+    EXPECT_NEAR(glm::distance(camera.forward, -turned[2]), 0, 1e-6);
+}
+
+TEST(Snapshot, CamerasAreFoundByName) {
+    Scene scene;
+    CameraSource a, b;
+    a.name = "wide", b.name = "close";
+    b.position = vec3(0, 5, 0), b.target = vec3(0, 5, -1);
+    scene.cameras = {a, b};
+    scene.camera = 1;
+    EXPECT_EQ(find_camera(scene, ""), 1);
+    EXPECT_EQ(find_camera(scene, "wide"), 0);
+    EXPECT_THAT([&] { find_camera(scene, "wid"); }, testing::ThrowsMessage<Error>(testing::HasSubstr("wide, close")));
+    EXPECT_NEAR(camera_at(scene, 1, 0).forward.z, -1, 1e-6);
+    scene.cameras[0].target = scene.cameras[0].position;
+    EXPECT_THROW(camera_at(scene, 0, 0), Error);
+}
+
+TEST(Background, ColourSkyAndPlate) {
+    BackgroundNow background;
+    background.color = vec3(1, 2, 3);
+    background.intensity = 2;
+    EXPECT_EQ(background_radiance(background, vec3(0, 1, 0), vec2(0)), vec3(2, 4, 6));
+
+    background.kind = BackgroundKind::sky;
+    background.zenith = vec3(0, 0, 9), background.ground = vec3(4, 0, 0);
+    EXPECT_EQ(background_radiance(background, vec3(0, 1, 0), vec2(0)), vec3(0, 0, 18));
+    EXPECT_EQ(background_radiance(background, vec3(0, -1, 0), vec2(0)), vec3(8, 0, 0));
+    EXPECT_EQ(background_radiance(background, vec3(1, 0, 0), vec2(0)), vec3(2, 4, 6));
+    EXPECT_NEAR(background_radiance(background, glm::normalize(vec3(1, 1e-3f, 0)), vec2(0)).x, 2, 1e-4);
+
+    auto image = std::make_shared<Image<vec3>>(ivec2(2, 2));
+    image->pixels = {vec3(0), vec3(4), vec3(8), vec3(12)};
+    background.kind = BackgroundKind::image;
+    background.image = image;
+    EXPECT_EQ(background_radiance(background, vec3(0), vec2(0.25f, 0.25f)).x, 0);
+    EXPECT_EQ(background_radiance(background, vec3(0), vec2(0.75f, 0.25f)).x, 8);
+    EXPECT_EQ(background_radiance(background, vec3(0), vec2(0.5f, 0.5f)).x, 12);
+    EXPECT_EQ(background_radiance(background, vec3(0), vec2(1, 1)).x, 24);
+}
+
+TEST(Background, LatLongWrapsWithoutASeam) {
+    // Brightness is the column: 0 at the left edge, 63 at the right.
+    auto image = std::make_shared<Image<vec3>>(ivec2(64, 32));
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x) image->at(x, y) = vec3(std::abs(x - 31.5f), y, 0);
+    BackgroundNow background;
+    background.kind = BackgroundKind::image;
+    background.image = image;
+    background.lat_long = true;
+    EXPECT_NEAR(background_radiance(background, vec3(0, 0, -1), vec2(0)).x, 0.5f, 1e-4);
+    EXPECT_NEAR(background_radiance(background, vec3(1, 0, 0), vec2(0)).x, 16, 1e-3); // three quarters across
+    EXPECT_NEAR(background_radiance(background, vec3(0, 0, -1), vec2(0)).y, 15.5f, 1e-3);
+    const float left = background_radiance(background, glm::normalize(vec3(-1e-4f, 0, 1)), vec2(0)).x;
+    const float right = background_radiance(background, glm::normalize(vec3(1e-4f, 0, 1)), vec2(0)).x;
+    EXPECT_NEAR(left, right, 1e-3);
+    EXPECT_NEAR(left, 31.5f, 1e-2);
+    EXPECT_EQ(background_radiance(background, vec3(0, 1, 0), vec2(0)).y, 0);
+    background.rotation = pi / 2;
+    EXPECT_NEAR(background_radiance(background, vec3(0, 0, -1), vec2(0)).x, 16, 1e-3);
+}
+}
+}
