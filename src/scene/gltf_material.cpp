@@ -184,6 +184,8 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
         document.materials.try_emplace(index, static_cast<int>(document.scene->materials.size()));
     if (!added) return known->second;
 
+    if (max_component(material.base_color) > 1.001f) document.count("base colours over 1 are taken for 1");
+    material.base_color = glm::min(material.base_color, vec3(1)), material.alpha = std::min(material.alpha, 1.0f);
     material.base_texture = scene_texture(document, base);
     material.emission = emission_of(source);
     if (emissive.texture >= 0 && max_component(material.emission) > 0) {

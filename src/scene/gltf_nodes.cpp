@@ -173,8 +173,8 @@ LightSource light_source(const GltfDocument& document, int index) {
     if (source.spot.innerConeAngle > source.spot.outerConeAngle)
         refuse(document.place("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
                "innerConeAngle is greater than outerConeAngle");
-    light.inner_cone = static_cast<float>(source.spot.innerConeAngle);
-    light.outer_cone = static_cast<float>(source.spot.outerConeAngle);
+    light.inner_cone = std::min(static_cast<float>(source.spot.innerConeAngle), pi / 2);
+    light.outer_cone = std::min(static_cast<float>(source.spot.outerConeAngle), pi / 2);
     return light;
 }
 

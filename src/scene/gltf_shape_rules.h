@@ -116,11 +116,11 @@ constexpr Rule texture_transform[] = {numbers("offset", 2), numbers("scale", 2),
 constexpr Rule texture_info_extensions[] = {object("KHR_texture_transform", texture_transform)};
 constexpr Rule texture_info[] = {index("index", "textures", required), integer("texCoord", 0, 1000),
                                  object("extensions", texture_info_extensions)};
-constexpr Rule metallic_roughness[] = {numbers("baseColorFactor", 4, 0, 1), object("baseColorTexture", texture_info),
+constexpr Rule metallic_roughness[] = {numbers("baseColorFactor", 4, 0, 1e30), object("baseColorTexture", texture_info),
                                        number("metallicFactor", 0, 1), number("roughnessFactor", 0, 1),
                                        object("metallicRoughnessTexture", texture_info)};
 constexpr Rule emissive_strength[] = {number("emissiveStrength", 0, 1e30)};
-constexpr Rule specular_glossiness[] = {numbers("diffuseFactor", 4, 0, 1), object("diffuseTexture", texture_info)};
+constexpr Rule specular_glossiness[] = {numbers("diffuseFactor", 4, 0, 1e30), object("diffuseTexture", texture_info)};
 constexpr Rule material_extensions[] = {object("KHR_materials_emissive_strength", emissive_strength),
                                         object("KHR_materials_pbrSpecularGlossiness", specular_glossiness)};
 constexpr std::string_view alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
@@ -167,7 +167,7 @@ constexpr Rule animation[] = {text("name"), objects("channels", channel, require
                               objects("samplers", animation_sampler, required)};
 
 // Cameras and lights.
-constexpr double half_turn = 3.14159265358979323846;
+constexpr double right_angle = 1.5708; // a little more: many writers round up
 constexpr Rule perspective[] = {positive("yfov", 1e30, required), positive("znear", 1e30, required),
                                 positive("zfar", 1e30), positive("aspectRatio", 1e30)};
 constexpr Rule orthographic[] = {number("xmag", -1e30, 1e30, required), number("ymag", -1e30, 1e30, required),
@@ -175,7 +175,7 @@ constexpr Rule orthographic[] = {number("xmag", -1e30, 1e30, required), number("
 constexpr std::string_view camera_types[] = {"perspective", "orthographic"};
 constexpr Rule camera[] = {text("name"), words("type", camera_types, required), object("perspective", perspective),
                            object("orthographic", orthographic)};
-constexpr Rule spot[] = {number("innerConeAngle", 0, half_turn / 2), number("outerConeAngle", 0, half_turn / 2)};
+constexpr Rule spot[] = {number("innerConeAngle", 0, right_angle), number("outerConeAngle", 0, right_angle)};
 constexpr Rule light[] = {text("name"),
                           text("type", required),
                           numbers("color", 3, 0, 1e30),

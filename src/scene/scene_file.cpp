@@ -38,6 +38,18 @@ void read_general(const Field& root, Scene& scene) {
     if (const Field ambient = root.member("ambient")) scene.ambient = keyed_color(ambient);
 }
 
+// Nothing shines and nothing glows, at any time.
+bool is_dark(const Scene& scene) {
+    const auto black = [](const Keyed<vec3>& color) {
+        return std::ranges::all_of(color.values, [](vec3 value) { return value == vec3(0); });
+    };
+    const Background& back = scene.background;
+    return scene.lights.empty() && black(scene.ambient) && !back.image && black(back.color) && black(back.zenith) &&
+           black(back.ground) &&
+           std::ranges::all_of(scene.media, [&](const auto& fog) { return black(fog.emission); }) &&
+           std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
+}
+
 void read_scene_file(Scene& scene, const LoadOptions& options) {
     const Json document = read_json(scene.file, scene_schema);
     add_input(scene, scene.file);
@@ -54,6 +66,7 @@ void read_scene_file(Scene& scene, const LoadOptions& options) {
     read_media(root, scene);
     read_background(root, scene);
     read_billboards(root, scene);
+    if (is_dark(scene)) warn(scene, root.file + ": there is no light: everything will be black");
 }
 }
 

@@ -191,6 +191,27 @@ TEST(Gltf, CamerasKeepTheirVerticalAngle) {
     EXPECT_FALSE(has_warning(scene, "no camera"));
 }
 
+// Values a little outside their range, as single precision rounds them, are no reason to refuse a file.
+TEST(Gltf, RoundedLimitsAreAccepted) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.members["extensions"] =
+        R"({"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{"innerConeAngle":1.5707963705062866,
+        "outerConeAngle":1.5707963705062866}},{"type":"area"}]}})";
+    gltf.members["nodes"] = R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}}},{"camera":0},
+        {"extensions":{"KHR_lights_punctual":{"light":1}}}])";
+    gltf.members["scenes"] = R"([{"nodes":[0,1,2]}])";
+    gltf.members["cameras"] = R"([{"type":"perspective","perspective":{"yfov":4,"znear":0.1}}])";
+    gltf.members["materials"] = R"([{"pbrMetallicRoughness":{"baseColorFactor":[1.0000001,2,0.5,1]}}])";
+    gltf.members["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}])";
+    const Scene scene = loaded(gltf);
+    ASSERT_EQ(scene.lights.size(), 1u);
+    EXPECT_EQ(scene.lights[0].outer_cone.at(0), pi / 2);
+    EXPECT_EQ(scene.materials.at(0).base_color, vec3(1, 1, 0.5f));
+    EXPECT_LT(scene.cameras.at(0).vertical_fov.at(0), pi);
+    for (const char* part : {"170 degrees", "over 1 are taken for 1", "unknown types"})
+        EXPECT_TRUE(has_warning(scene, part)) << part;
+}
+
 // Blender 3.4 writes a point of 1000 W as 54351.4, 79.577 or 1000, and a sun of 3 as 2049, 3 or 3.
 TEST(Gltf, LightUnits) {
     for (const auto& [units, point, sun] :

@@ -19,6 +19,8 @@ TEST(SceneFile, TheLeastThatIsAScene) {
     EXPECT_EQ(scene.resolution, ivec2(640, 360));
     EXPECT_EQ(scene.cameras.size(), 1u) << "one is made up";
     EXPECT_TRUE(has_warning(scene, "no camera"));
+    EXPECT_TRUE(has_warning(scene, "no light"));
+    EXPECT_FALSE(has_warning(loaded(folder, R"({"tyndall": 1, "ambient": 1})"), "no light"));
     ASSERT_EQ(scene.inputs.size(), 1u);
     EXPECT_EQ(scene.inputs[0], folder / "scene.json");
 }
