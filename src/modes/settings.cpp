@@ -119,7 +119,7 @@ Settings settings_for(Quality quality) {
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
-        march.step_depth = 0.5f, march.step_voxels = 8, march.step_share = 1.0f / 24, march.near_light = 1;
+        march.step_depth = 0.5f, march.step_voxels = 12, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         break;
     case Quality::preview:
