@@ -98,5 +98,19 @@ TEST(NoiseBound, OfAWholeFieldIsItsPeak) {
     EXPECT_NEAR(fractal_noise_bound({}, 0, {vec3(-1000), vec3(1000)}), 1, 1e-4);
     EXPECT_NEAR(fractal_noise_bound({.billow = true}, 0, {vec3(-1000), vec3(1000)}), 1, 1e-4);
 }
+
+TEST(NoiseBound, WhatIsLeftOfASumIsNeverLessThanItsOctavesCanAdd) {
+    const std::vector<NoiseLayer> layers{{.weight = 0.7f}, {.weight = 0.4f, .salt = 9}};
+    for (const bool billow : {false, true}) {
+        const NoiseSum sum = noise_sum({.octaves = 6, .gain = 0.6f, .billow = billow}, layers, dvec3(0));
+        ASSERT_EQ(sum.octaves.size(), 12u);
+        double left = 0;
+        for (size_t k = sum.octaves.size(); k-- > 0;) {
+            left += double{sum.octaves[k].scale} * std::sqrt(0.75);
+            EXPECT_GE(sum.rest[k], left);
+            EXPECT_LE(sum.rest[k], left * 1.001 + 2e-5);
+        }
+    }
+}
 }
 }
