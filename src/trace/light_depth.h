@@ -20,9 +20,10 @@ struct LightDepthGrid {
     // wider than 70° to each side a `point` grid.
     LightKind kind = LightKind::sun;
     mat3 world_to_grid{1};    // rotation to the grid's axes, after `position` is taken off
-    vec3 position{0};         // a point in the fog (sun), the light
+    vec3 position{0};         // a point by the fog (sun), the light
     ivec3 size{0};            // corners along u, v, w
     vec3 scale{1}, offset{0}; // corner number = coordinate · scale + offset
+    float start = -infinity;  // w at which the depth begins to count
     std::vector<float> depth; // [(w·size.y + v)·size.x + u]
     bool empty() const { return depth.empty(); }
 };

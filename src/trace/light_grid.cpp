@@ -5,8 +5,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int64_t most_corners = 64 << 20; // of 4 bytes: 256 MB
-constexpr int most_layers = 8192;
+constexpr int64_t most_corners = 64 << 20;   // of 4 bytes: 256 MB
+constexpr float most_across = 65536;         // corners along one axis
 constexpr float widest_cone = 70 * pi / 180; // half angle up to which perspective columns serve a spot
 constexpr float widest_view = 60 * pi / 180; // ... and a point light that has the fog to one side
 
@@ -131,38 +131,54 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
     return angle;
 }
 
-// Corners along each axis: `cell` apart across and about as far apart along; coarser when that would take too much
-// memory.
+// Cell sizes come in steps of a quarter octave and corners at whole multiples, so that the grid stands still while the
+// fog in it drifts and its bounds change a little from frame to frame.
+float stable_size(float cell) { return std::exp2(0.25f * std::round(4 * std::log2(cell))); }
+
+vec3 stable_anchor(vec3 point, float extent) {
+    const float step = std::exp2(std::ceil(std::log2(extent)) + 2);
+    return glm::round(point / step) * step;
+}
+
+vec3 stable_direction(vec3 towards) {
+    const float longest = max_component(glm::abs(towards));
+    return longest > 0 ? glm::normalize(glm::round(towards * (8 / longest))) : vec3(0, 0, 1);
+}
+
+// Corners `cell` apart; coarser when they would take too much memory.
 void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
-    const vec3 extent = fit.high - fit.low;
-    for (;; cell *= 1.1f) {
-        for (int axis = 0; axis < 3; ++axis) {
-            const float cells = std::ceil(extent[axis] / cell[axis] - 1e-3f);
-            grid.size[axis] = 1 + static_cast<int>(std::clamp(cells, 1.0f, static_cast<float>(most_layers)));
-        }
-        if (int64_t{grid.size.x} * grid.size.y * grid.size.z <= most_corners) break;
+    constexpr float slack = 1e-3f;
+    for (;; cell *= 2.0f) {
+        const vec3 low = glm::floor(fit.low / cell + slack), high = glm::ceil(fit.high / cell - slack);
+        const vec3 corners = glm::max(high - low, vec3(1)) + 1.0f;
+        if (max_component(corners) > most_across) continue;
+        grid.size = ivec3(corners);
+        if (int64_t{grid.size.x} * grid.size.y * grid.size.z > most_corners) continue;
+        grid.scale = 1.0f / cell;
+        grid.offset = -low;
+        return;
     }
-    grid.scale = vec3(grid.size - 1) / extent;
-    grid.offset = -fit.low * grid.scale;
 }
 
 // Columns along the sun's rays.
-void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, float cells,
-             LightDepthGrid& grid) {
+void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, const Box& fog,
+             float cells, LightDepthGrid& grid) {
     grid.kind = LightKind::sun;
+    grid.position = stable_anchor(fog.center(), max_component(fog.size()) + blocks[0].radius);
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
     const vec3 extent = fit.high - fit.low;
-    set_size(fit, vec3(std::max(extent.x, extent.y) / cells), grid);
+    set_size(fit, vec3(stable_size(std::max(extent.x, extent.y) / cells)), grid);
 }
 
-// Distances along columns that spread from a local light. Cells are cubes two thirds of the way out; `width` is the
-// size of a cell across, at distance 1.
-void fit_distances(const Light& light, Fit fit, vec2 cell, float width, LightDepthGrid& grid) {
-    fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
+// Distances along columns that spread from a local light: cells, `width` across at distance 1, are cubes two thirds of
+// the way out.
+void fit_distances(const Light& light, Fit fit, float cell, float width, LightDepthGrid& grid) {
+    grid.position = light.position;
+    grid.start = fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
     if (!(fit.high.z > fit.low.z)) return;
     const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
-    set_size(fit, vec3(cell, width * reference), grid);
+    set_size(fit, vec3(cell, cell, stable_size(width * reference)), grid);
 }
 
 void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, vec3 axis,
@@ -172,11 +188,12 @@ void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> 
     const Fit fit = tightest(media, axis, grid,
                              [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
     if (fit.empty()) return;
-    const float width = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
-    fit_distances(light, fit, vec2(width), width, grid);
+    const float width = stable_size(std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells);
+    fit_distances(light, fit, width, width, grid);
 }
 
-// All directions: the octahedron's square of side 2 holds 4π, and fog all around is seen across about 4/3 of a side.
+// All directions: the octahedron's square of side 2 holds a solid angle of 4π; two thirds of it lie across the fog. An
+// even number of cells, as the square folds about its middle.
 void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, LightDepthGrid& grid) {
     grid.kind = LightKind::point;
     Fit fit;
@@ -185,8 +202,8 @@ void fit_octahedron(std::span<const Block> blocks, const Light& light, float cel
         const float distance = glm::length(block.center - light.position);
         fit.grow(2, distance - block.radius, distance + block.radius);
     }
-    const float width = 1.5f / cells;
-    fit_distances(light, fit, vec2(width), width * 0.5f * std::sqrt(4 * pi), grid);
+    const float width = 1 / std::ceil(cells * (2 / 3.0f));
+    fit_distances(light, fit, width, width * std::sqrt(pi), grid);
 }
 }
 
@@ -197,16 +214,14 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
     Box fog;
     for (const Block& block : blocks) fog.grow(block.center);
     const float cells = static_cast<float>(std::max(resolution, 1));
-    grid.position = light.kind == LightKind::sun ? fog.center() : light.position;
     if (light.kind == LightKind::sun) {
-        fit_sun(media, blocks, light, cells, grid);
+        fit_sun(media, blocks, light, fog, cells, grid);
         return grid;
     }
 
     // Perspective columns when one cone holds all that matters, else all directions.
     const bool spot = light.kind == LightKind::spot && light.outer_cone <= widest_cone;
-    const vec3 towards = fog.center() - light.position;
-    const vec3 axis = spot ? light.direction : glm::length(towards) > 0 ? glm::normalize(towards) : vec3(0, 0, 1);
+    const vec3 axis = spot ? light.direction : stable_direction(fog.center() - light.position);
     const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);
     if (spot || angle < widest_view)
         fit_cone_grid(media, blocks, light, axis, angle, cells, grid);

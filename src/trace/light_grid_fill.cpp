@@ -45,6 +45,7 @@ Columns columns_at(const LightDepthGrid& grid, int first, int row) {
 
 // Optical depth of one medium between two distances along the columns, by midpoints.
 Floats depth_between(const Medium& medium, const Columns& columns, float from, float to) {
+    if (!(to > from)) return 0.0f;
     const vec3 voxel = medium.bricks->voxel_size;
     const float finest = std::min(voxel.x, std::min(voxel.y, voxel.z));
     const int samples = std::max(1, static_cast<int>(std::ceil((to - from) / (voxels_per_sample * finest))));
@@ -60,7 +61,9 @@ Floats depth_between(const Medium& medium, const Columns& columns, float from, f
 void fill_columns(std::span<const Medium* const> media, int first, int row, LightDepthGrid& grid) {
     const Columns columns = columns_at(grid, first, row);
     const size_t count = static_cast<size_t>(std::min(16, grid.size.x - first));
-    const auto distance = [&](int k) { return (static_cast<float>(k) - grid.offset.z) / grid.scale.z; };
+    const auto distance = [&](int k) {
+        return std::max((static_cast<float>(k) - grid.offset.z) / grid.scale.z, grid.start);
+    };
     Floats sum = 0.0f;
     for (int k = 0; k < grid.size.z; ++k) {
         if (k > 0)

@@ -1,5 +1,5 @@
 // How far light-aligned grids are from the exact optical depth.
-#include "trace/light_depth.h"
+#include "trace/light_grid.h"
 
 #include "base/parallel.h"
 #include "trace/scene_fixtures.h"
@@ -121,6 +121,26 @@ TEST(LightGrid, PointBesideTheFogIsAccurate) {
     light.position = vec3(-0.5f, 1.4f, 0.3f) * float(side);
     // The box is seen across 2·tan(view angle); its middle is 1.4 sides away.
     expect_accuracy(light, points_in_fog([](vec3) { return true; }), 1.6f * side, {0.006, 0.016, 0.045}, "aside");
+}
+
+// Fog whose bounds change a little keeps its corners: no shimmer from frame to frame.
+TEST(LightGrid, StandsStillWhileBoundsChange) {
+    const Medium small = medium_of(volume_of(ivec3(0), ivec3(77, 63, 70), exact_noise));
+    const Medium large = medium_of(volume_of(ivec3(-1, 0, 1), ivec3(78, 64, 71), exact_noise));
+    const Medium* const before[] = {&small};
+    const Medium* const after[] = {&large};
+    Light sun, spot, lamp;
+    sun.kind = LightKind::sun, sun.direction = glm::normalize(vec3(0.4f, -1, 0.25f));
+    spot.kind = LightKind::spot, spot.position = vec3(30, 190, 40), spot.outer_cone = 0.3f;
+    lamp.position = vec3(30, 190, 40);
+    for (const Light& light : {sun, spot, lamp}) {
+        const LightDepthGrid a = fitted_grid(before, light, 32), b = fitted_grid(after, light, 32);
+        EXPECT_EQ(a.scale.x, b.scale.x);
+        EXPECT_EQ(a.scale.z, b.scale.z);
+        EXPECT_EQ(a.position, b.position);
+        for (const LightDepthGrid& grid : {a, b}) EXPECT_EQ(grid.offset, glm::round(grid.offset));
+        EXPECT_EQ(a.world_to_grid, b.world_to_grid);
+    }
 }
 
 // The octahedron's folds are where two coordinates change sign below the light, and its equator.
