@@ -1,3 +1,4 @@
+// From bounds to leaves: a grid, the leaves that can hold fog, their values.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "volume/recipe_leaf.h"
