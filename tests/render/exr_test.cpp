@@ -165,9 +165,9 @@ TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
     write_exr(directory.file("a.exr"), patterned({61, 40}, {0, 0}, {61, 40}), {}, all_layers);
     const std::string bytes = bytes_of(directory.file("a.exr"));
     int refused = 0;
-    for (uint32_t k = 0; k < 600; ++k) {
+    for (uint32_t k = 0; k < 400; ++k) {
         std::string damaged = bytes;
-        const size_t where = k < 300 ? k * 4 % 1500 : hash(k) % bytes.size();
+        const size_t where = k < 200 ? k * 6 % 1500 : hash(k) % bytes.size();
         damaged[where] = static_cast<char>(damaged[where] ^ (1 << hash(k, 1u) % 8));
         put_bytes(directory.file("flip.exr"), damaged);
         try {
@@ -178,7 +178,7 @@ TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
             ++refused;
         }
     }
-    EXPECT_GT(refused, 300); // compressed pixels carry a checksum
+    EXPECT_GT(refused, 200); // compressed pixels carry a checksum
 }
 
 TEST(Exr, LeavesNothingOnAFullDisk) {
