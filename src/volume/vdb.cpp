@@ -13,6 +13,7 @@
 #include <charconv>
 #include <cstdio>
 #include <fstream>
+#include <new>
 
 namespace tyndall {
 namespace {
@@ -129,6 +130,15 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     return decode_tree(std::move(bytes), grid, directory.file_version, where);
 }
 
+// An allocation that fails is the user's to know, not a crash.
+template<class Body> auto within_memory(const std::filesystem::path& path, const Body& body) {
+    try {
+        return body();
+    } catch (const std::bad_alloc&) {
+        fail(ExitCode::out_of_memory, path.string(), "does not fit into memory");
+    }
+}
+
 VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid) {
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
@@ -155,22 +165,8 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     info.memory_bytes = memory_needed(grid, counts);
     return info;
 }
-}
 
-std::string VdbReadReport::summary() const {
-    std::vector<std::string> parts;
-    if (empty) parts.push_back("is empty");
-    if (non_finite) parts.push_back(std::to_string(non_finite) + " voxels that are not finite set to 0");
-    if (negative) parts.push_back(std::to_string(negative) + " negative voxels set to 0");
-    if (background != 0) {
-        char text[48];
-        std::snprintf(text, sizeof text, "background %g", static_cast<double>(background));
-        parts.push_back(std::string(text) + " dropped outside the active voxels");
-    }
-    return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");
-}
-
-SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {
+SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {
     ByteCursor file(path);
     VdbDirectory directory = read_directory(file);
     const VdbGridEntry& grid = choose_grid(directory, wanted, file);
@@ -186,7 +182,7 @@ SparseVolume read_vdb(const std::filesystem::path& path, const std::string& want
     return volume;
 }
 
-VdbInfo vdb_info(const std::filesystem::path& path) {
+VdbInfo file_info(const std::filesystem::path& path) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
     VdbInfo info;
@@ -197,6 +193,15 @@ VdbInfo vdb_info(const std::filesystem::path& path) {
     for (const VdbGridEntry& grid : directory.grids) info.grids.push_back(grid_info(file, directory, grid));
     return info;
 }
+}
+
+SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {
+    return within_memory(path, [&] { return read_fog(path, wanted, report); });
+}
+
+VdbInfo vdb_info(const std::filesystem::path& path) {
+    return within_memory(path, [&] { return file_info(path); });
+}
 
 VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     ByteCursor file(path);
@@ -205,5 +210,18 @@ VdbMetadata vdb_metadata(const std::filesystem::path& path) {
 
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume, const VdbWriteOptions& options) {
     write_file_atomically(path, encode_fog(volume, options, path.string()));
+}
+
+std::string VdbReadReport::summary() const {
+    std::vector<std::string> parts;
+    if (empty) parts.push_back("is empty");
+    if (non_finite) parts.push_back(std::to_string(non_finite) + " voxels that are not finite set to 0");
+    if (negative) parts.push_back(std::to_string(negative) + " negative voxels set to 0");
+    if (background != 0) {
+        char text[48];
+        std::snprintf(text, sizeof text, "background %g", static_cast<double>(background));
+        parts.push_back(std::string(text) + " dropped outside the active voxels");
+    }
+    return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");
 }
 }

@@ -48,7 +48,8 @@ std::string mutated(std::string bytes, std::mt19937& random) {
     return bytes;
 }
 
-enum Outcome { loaded = 0, refused = 1, wrong = 2 };
+enum Outcome { loaded, refused, wrong };
+constexpr int first_code = 40; // exit codes no sanitizer uses
 
 // What became of a file read by a child: its outcome, or `wrong` with the reason.
 struct Verdict {
@@ -68,15 +69,16 @@ Verdict judged(const std::filesystem::path& file) {
     const pid_t child = fork();
     if (child == 0) {
         alarm(10);
-        _exit(read_all(file));
+        _exit(first_code + read_all(file));
     }
     int status = 0;
     rusage usage{};
     if (child < 0 || wait4(child, &status, 0, &usage) != child) return {wrong, "no child"};
     if (WIFSIGNALED(status)) return {wrong, "signal " + std::to_string(WTERMSIG(status))};
     if (usage.ru_maxrss > 2 << 20) return {wrong, "memory " + std::to_string(usage.ru_maxrss >> 10) + " MB"};
-    if (WEXITSTATUS(status) > refused) return {wrong, "exit code " + std::to_string(WEXITSTATUS(status))};
-    return {static_cast<Outcome>(WEXITSTATUS(status)), ""};
+    const int outcome = WEXITSTATUS(status) - first_code;
+    if (outcome != loaded && outcome != refused) return {wrong, "exit code " + std::to_string(WEXITSTATUS(status))};
+    return {static_cast<Outcome>(outcome), ""};
 }
 
 std::vector<std::string> originals() {

@@ -4,6 +4,11 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/resource.h>
+
+#include <atomic>
+#include <thread>
+
 namespace tyndall {
 namespace {
 using namespace testing;
@@ -277,6 +282,61 @@ TEST(VdbInfo, TellsWhatIsThere) {
     EXPECT_EQ(info.grids[0].active_low, ivec3(-5));
     EXPECT_FALSE(info.grids[1].usable);
     EXPECT_THAT(info.grids[1].why_not, HasSubstr("vec3s"));
+}
+
+// Replaced by a rename or cut in place while it is read: the old fog, the new one or an Error.
+TEST(VdbRead, FileThatChangesUnderneath) {
+    const ScratchDirectory scratch;
+    AuthoredGrid ball = noisy_ball(ivec3(0), 12);
+    const std::string old = authored({ball});
+    ball.voxels[0].second = 2;
+    const std::string fresh = authored({ball});
+    const ivec3 at = ball.voxels[0].first;
+    const auto file = scratch.file("a.vdb", old);
+    std::atomic<bool> done = false;
+    std::thread other([&] {
+        for (int i = 0; !done; ++i) {
+            if (i % 3 == 0)
+                std::filesystem::resize_file(file, old.size() / 2);
+            else
+                std::filesystem::rename(scratch.file("b.vdb", i % 3 == 1 ? old : fresh), file);
+        }
+    });
+    const float before = noisy_ball(ivec3(0), 12).voxels[0].second;
+    for (int i = 0; i < 100; ++i) {
+        float value = 0;
+        const Error error = error_of([&] { value = value_at(read_vdb(file), at); });
+        if (error.code == ExitCode::ok)
+            EXPECT_TRUE(value == before || value == 2) << value;
+        else
+            EXPECT_EQ(error.code, ExitCode::refused) << error.what();
+    }
+    done = true;
+    other.join();
+}
+
+TEST(VdbRead, MoreThanTheMemoryThereIs) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the sanitizer takes more address space than there is memory";
+#endif
+    const ScratchDirectory scratch;
+    SparseVolume volume;
+    volume.leaves.resize(20000); // 90 MB with the library's own tree
+    for (int i = 0; i < 20000; ++i) {
+        volume.leaves[static_cast<size_t>(i)].origin = ivec3(i % 100, i / 100, 0) * 8;
+        volume.leaves[static_cast<size_t>(i)].values.fill(0.5f);
+    }
+    write_vdb(scratch.path / "a.vdb", volume);
+    volume = {};
+    rlimit before{};
+    ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
+    rlimit small = before;
+    small.rlim_cur = 64 << 20;
+    ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
+    const Error error = error_of([&] { read_vdb(scratch.path / "a.vdb"); });
+    setrlimit(RLIMIT_AS, &before);
+    EXPECT_EQ(error.code, ExitCode::out_of_memory) << error.what();
+    EXPECT_EQ(error_of([&] { read_vdb(scratch.path / "a.vdb"); }).code, ExitCode::ok);
 }
 
 TEST(VdbRead, WhatIsNoVolume) {
