@@ -1,0 +1,90 @@
+"""What `tyndall info` says about files whose content is known."""
+import json
+import math
+import unittest
+
+from program import SOURCE, TRIANGLE, ProgramTest, glb, gltf, recipe, scene
+
+
+def lamp(kind, intensity):
+    light = {"type": kind, "intensity": intensity, "name": f"{kind} {intensity}"}
+    return {**light, "spot": {"outerConeAngle": 0.5}} if kind == "spot" else light
+
+
+class Info(ProgramTest):
+    def report(self, path):
+        """The report as JSON; the one for people has to come as well."""
+        text = self.succeed("info", path).stdout
+        self.assertIn(str(path), text)
+        self.assertNotIn("\x1b", text)
+        return json.loads(self.succeed("info", "--json", path).stdout)
+
+    def test_volumes(self):
+        fog = recipe(density={"threshold": 0, "gain": 1000}, wind=[0, 0, 0], optics={"extinction": 0.25})
+        self.succeed("bake", self.write("recipe.json", fog), "-o", self.path("fog.0007.vdb"), "--frames", "7")
+        report = self.report(self.path("fog.0007.vdb"))
+        self.assertEqual((report["kind"], report["file_version"]), ("vdb", 224))
+        self.assertEqual(report["metadata"]["tyndall_frame"], "7")
+        self.assertEqual(report["metadata"]["tyndall_extinction_per_m"], "0.25")
+        [grid] = report["grids"]
+        self.assertEqual((grid["name"], grid["type"], grid["class"]), ("density", "float", "fog volume"))
+        self.assertTrue(grid["usable"])
+        # Saturated fog fills the box: every number follows from the recipe.
+        self.assertEqual(grid["voxels"], [32, 16, 32])
+        self.assertEqual(grid["active_voxels"], 32 * 16 * 32)
+        self.assertEqual((grid["minimum"], grid["maximum"], grid["mean"], grid["background"]), (1, 1, 1, 0))
+        for name, corner in fog["bounds"].items():
+            for found, expected in zip(grid["bounds"][name], corner):
+                self.assertAlmostEqual(found, expected, places=5)
+
+    def test_pictures(self):
+        path = self.write("scene.json", scene(frames="5"))
+        self.succeed("render", path, "-o", self.path("out.exr"), "--crop", "8,4,40,20", "--seed", "3", "--aov", "Z")
+        report = self.report(self.path("out.exr"))
+        self.assertEqual((report["display"], report["low"], report["size"]), ([64, 36], [8, 4], [32, 16]))
+        channels = {channel["name"]: channel for channel in report["channels"]}
+        self.assertEqual(sorted(channels), ["A", "B", "G", "R", "Z"])
+        self.assertEqual(report["attributes"]["tyndall:seed"], "3")
+        self.assertEqual(report["attributes"]["tyndall:mode"], "march")
+        self.assertGreater(channels["R"]["minimum"], 0)
+
+    def test_scenes_and_recipes(self):
+        report = self.report(self.write("scene.json", scene()))
+        self.assertEqual((report["kind"], report["first_frame"], report["last_frame"]), ("scene", 1, 3))
+        self.assertEqual([light["kind"] for light in report["lights"]], ["sun"])
+        self.assertEqual([medium["kind"] for medium in report["media"]], ["homogeneous"])
+        report = self.report(self.write("recipe.json", recipe()))
+        self.assertEqual((report["kind"], report["voxels"]), ("recipe", [32, 16, 32]))
+        for path in sorted([*(SOURCE / "scenes").glob("*.gltf"), *(SOURCE / "scenes").glob("*.glb")]):
+            self.assertGreater(self.report(path)["triangles"], 0)
+
+    def test_kinds_are_told_by_content_where_names_do_not_say(self):
+        self.succeed("bake", self.write("recipe.json", recipe()), "-o", self.path("fog.vdb"))
+        self.path("fog.vdb").rename(self.path("fog.cache"))
+        self.assertEqual(self.report(self.path("fog.cache"))["kind"], "vdb")
+        self.refuse(3, ["notes.txt"], "info", self.write("notes.txt", "some notes"))
+        self.refuse(3, ["neither"], "info", self.write("other.json", {"name": "something else"}))
+
+    def test_gltf(self):
+        report = self.report(self.write("model.glb", glb(gltf(buffers=[{"byteLength": len(TRIANGLE)}]))))
+        self.assertEqual((report["kind"], report["triangles"], report["lights"]), ("gltf", 1, []))
+        self.assertEqual(report["bounds"], {"low": [0, 0, 0], "high": [1, 1, 0]})
+
+    def units(self, *lights):
+        names = [{"extensions": {"KHR_lights_punctual": {"light": i}}} for i in range(len(lights))]
+        content = gltf(nodes=names, scenes=[{"nodes": list(range(len(lights)))}], meshes=[{"primitives": [
+            {"attributes": {"POSITION": 0}}]}], buffers=[{"byteLength": len(TRIANGLE)}],
+            extensionsUsed=["KHR_lights_punctual"], extensions={"KHR_lights_punctual": {"lights": list(lights)}})
+        return self.report(self.write("lights.glb", glb(content)))["light_units"]
+
+    def test_light_units_are_recognised_but_not_acted_on(self):
+        watt = 1 / (4 * math.pi)
+        self.assertIn("standard", self.units(lamp("point", 683 * 1000 * watt), lamp("directional", 683 * 3)))
+        self.assertIn("unitless", self.units(lamp("point", 1000 * watt), lamp("directional", 3)))
+        self.assertIn("raw", self.units(lamp("point", 1000), lamp("spot", 250)))
+        self.assertEqual(self.units(lamp("point", 123.4567), lamp("point", 77.7777)), "")
+        self.assertEqual(self.units(lamp("directional", 3.14159)), "")
+
+
+if __name__ == "__main__":
+    unittest.main()
