@@ -10,7 +10,7 @@
 namespace tyndall {
 struct BakeOptions {
     VdbWriteOptions write;
-    bool resume = false;      // keep files whose stored settings hash matches and whose voxels read back
+    bool resume = false; // keep files whose stored settings hash matches and whose voxels read back
 };
 
 struct BakeReport {
