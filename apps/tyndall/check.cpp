@@ -71,6 +71,14 @@ void check_scene(const std::string& file, Problems& problems) {
     check_media(file, scene, problems);
 }
 
+// As a part of a scene: that it has no light, fog or camera of its own is no problem.
+void check_gltf(const std::string& file, Problems& problems) {
+    Scene scene;
+    scene.file = file;
+    load_gltf(file, {}, scene);
+    for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
+}
+
 // A numbered name stands for all its files and for the gaps between them.
 void check_sequence(const std::string& pattern, Problems& problems) {
     const VdbSequence sequence = find_sequence(pattern, ".");

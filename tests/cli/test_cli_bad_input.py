@@ -285,7 +285,8 @@ class Check(ProgramTest):
         self.succeed("bake", fog, "-o", self.path("fog.####.vdb"), "--frames", "1-3")
         path = self.write("scene.json", scene(media=[{"type": "vdb", "file": "fog.####.vdb"}]))
         self.succeed("render", path, "-o", self.path("out.exr"), "--frames", "1")
-        files = [path, fog, self.path("fog.0001.vdb"), self.path("fog.####.vdb"), self.path("out.exr")]
+        model = self.write("model.glb", glb(gltf(buffers=[{"byteLength": 36}])))
+        files = [path, fog, model, self.path("fog.0001.vdb"), self.path("fog.####.vdb"), self.path("out.exr")]
         self.assertEqual(self.check(0, *files), [])
 
     def test_every_problem_is_a_line(self):
