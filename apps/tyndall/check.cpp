@@ -103,6 +103,7 @@ void check_file(const std::string& file, Problems& problems) {
     case FileKind::schema:
         return; // lies beside scenes and recipes; being JSON is all it needs
     case FileKind::gltf:
+        return check_gltf(file, problems);
     case FileKind::scene:
         return check_scene(file, problems);
     }
