@@ -100,7 +100,8 @@ Camera camera_at(const Scene& scene, int camera, double seconds) {
     Camera result;
     if (source.node >= 0) {
         const Frame frame = node_frame(scene, source.node, seconds, "camera " + source.name);
-        result = look_at(frame.position, frame.position + frame.forward, frame.up, fov);
+        result = look_at(vec3(0), frame.forward, frame.up, fov);
+        result.position = frame.position;
     } else {
         const vec3 position = source.position.at(seconds), target = source.target.at(seconds);
         if (position == target) refuse(scene.file.string(), "camera " + source.name + ": position and target are one");

@@ -267,10 +267,10 @@ TEST(Background, ColourSkyAndPlate) {
 }
 
 TEST(Background, LatLongWrapsWithoutASeam) {
-    // Brightness is the column: 0 at the left edge, 63 at the right.
+    // Red is the distance from the middle column, green the row, blue the column.
     auto image = std::make_shared<Image<vec3>>(ivec2(64, 32));
     for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 64; ++x) image->at(x, y) = vec3(std::abs(x - 31.5f), y, 0);
+        for (int x = 0; x < 64; ++x) image->at(x, y) = vec3(std::abs(x - 31.5f), y, x);
     BackgroundNow background;
     background.kind = BackgroundKind::image;
     background.image = image;
@@ -283,8 +283,11 @@ TEST(Background, LatLongWrapsWithoutASeam) {
     EXPECT_NEAR(left, right, 1e-3);
     EXPECT_NEAR(left, 31.5f, 1e-2);
     EXPECT_EQ(background_radiance(background, vec3(0, 1, 0), vec2(0)).y, 0);
+    EXPECT_NEAR(background_radiance(background, vec3(1, 0, 0), vec2(0)).z, 47.5f, 1e-3);
+    // A quarter turn, anticlockwise from above, brings the middle column from -z to -x.
     background.rotation = pi / 2;
-    EXPECT_NEAR(background_radiance(background, vec3(0, 0, -1), vec2(0)).x, 16, 1e-3);
+    EXPECT_NEAR(background_radiance(background, vec3(-1, 0, 0), vec2(0)).z, 31.5f, 1e-3);
+    EXPECT_NEAR(background_radiance(background, vec3(0, 0, -1), vec2(0)).z, 47.5f, 1e-3);
 }
 }
 }
