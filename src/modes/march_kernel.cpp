@@ -127,7 +127,7 @@ Floats visible_share(const March& march, const Light& light, const Points& point
     store(light_at.distance * 0.9999f, rays.t_max);
     alignas(64) float is_wanted[16], share[16];
     store(select(wanted, 1.0f, 0.0f), is_wanted);
-    const bool soft = light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0;
+    const bool soft = is_soft(light);
     for (size_t lane = 0; lane < 16; ++lane) {
         rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
         rays.t_min[lane] = 0;
@@ -206,7 +206,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
 
     alignas(64) float jitter[16];
     for (size_t lane = 0; lane < 16; ++lane) {
-        const bool given = lane < batch.jitter.size() && march.settings.jitter == Jitter::white;
+        const bool given = lane < batch.jitter.size() && march.settings.jitter == Jitter::interleaved;
         jitter[lane] = given ? batch.jitter[lane] : 0.5f;
     }
 

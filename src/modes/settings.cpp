@@ -75,7 +75,8 @@ std::vector<SettingRow> make_rows() {
         number_row("march.max_steps", "", 1, 1e6, "most steps per ray; they get longer beyond", FIELD(march.max_steps)),
         number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
                    FIELD(march.min_transmittance)),
-        choice_row("march.jitter", {"none", "white"}, "where in its steps a ray looks: the middle, or shifted per ray",
+        choice_row("march.jitter", {"none", "interleaved"},
+                   "where in its steps a ray looks: the middle, or shifted from pixel to pixel and sample to sample",
                    FIELD(march.jitter)),
         choice_row("march.visibility", {"off", "rays"}, "shadows of surfaces in the fog", FIELD(march.visibility)),
         choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
@@ -119,7 +120,7 @@ Settings settings_for(Quality quality) {
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
-        march.step_depth = 0.5f, march.step_voxels = 12, march.step_share = 1.0f / 24, march.near_light = 1;
+        march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         break;
     case Quality::preview:

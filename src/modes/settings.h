@@ -11,7 +11,7 @@
 
 namespace tyndall {
 enum class Visibility { off, rays };
-enum class Jitter { none, white };
+enum class Jitter { none, interleaved };
 
 struct PixelSettings {
     int samples = 4; // camera rays per pixel
@@ -21,13 +21,13 @@ struct PixelSettings {
 
 struct MarchSettings {
     float step_depth = 0.25f;        // most optical depth per step
-    float step_voxels = 6;           // most voxels per step
+    float step_voxels = 8;           // most voxels per step
     float step_length = 1e6f;        // longest step, metres
     float step_share = 1.0f / 32;    // longest step as a share of the ray's stretch through fog
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     int max_steps = 1024;            // per ray
     float min_transmittance = 1e-3f; // the march stops where less than this passes
-    Jitter jitter = Jitter::white;
+    Jitter jitter = Jitter::interleaved;
     Visibility visibility = Visibility::rays;
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids

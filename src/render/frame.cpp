@@ -131,7 +131,10 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, BlockStats
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     bool per_light) {
-    FrameTask task{{view, snapshot, mode.prepare(view, snapshot, settings, nullptr), {}}, {}, make_layers(view)};
+    // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
+    Layers layers = make_layers(view);
+    ScatterFunction scatter = mode.prepare(view, snapshot, settings, nullptr);
+    FrameTask task{{view, snapshot, std::move(scatter), {}}, {}, std::move(layers)};
     if (snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(

@@ -11,11 +11,12 @@ enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
 
 // A ray on its way: where its next stretch starts and how much of what follows reaches the eye.
 struct Path {
-    Ray ray;           // from the eye or the last BLEND surface
-    float skip = 0;    // surfaces nearer than this are behind: the near plane, or the surface just left
-    float through = 1; // share of light that gets through fog and BLEND surfaces so far
-    uint32_t seed = 0; // of the pixel in this frame
-    vec2 screen{0};    // position in the picture, 0..1
+    Ray ray;            // from the eye or the last BLEND surface
+    float skip = 0;     // surfaces nearer than this are behind: the near plane, or the surface just left
+    float through = 1;  // share of light that gets through fog and BLEND surfaces so far
+    uint32_t seed = 0;  // of the pixel in this frame
+    uint32_t shift = 0; // of its jitter
+    vec2 screen{0};     // position in the picture, 0..1
     int lane = 0;
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
@@ -36,11 +37,16 @@ struct Stretches { // of the paths still on their way, packed
 // Steps off a surface: beyond the rounding error of the point, below anything visible.
 float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
 
-// The first number of sample2() alone.
-float stratified(int sample, uint32_t seed) {
-    const uint32_t shuffled = owen_scramble(static_cast<uint32_t>(sample), hash(seed, 0u));
-    return to_unit(owen_scramble(reverse_bits(shuffled), hash(seed, 1u)));
+// Interleaved gradient noise (Jimenez 2014), in 32 bits: neighbouring pixels get numbers far apart, so that what is
+// left of the step pattern is fine grain instead of clumps. Moves by the golden ratio from frame to frame.
+uint32_t interleaved(ivec2 pixel, int frame) {
+    const double inner = 0.06711056 * pixel.x + 0.00583715 * pixel.y;
+    const double value = 52.9829189 * (inner - std::floor(inner));
+    return static_cast<uint32_t>((value - std::floor(value)) * 0x1p32) + static_cast<uint32_t>(frame) * 0x9e3779b9u;
 }
+
+// Sample `sample` of a shifted van der Corput sequence: the samples of a pixel are spread evenly over [0,1).
+float stratified(int sample, uint32_t shift) { return to_unit(reverse_bits(static_cast<uint32_t>(sample)) + shift); }
 
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
     const vec2 position = sample_position(view, pixel, sample);
@@ -54,6 +60,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     const uint32_t index =
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
+    path.shift = interleaved(pixel, view.frame) + hash(view.seed, use_jitter);
     path.screen = position / vec2(view.size);
     path.lane = lane;
     return path;
@@ -81,7 +88,7 @@ void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std
     for (int i = 0; i < s.count; ++i) {
         rays[i] = {s.path[i].ray.origin, s.path[i].ray.direction, s.length[i]};
         ids[i] = hash(s.path[i].seed, sample, layer, use_id);
-        jitter[i] = stratified(sample, hash(s.path[i].seed, layer, use_jitter));
+        jitter[i] = stratified(sample, s.path[i].shift + static_cast<uint32_t>(layer) * 0x9e3779b9u);
     }
 
     std::vector<vec3> light_parts(lights * s.count, vec3(0));
@@ -107,9 +114,10 @@ void add_surfaces(const FrameTracer& tracer, int layer, int sample, const Stretc
                   std::span<const SurfacePoint> surfaces, std::span<const int> which, std::span<PixelSample> samples,
                   std::span<vec3> per_light) {
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
-    vec2 u[16];
+    vec2 u[16] = {};
     vec3 radiance[16];
-    for (size_t k = 0; k < which.size(); ++k) {
+    const bool soft = std::ranges::any_of(tracer.snapshot.lights, is_soft);
+    for (size_t k = 0; soft && k < which.size(); ++k) {
         const Sample2 random = sample2(sample, hash(s.path[which[k]].seed, layer, use_soft_light));
         u[k] = {random.x, random.y};
     }

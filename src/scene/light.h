@@ -22,6 +22,9 @@ struct Light {
     bool shadows = true;
 };
 
+// Whether its shadows have soft edges: each shadow ray then goes to another point of the light.
+inline bool is_soft(const Light& light) { return light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0; }
+
 // What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
 struct Arrival {
     vec3 irradiance{0};

@@ -12,8 +12,6 @@ struct Packet {
     vec3 irradiance[16]; // of the current light, cosine included
 };
 
-bool is_soft(const Light& light) { return light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0; }
-
 // What the light brings to each point with nothing in the way, on the side that is seen.
 bool gather_light(const Light& light, std::span<const SurfacePoint> points, Packet& packet) {
     bool any = false;

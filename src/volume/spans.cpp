@@ -39,11 +39,20 @@ template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, cons
     }
 }
 
-void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, double voxels, std::vector<Span>& spans) {
+void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule,
+                        std::vector<Span>& spans) {
     const BrickPool& pool = *medium.bricks;
     const LocalRay local = local_ray(pool, ray);
-    const double varied_rate = glm::length(local.direction) / voxels, extinction = medium.optics.extinction;
+    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = medium.optics.extinction;
     const size_t first = spans.size();
+
+    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks.
+    const double highest = extinction * pool.highest;
+    if (pool.gapless && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
+        const Stretch inside = clip(pool.local_bounds, local, {0, t_end});
+        if (!inside.empty()) spans.push_back({inside.low, inside.high, highest, varied_rate});
+        return;
+    }
     walk_bricks(pool, local, {0, t_end}, [&](ivec3, int64_t at, double low, double high) {
         const Span span{low, high, extinction * pool.maximum[at], pool.index[at] < 0 ? 0 : varied_rate};
         const bool joins = spans.size() > first && spans.back().high == low &&
@@ -72,7 +81,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
 }
 
 void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans) {
-    if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule.voxels, spans);
+    if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
     walk_bands(ray, medium, [&](Stretch stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
         if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, 0});
