@@ -17,6 +17,7 @@ BakeOptions bake_options(const Options& texts) {
     options.write.half = !texts.full_float;
     options.write.blosc = choice_option("--compression", texts.compression, {"blosc", "zip"}) == 0;
     options.resume = texts.resume;
+    options.cancel = &cancel_flag();
     return options;
 }
 
@@ -41,10 +42,11 @@ int run_bake(const Options& texts, const Globals& globals) {
     OutputPlaces places;
     places.check(texts.output, frames);
     FogRecipe recipe = read_recipe(texts.recipe);
-    if (voxel_size > 0) recipe.voxel_size = static_cast<float>(voxel_size);
+    if (voxel_size > 0) recipe.voxel_size = voxel_size;
 
     Progress progress(globals.progress, "bake", static_cast<double>(frames.size()), globals.json);
     const BakeReport report = bake(recipe, texts.output, frames, options, progress);
+    stop_if_cancelled();
     progress.finish();
     if (globals.json) print_report(report_json(texts, frames, report));
     if (globals.quiet) return 0;

@@ -43,7 +43,11 @@ namespace {
 void append_number(std::string& text, double number) {
     char digits[32];
     assert(std::isfinite(number));
-    text.append(digits, std::to_chars(digits, digits + sizeof digits, number).ptr);
+    // Whole numbers without an exponent: readers that expect an integer refuse 1e+05.
+    const bool whole = number == std::floor(number) && std::abs(number) < 1e15;
+    char* const end = digits + sizeof digits;
+    text.append(digits, whole ? std::to_chars(digits, end, number, std::chars_format::fixed).ptr
+                              : std::to_chars(digits, end, number).ptr);
 }
 
 void append(std::string& text, const Json& value) {

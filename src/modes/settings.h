@@ -23,7 +23,7 @@ struct MarchSettings {
     float step_depth = 0.25f;        // most optical depth per step
     float step_voxels = 8;           // most voxels per step
     float step_length = 1e6f;        // longest step, metres
-    float step_share = 1.0f / 32;    // longest step as a share of the ray's stretch through fog
+    float step_share = 1.0f / 28;    // longest step as a share of the ray's stretch through fog
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     int max_steps = 1024;            // per ray
     float min_transmittance = 1e-3f; // the march stops where less than this passes

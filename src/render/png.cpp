@@ -46,6 +46,7 @@ void write_png(const std::filesystem::path& file, const Image<vec3>& linear, flo
             for (int c = 0; c < 3; ++c) codes.push_back(code(gain * linear.at(x, y)[c], x, y, c));
 
     std::vector<std::byte> bytes;
+    stbi_write_png_compression_level = 5;
     if (!stbi_write_png_to_func(append, &bytes, linear.size.x, linear.size.y, 3, codes.data(), 3 * linear.size.x))
         fail(ExitCode::out_of_memory, file.string(), "no memory to encode the picture");
     write_file_atomically(file, bytes);

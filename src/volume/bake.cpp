@@ -153,6 +153,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
     const std::string hash = settings_hash(recipe, options.write);
     Writers writers(report, progress);
     for (const int frame : frames) {
+        if (options.cancel && *options.cancel) break;
         const std::filesystem::path file = frame_name(pattern, frame);
         if (options.resume && is_right(file, recipe.name, hash, frame)) {
             writers.keep(file);
@@ -164,6 +165,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
         writers.start(file, frame, std::move(volume), options.write);
     }
     writers.finish();
+    report.cancelled = report.written + report.kept < static_cast<int>(frames.size());
     report.seconds = seconds_since(start);
     return report;
 }

@@ -4,6 +4,7 @@
 #include "volume/recipe.h"
 #include "volume/vdb.h"
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,12 @@ namespace tyndall {
 struct BakeOptions {
     VdbWriteOptions write;
     bool resume = false; // keep files whose stored settings hash matches and whose voxels read back
+    const std::atomic<bool>* cancel = nullptr; // set from outside: no further frame is begun
 };
 
 struct BakeReport {
     int written = 0, kept = 0;
+    bool cancelled = false;
     double seconds = 0;
     uint64_t voxels = 0, bytes = 0;
 };
