@@ -43,32 +43,50 @@ struct Points {
     Mask16 active; // lanes with fog here
 };
 
+// The stretch of a ray from first to last fog.
+Interval fog_stretch(const March& march, const Ray& ray) {
+    Interval stretch{infinity, 0};
+    for (const Medium& medium : march.snapshot.media) {
+        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+        if (inside.empty()) continue;
+        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
+    }
+    return stretch;
+}
+
+// Steps of one piece of a ray, as long as the settings allow on a piece of that length.
+void append_piece(const March& march, const Ray& ray, Interval piece, std::vector<Step>& steps) {
+    if (piece.empty()) return;
+    const MarchSettings& settings = march.settings;
+    const StepRule rule{
+        settings.step_depth, settings.step_voxels, std::min(settings.step_length, settings.step_share * piece.length()),
+        settings.max_steps,  march.near_points,    settings.near_light};
+    const size_t first = steps.size();
+    append_steps({ray.at(piece.low), ray.direction, piece.length()}, march.snapshot.media, rule, steps);
+    for (size_t i = first; i < steps.size(); ++i) steps[i].low += piece.low, steps[i].high += piece.low;
+}
+
+void place_ray_steps(const March& march, const Ray& ray, std::vector<Step>& steps) {
+    const Interval stretch = fog_stretch(march, ray);
+    // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
+    const Interval scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
+    if (scene.empty() || stretch.length() < 2 * scene.length()) return append_piece(march, ray, stretch, steps);
+    append_piece(march, ray, {stretch.low, scene.low}, steps);
+    append_piece(march, ray, scene, steps);
+    append_piece(march, ray, {scene.high, stretch.high}, steps);
+}
+
 void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
     alignas(64) float v[6][16] = {};
     packet.longest = 0;
     for (size_t lane = 0; lane < 16; ++lane) {
-        packet.scratch.steps[lane].clear();
+        std::vector<Step>& steps = packet.scratch.steps[lane];
+        steps.clear();
         const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
         for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
         if (lane >= batch.rays.size()) continue;
-
-        // The stretch of the ray in any fog sets the longest step.
-        Interval stretch{infinity, 0};
-        for (const Medium& medium : march.snapshot.media) {
-            const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-            if (inside.empty()) continue;
-            stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
-        }
-        if (stretch.empty()) continue;
-        const MarchSettings& settings = march.settings;
-        const StepRule rule{settings.step_depth,
-                            settings.step_voxels,
-                            std::min(settings.step_length, settings.step_share * stretch.length()),
-                            settings.max_steps,
-                            march.near_points,
-                            settings.near_light};
-        append_steps(ray, march.snapshot.media, rule, packet.scratch.steps[lane]);
-        packet.longest = std::max(packet.longest, packet.scratch.steps[lane].size());
+        place_ray_steps(march, ray, steps);
+        packet.longest = std::max(packet.longest, steps.size());
     }
     packet.origin = {load(v[0]), load(v[1]), load(v[2])};
     packet.direction = {load(v[3]), load(v[4]), load(v[5])};

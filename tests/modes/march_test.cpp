@@ -177,6 +177,17 @@ TEST(March, ErrorFallsWithTheSteps) {
     EXPECT_LT((n * xy - x * y) / (n * xx - x * x), -0.8);
 }
 
+TEST(March, FogWithoutEndKeepsShortStepsInTheScene) {
+    // A spot's beam crosses the ray within 4 m of 2 km of thin fog: the preview has to find it.
+    Light light = point_light({0, 2, -3}, 50);
+    light.kind = LightKind::spot, light.direction = vec3(0, -1, 0), light.inner_cone = 0.1f, light.outer_cone = 0.2f;
+    Snapshot snapshot = scene_of({even_fog(0.01f)}, {light});
+    snapshot.bounds = {vec3(-3, -1, -6), vec3(3, 3, 1)};
+    const Ray ray{{0, 0, 0}, {0, 0, -1}, 2000};
+    const float exact = marched(snapshot, exact_settings(), ray).radiance.x;
+    EXPECT_NEAR(marched(snapshot, settings_for(Quality::preview), ray).radiance.x / exact, 1, 0.1);
+}
+
 TEST(March, EveryTermCanBeTurned) {
     Snapshot snapshot =
         scene_of({grid_fog(3, unit_grid(32, [](vec3 p) { return p.x; }))}, {sun({0, -1, 0})}, vec3(0.2f));
