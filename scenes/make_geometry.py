@@ -169,8 +169,8 @@ def window():
     dark = m.material("dark wood", (0.16, 0.10, 0.07))
     cloth = m.material("cloth", (0.45, 0.12, 0.09))
     x0, x1, y1, z0, z1 = -3.0, 3.0, 3.4, -4.0, 4.0
-    shell = box((x0, y1, z0), (x1, y1 + 0.2, z1)) + box((x0, 0, z0 - 0.2), (x1, y1, z0))
-    shell += box((x0, 0, z1), (x1, y1, z1 + 0.2)) + box((x1, -0.2, z0 - 0.2), (x1 + 0.2, y1 + 0.2, z1 + 0.2))
+    shell = box((x0, y1, z0), (x1, y1 + 0.2, z1)) + box((x0, -0.2, z0 - 0.2), (x1, y1, z0))
+    shell += box((x0, -0.2, z1), (x1, y1, z1 + 0.2)) + box((x1, -0.2, z0 - 0.2), (x1 + 0.2, y1 + 0.2, z1 + 0.2))
     openings = [(-2.6, -1.2), (-0.2, 1.2)]  # along z
     sill, top = 0.75, 2.75
     edges = [z0 - 0.2] + [z for o in openings for z in o] + [z1 + 0.2]
