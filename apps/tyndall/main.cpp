@@ -74,7 +74,7 @@ void add_globals(CLI::App& app, Globals& globals, GlobalTexts& texts) {
                          "bar, none (default: bar on a terminal, alf elsewhere)")
               ->type_name("STYLE"));
     group(app.add_flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr"));
-    group(app.add_flag("-q,--quiet", globals.quiet, "no progress and no remarks: finished files and errors only"));
+    group(app.add_flag("-q,--quiet", globals.quiet, "errors only: no progress, no remarks, no list of finished files"));
     group(app.add_flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks"));
 }
 
@@ -82,7 +82,7 @@ void apply_globals(Globals& globals, const GlobalTexts& texts) {
     const std::vector<std::string> styles{"alf", "json", "bar", "none"};
     constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::json, ProgressStyle::bar,
                                         ProgressStyle::none};
-    if (globals.quiet) globals.progress = ProgressStyle::none;
+    if (globals.quiet) globals.progress = ProgressStyle::silent;
     if (!texts.progress.empty()) globals.progress = values[choice_option("--progress", texts.progress, styles)];
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
 }

@@ -71,6 +71,7 @@ void Progress::set(double done) {
 }
 
 void Progress::line(std::string_view text) {
+    if (style_ == ProgressStyle::silent) return;
     const std::lock_guard lock(mutex_);
     std::FILE* stream = to_stderr_ ? stderr : stdout;
     const bool drawn = style_ == ProgressStyle::bar && !finished_;
@@ -94,7 +95,7 @@ void Progress::finish() {
 }
 
 void Progress::print(bool last) {
-    if (style_ == ProgressStyle::none) return;
+    if (style_ == ProgressStyle::none || style_ == ProgressStyle::silent) return;
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = Seconds(now - start_).count(), since = Seconds(now - last_print_).count();
     const double fraction = total_ > 0 ? done_ / total_ : last ? 1.0 : 0.0;

@@ -7,7 +7,7 @@
 #include <string_view>
 
 namespace tyndall {
-enum class ProgressStyle { automatic, alf, json, bar, none };
+enum class ProgressStyle { automatic, alf, json, bar, none, silent }; // silent: no finished frames either
 
 // Thread-safe. `to_stderr` keeps stdout free for a report.
 class Progress {
