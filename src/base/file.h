@@ -9,7 +9,8 @@
 #include <vector>
 
 namespace tyndall {
-// The whole of a regular file. Throws Error: unreadable (missing, directory, device, pipe), refused (over `most` bytes).
+// The whole of a regular file. Throws Error: unreadable (missing, directory, device, pipe), refused (over `most`
+// bytes).
 std::string read_file(const std::filesystem::path& path, uint64_t most = uint64_t{64} << 20);
 
 // Throws unless the path is a readable regular file; returns its size in bytes.
@@ -19,10 +20,12 @@ uint64_t check_readable(const std::filesystem::path& path);
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 
-// Makes sure a file can be made in the directory of `path`, creating the directory when missing. Throws Error (unwritable).
+// Makes sure a file can be made in the directory of `path`, creating the directory when missing. Throws Error
+// (unwritable).
 void check_output(const std::filesystem::path& path);
 
-// Removes temporaries of earlier, killed runs of this program in a directory (older than a day, or whose process is gone).
+// Removes temporaries of earlier, killed runs of this program in a directory (older than a day, or whose process is
+// gone).
 void sweep_temporaries(const std::filesystem::path& directory);
 
 // 128-bit content hash as 32 hex digits; stable across machines.

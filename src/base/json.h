@@ -18,10 +18,10 @@ public:
     bool boolean = false;
     double number = 0;
     std::string string;
-    std::vector<Json> items;                             // of an array
-    std::vector<std::pair<std::string, Json>> members;   // of an object, in file order
+    std::vector<Json> items;                           // of an array
+    std::vector<std::pair<std::string, Json>> members; // of an object, in file order
 
-    const Json* find(std::string_view key) const;        // member of an object, or null
+    const Json* find(std::string_view key) const; // member of an object, or null
     bool has(std::string_view key) const { return find(key) != nullptr; }
     // The value of a member, or `otherwise` when it is absent. The schema has already checked type and range.
     double number_or(std::string_view key, double otherwise) const;

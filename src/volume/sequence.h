@@ -6,15 +6,15 @@
 #include <vector>
 
 namespace tyndall {
-enum class SequenceMode { hold, loop, ping_pong, clip };   // before the first and after the last file
-enum class MissingFrame { error, hold, skip };             // a gap inside: stop · use the nearest earlier · no fog
+enum class SequenceMode { hold, loop, ping_pong, clip }; // before the first and after the last file
+enum class MissingFrame { error, hold, skip };           // a gap inside: stop · use the nearest earlier · no fog
 
 struct VdbSequence {
-    std::string pattern;      // a file, or a name with a frame token (####, %04d, $F4)
-    std::string grid;         // empty = the usable one
+    std::string pattern; // a file, or a name with a frame token (####, %04d, $F4)
+    std::string grid;    // empty = the usable one
     SequenceMode mode = SequenceMode::hold;
-    int offset = 0;           // file frame = scene frame + offset
-    std::vector<int> files;   // frames found on disk, ascending; empty for a single file
+    int offset = 0;         // file frame = scene frame + offset
+    std::vector<int> files; // frames found on disk, ascending; empty for a single file
 };
 
 // Lists the files of the pattern. Throws Error (unreadable) when there is none.

@@ -25,9 +25,9 @@ struct Tile {
 struct SparseVolume {
     std::string name = "density";
     dmat4 index_to_world{1};
-    std::vector<Leaf> leaves;              // no two share an origin
-    std::vector<Tile> tiles;               // disjoint from the leaves and each other
-    ivec3 active_low{0}, active_high{-1};  // box of the active voxels, both included; high < low = empty
+    std::vector<Leaf> leaves;             // no two share an origin
+    std::vector<Tile> tiles;              // disjoint from the leaves and each other
+    ivec3 active_low{0}, active_high{-1}; // box of the active voxels, both included; high < low = empty
     std::vector<std::pair<std::string, std::string>> metadata;
 
     bool empty() const { return active_high.x < active_low.x; }

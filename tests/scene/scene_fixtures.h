@@ -1,6 +1,7 @@
 // Files for tests: a folder of one's own, scene files and glTF made on the spot.
 #pragma once
 #include "base/error.h"
+#include "base/scratch.h"
 #include "scene/scene.h"
 
 #include <gtest/gtest.h>
@@ -12,31 +13,12 @@
 #include <string_view>
 #include <vector>
 
-#include <stdlib.h>
-
 namespace tyndall {
-class Folder {
-public:
-    Folder() {
-        std::string name = (std::filesystem::temp_directory_path() / "tyndall_scene_XXXXXX").string();
-        path_ = mkdtemp(name.data());
-    }
-    ~Folder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+struct Folder : Scratch {
     std::filesystem::path write(std::string_view name, std::string_view bytes) const {
-        std::filesystem::create_directories((path_ / name).parent_path());
-        std::ofstream(path_ / name, std::ios::binary) << bytes;
-        return path_ / name;
+        std::filesystem::create_directories((*this / std::string(name)).parent_path());
+        return put(std::string(name), std::string(bytes));
     }
-
-private:
-    std::filesystem::path path_;
 };
 
 // What loading a file answers: the scene, or one line of refusal.

@@ -33,9 +33,9 @@ std::map<std::string, std::string> contents(const std::filesystem::path& directo
 }
 
 TEST(Bake, WritesWhatTheRecipeSays) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const FogRecipe recipe = small_fog();
-    const std::string pattern = scratch.path / "sub" / "fog.####.vdb";
+    const std::string pattern = scratch.path() / "sub" / "fog.####.vdb";
     const BakeReport report = baked(recipe, pattern, {-2, 7, 12});
     EXPECT_EQ(report.written, 3);
     EXPECT_EQ(report.kept, 0);
@@ -65,10 +65,10 @@ TEST(Bake, WritesWhatTheRecipeSays) {
 }
 
 TEST(Bake, SaysHowItWasMade) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     FogRecipe recipe = small_fog();
     recipe.albedo = vec3(0.9f, 0.8f, 0.7f);
-    const std::string file = scratch.path / "fog.vdb";
+    const std::string file = scratch.path() / "fog.vdb";
     baked(recipe, file, {12});
     std::map<std::string, std::string> metadata;
     for (const auto& [key, text] : vdb_metadata(file)) metadata[key] = text;
@@ -98,12 +98,12 @@ TEST(Bake, SaysHowItWasMade) {
 }
 
 TEST(Bake, ResumeKeepsWhatIsRight) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const FogRecipe recipe = small_fog();
-    const std::string pattern = scratch.path / "fog.####.vdb";
+    const std::string pattern = scratch.path() / "fog.####.vdb";
     const std::vector<int> frames{1, 2, 3, 4};
     baked(recipe, pattern, frames);
-    const auto whole = contents(scratch.path);
+    const auto whole = contents(scratch.path());
     BakeOptions resume;
     resume.resume = true;
     const auto counts = [&](const FogRecipe& fog, const BakeOptions& options) {
@@ -113,7 +113,7 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
     EXPECT_EQ(counts(recipe, resume), std::pair(0, 4));
 
     // Cut, damaged in the middle, another frame under this name, missing, not a VDB at all: each is made again.
-    const auto put = [&](const char* name, const std::string& bytes) { scratch.file(name, bytes); };
+    const auto put = [&](const char* name, const std::string& bytes) { scratch.put(name, bytes); };
     const std::string second = whole.at("fog.0002.vdb");
     std::string damaged = second;
     for (size_t i = damaged.size() / 2; i < damaged.size() / 2 + 64; ++i) damaged[i] = '\x55';
@@ -121,11 +121,11 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
                                      whole.at("fog.0003.vdb"), std::string("not a volume"), std::string()}) {
         put("fog.0002.vdb", bytes);
         EXPECT_EQ(counts(recipe, resume), std::pair(1, 3));
-        EXPECT_EQ(contents(scratch.path), whole);
+        EXPECT_EQ(contents(scratch.path()), whole);
     }
-    std::filesystem::remove(scratch.path / "fog.0004.vdb");
+    std::filesystem::remove(scratch.path() / "fog.0004.vdb");
     EXPECT_EQ(counts(recipe, resume), std::pair(1, 3));
-    EXPECT_EQ(contents(scratch.path), whole);
+    EXPECT_EQ(contents(scratch.path()), whole);
 
     // Other settings make other files.
     FogRecipe other = recipe;
@@ -145,10 +145,10 @@ TEST(Bake, ThreadsGiveTheSameFiles) {
     const int threads = thread_count();
     std::map<std::string, std::string> files[2];
     for (int i = 0; i < 2; ++i) {
-        const ScratchDirectory scratch;
+        const Scratch scratch;
         set_thread_count(i + 1);
-        baked(small_fog(), scratch.path / "fog.####.vdb", {1, 2, 3, 4, 5});
-        files[i] = contents(scratch.path);
+        baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4, 5});
+        files[i] = contents(scratch.path());
     }
     set_thread_count(threads);
     EXPECT_EQ(files[0].size(), 5u);
@@ -156,10 +156,10 @@ TEST(Bake, ThreadsGiveTheSameFiles) {
 }
 
 TEST(Bake, LoopsMeet) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const FogRecipe recipe = small_fog(); // four seconds at 24 frames per second
-    baked(recipe, scratch.path / "fog.####.vdb", {5, 101});
-    const SparseVolume a = read_vdb(scratch.path / "fog.0005.vdb"), b = read_vdb(scratch.path / "fog.0101.vdb");
+    baked(recipe, scratch.path() / "fog.####.vdb", {5, 101});
+    const SparseVolume a = read_vdb(scratch.path() / "fog.0005.vdb"), b = read_vdb(scratch.path() / "fog.0101.vdb");
     ASSERT_EQ(a.leaves.size(), b.leaves.size());
     for (size_t i = 0; i < a.leaves.size(); ++i) {
         ASSERT_EQ(a.leaves[i].origin, b.leaves[i].origin);
@@ -168,10 +168,10 @@ TEST(Bake, LoopsMeet) {
 }
 
 TEST(Bake, EmptyFogIsAFileToo) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     FogRecipe recipe = small_fog();
     recipe.threshold = 1;
-    const std::string file = scratch.path / "none.vdb";
+    const std::string file = scratch.path() / "none.vdb";
     EXPECT_EQ(baked(recipe, file, {1}).written, 1);
     EXPECT_TRUE(read_vdb(file).empty());
     BakeOptions resume;
@@ -180,7 +180,7 @@ TEST(Bake, EmptyFogIsAFileToo) {
 }
 
 TEST(Bake, RefusesWhatCannotBe) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const auto code_of = [&](const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames) {
         try {
             baked(recipe, pattern, frames);
@@ -189,16 +189,16 @@ TEST(Bake, RefusesWhatCannotBe) {
             return error.code;
         }
     };
-    EXPECT_EQ(code_of(small_fog(), scratch.path / "fog.vdb", {1, 2}), ExitCode::usage);
-    const std::string file = scratch.file("file", "x");
+    EXPECT_EQ(code_of(small_fog(), scratch.path() / "fog.vdb", {1, 2}), ExitCode::usage);
+    const std::string file = scratch.put("file", "x");
     EXPECT_EQ(code_of(small_fog(), file + "/fog.vdb", {1}), ExitCode::unwritable);
     FogRecipe fine = small_fog();
     fine.voxel_size = 1e-6;
-    EXPECT_EQ(code_of(fine, scratch.path / "fine.vdb", {1}), ExitCode::out_of_memory);
+    EXPECT_EQ(code_of(fine, scratch.path() / "fine.vdb", {1}), ExitCode::out_of_memory);
     // A directory is in the way of the second frame: the first one is there, nothing half-written is.
-    std::filesystem::create_directory(scratch.path / "fog.0002.vdb");
-    EXPECT_EQ(code_of(small_fog(), scratch.path / "fog.####.vdb", {1, 2, 3}), ExitCode::unwritable);
-    for (const auto& entry : std::filesystem::directory_iterator(scratch.path)) {
+    std::filesystem::create_directory(scratch.path() / "fog.0002.vdb");
+    EXPECT_EQ(code_of(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3}), ExitCode::unwritable);
+    for (const auto& entry : std::filesystem::directory_iterator(scratch.path())) {
         const std::string name = entry.path().filename();
         EXPECT_TRUE(name == "file" || name.starts_with("fog.000")) << name;
         if (!entry.is_regular_file() || name == "file") continue;

@@ -74,8 +74,8 @@ AuthoredGrid one_leaf() {
 }
 
 Error refusal(const std::string& bytes) {
-    const ScratchDirectory scratch;
-    const auto file = scratch.file("in.vdb", bytes);
+    const Scratch scratch;
+    const auto file = scratch.put("in.vdb", bytes);
     const Error info = error_of([&] { vdb_info(file); });
     const Error read = error_of([&] { read_vdb(file); });
     EXPECT_TRUE(info.code == ExitCode::ok || info.code == ExitCode::refused) << info.what();
@@ -239,9 +239,9 @@ TEST(Prewalk, DelayedLoadMetadataIsNotBelieved) {
     ASSERT_NE(name, std::string::npos);
     const size_t size = name + 13;
     ASSERT_GT(value_of<uint32_t>(good, size), 8u);
-    const ScratchDirectory scratch;
-    const SparseVolume plain = read_vdb(scratch.file("a.vdb", good));
-    const SparseVolume volume = read_vdb(scratch.file("b.vdb", patched(patched(good, size + 4, ~0u), size + 8, ~0u)));
+    const Scratch scratch;
+    const SparseVolume plain = read_vdb(scratch.put("a.vdb", good));
+    const SparseVolume volume = read_vdb(scratch.put("b.vdb", patched(patched(good, size + 4, ~0u), size + 8, ~0u)));
     EXPECT_EQ(value_at(volume, ivec3(3)), value_at(plain, ivec3(3)));
     EXPECT_REFUSED(patched(good, size, ~0u), "is cut");
 }
@@ -289,12 +289,12 @@ TEST_P(Cut, IsAlwaysRefused) {
     AuthoredGrid ball = noisy_ball({3, 0, 4094}, 9), second = noisy_ball(ivec3(0), 5);
     ball.half = second.half = half, second.name = "heat";
     const std::string good = authored({ball, second}, packing, offsets);
-    const ScratchDirectory scratch;
-    EXPECT_NO_THROW(read_vdb(scratch.file("good.vdb", good)));
+    const Scratch scratch;
+    EXPECT_NO_THROW(read_vdb(scratch.put("good.vdb", good)));
     std::vector<size_t> lengths = {good.size() - 1, good.size() - 2, 0, 1, 8, 20, 57, 60};
     for (size_t i = 1; i < 60; ++i) lengths.push_back(good.size() * i / 60 + i % 7);
     for (const size_t length : lengths) {
-        const auto file = scratch.file("cut.vdb", good.substr(0, length));
+        const auto file = scratch.put("cut.vdb", good.substr(0, length));
         const Error read = error_of([&] { read_vdb(file); });
         EXPECT_EQ(read.code, ExitCode::refused) << "cut to " << length << " of " << good.size();
         EXPECT_EQ(error_of([&] { vdb_metadata(file); }).code, ExitCode::refused) << length;

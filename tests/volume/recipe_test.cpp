@@ -7,8 +7,8 @@
 namespace tyndall::testing {
 namespace {
 FogRecipe recipe_of(const std::string& json) {
-    const ScratchDirectory scratch;
-    return read_recipe(scratch.file("fog.json", json));
+    const Scratch scratch;
+    return read_recipe(scratch.put("fog.json", json));
 }
 
 // The message with which a recipe is refused.

@@ -21,11 +21,11 @@ std::vector<int> shown(const VdbSequence& sequence, int first, int last, Missing
 
 class Sequence : public ::testing::Test {
 protected:
-    const ScratchDirectory scratch;
+    const Scratch scratch;
 
     VdbSequence made(const std::vector<std::string>& names, const std::string& pattern) {
-        for (const std::string& name : names) scratch.file(name, "x");
-        return find_sequence(pattern, scratch.path);
+        for (const std::string& name : names) scratch.put(name, "x");
+        return find_sequence(pattern, scratch.path());
     }
 };
 
@@ -33,9 +33,9 @@ TEST_F(Sequence, OneFile) {
     const VdbSequence sequence = made({"fog.vdb"}, "fog.vdb");
     EXPECT_TRUE(sequence.files.empty());
     for (const int frame : {-5, 1, 1000})
-        EXPECT_EQ(sequence_file(sequence, frame, MissingFrame::error), scratch.path / "fog.vdb");
-    EXPECT_EQ(error_of([&] { find_sequence("other.vdb", scratch.path); }).code, ExitCode::unreadable);
-    EXPECT_EQ(error_of([&] { find_sequence("", scratch.path); }).code, ExitCode::unreadable);
+        EXPECT_EQ(sequence_file(sequence, frame, MissingFrame::error), scratch.path() / "fog.vdb");
+    EXPECT_EQ(error_of([&] { find_sequence("other.vdb", scratch.path()); }).code, ExitCode::unreadable);
+    EXPECT_EQ(error_of([&] { find_sequence("", scratch.path()); }).code, ExitCode::unreadable);
 }
 
 TEST_F(Sequence, EverySpellingOfTheNumber) {
@@ -50,19 +50,19 @@ TEST_F(Sequence, EverySpellingOfTheNumber) {
 }
 
 TEST_F(Sequence, InADirectoryBelow) {
-    std::filesystem::create_directory(scratch.path / "50%");
-    scratch.file("50%/a.0007.vdb", "x");
-    const VdbSequence sequence = find_sequence("a.####.vdb", scratch.path / "50%");
-    EXPECT_EQ(sequence_file(sequence, 7, MissingFrame::error), scratch.path / "50%" / "a.0007.vdb");
-    EXPECT_EQ(find_sequence((scratch.path / "50%" / "a.0007.vdb").string(), "/nowhere").files.size(), 0u);
+    std::filesystem::create_directory(scratch.path() / "50%");
+    scratch.put("50%/a.0007.vdb", "x");
+    const VdbSequence sequence = find_sequence("a.####.vdb", scratch.path() / "50%");
+    EXPECT_EQ(sequence_file(sequence, 7, MissingFrame::error), scratch.path() / "50%" / "a.0007.vdb");
+    EXPECT_EQ(find_sequence((scratch.path() / "50%" / "a.0007.vdb").string(), "/nowhere").files.size(), 0u);
 }
 
 TEST_F(Sequence, NothingThere) {
     const Error none = error_of([&] { made({"a.vdb"}, "a.####.vdb"); });
     EXPECT_EQ(none.code, ExitCode::unreadable);
     EXPECT_THAT(none.what(), HasSubstr("a.####.vdb"));
-    EXPECT_EQ(error_of([&] { find_sequence("x/a.####.vdb", scratch.path); }).code, ExitCode::unreadable);
-    EXPECT_EQ(error_of([&] { find_sequence("####/a.vdb", scratch.path); }).code, ExitCode::unreadable);
+    EXPECT_EQ(error_of([&] { find_sequence("x/a.####.vdb", scratch.path()); }).code, ExitCode::unreadable);
+    EXPECT_EQ(error_of([&] { find_sequence("####/a.vdb", scratch.path()); }).code, ExitCode::unreadable);
 }
 
 TEST_F(Sequence, OutsideTheRange) {

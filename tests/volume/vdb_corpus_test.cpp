@@ -60,11 +60,11 @@ TEST_F(VdbCorpus, EveryFileReadsOrIsRefusedInOneLine) {
 }
 
 TEST_F(VdbCorpus, CutFilesAreRefused) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     for (const char* name : {"vpt/dragon.vdb", "helium/smoke.vdb", "openusd/densityAndHeat.vdb", "oiio/sphere.vdb"}) {
         const std::string good = bytes_of(corpus / name);
         for (size_t i = 0; i < 40; ++i) {
-            const auto file = scratch.file("cut.vdb", good.substr(0, good.size() * (i + 1) / 40 - 1));
+            const auto file = scratch.put("cut.vdb", good.substr(0, good.size() * (i + 1) / 40 - 1));
             EXPECT_EQ(error_of([&] { read_vdb(file); }).code, ExitCode::refused) << name << ' ' << i;
         }
     }
@@ -185,12 +185,12 @@ TEST_F(VdbCorpus, WhatIsNoVolume) {
 
 // What was read, written and read again is the same fog.
 TEST_F(VdbCorpus, RoundTrip) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     for (const char* name : {"vpt/dragon_with_xform.vdb", "vpt/box.vdb", "openusd/smoke_000003.vdb"}) {
         const Read once = read(name);
-        write_vdb(scratch.path / "a.vdb", once.volume, {.half = false});
+        write_vdb(scratch.path() / "a.vdb", once.volume, {.half = false});
         VdbReadReport report;
-        const SparseVolume again = read_vdb(scratch.path / "a.vdb", "", &report);
+        const SparseVolume again = read_vdb(scratch.path() / "a.vdb", "", &report);
         EXPECT_EQ(report.summary(), "");
         EXPECT_EQ(again.index_to_world, once.volume.index_to_world);
         for (const Leaf& leaf : once.volume.leaves)

@@ -98,26 +98,6 @@ AuthoredGrid noisy_ball(ivec3 center, int radius, uint32_t seed) {
     return grid;
 }
 
-ScratchDirectory::ScratchDirectory() {
-    std::string name = (std::filesystem::temp_directory_path() / "tyndall_vdb_XXXXXX").string();
-    if (!mkdtemp(name.data())) throw std::runtime_error("no scratch directory");
-    path = name;
-}
-ScratchDirectory::~ScratchDirectory() {
-    std::error_code error;
-    std::filesystem::remove_all(path, error);
-}
-std::filesystem::path ScratchDirectory::file(const std::string& name, const std::string& bytes) const {
-    std::ofstream(path / name, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    return path / name;
-}
-bool ScratchDirectory::empty() const { return std::filesystem::is_empty(path); }
-
-std::string bytes_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 float value_at(const SparseVolume& volume, ivec3 voxel) {
     int found = 0;
     float value = 0;

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/error.h"
 #include "base/math.h"
+#include "base/scratch.h"
 #include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>
@@ -42,17 +43,6 @@ std::string authored(const std::vector<AuthoredGrid>& grids, uint32_t packing = 
 
 // A ball of noisy density around `center`, spread over several leaves.
 AuthoredGrid noisy_ball(ivec3 center, int radius, uint32_t seed = 1);
-
-// A directory of its own that goes away with the test.
-struct ScratchDirectory {
-    std::filesystem::path path;
-    ScratchDirectory();
-    ~ScratchDirectory();
-    std::filesystem::path file(const std::string& name, const std::string& bytes) const;
-    bool empty() const;
-};
-
-std::string bytes_of(const std::filesystem::path& file);
 
 // Value of a voxel of the volume, 0 where it holds none; fails the test when leaves or tiles overlap there.
 float value_at(const SparseVolume& volume, ivec3 voxel);

@@ -97,12 +97,12 @@ std::vector<std::string> originals() {
 }
 
 void mutate(int count, uint32_t seed) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const std::vector<std::string> files = originals();
     std::mt19937 random(seed);
     int outcomes[3] = {};
     for (int i = 0; i < count; ++i) {
-        const auto file = scratch.file("mutant.vdb", mutated(files[static_cast<size_t>(i) % files.size()], random));
+        const auto file = scratch.put("mutant.vdb", mutated(files[static_cast<size_t>(i) % files.size()], random));
         const Verdict verdict = judged(file);
         ++outcomes[verdict.outcome];
         if (verdict.outcome != wrong) continue;

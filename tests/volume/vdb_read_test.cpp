@@ -20,9 +20,9 @@ struct Read {
 };
 
 Read read(const std::string& bytes, const std::string& grid = "") {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     Read result;
-    result.volume = read_vdb(scratch.file("in.vdb", bytes), grid, &result.report);
+    result.volume = read_vdb(scratch.put("in.vdb", bytes), grid, &result.report);
     return result;
 }
 
@@ -102,8 +102,8 @@ TEST(VdbRead, TilesOfEveryLevel) {
     EXPECT_EQ(back.volume.active_low, ivec3(0));
     EXPECT_EQ(back.volume.active_high, ivec3(8191));
 
-    const ScratchDirectory scratch;
-    const VdbGridInfo info = vdb_info(scratch.file("in.vdb", authored({grid}))).grids.at(0);
+    const Scratch scratch;
+    const VdbGridInfo info = vdb_info(scratch.put("in.vdb", authored({grid}))).grids.at(0);
     EXPECT_EQ(info.tiles, 3u);
     EXPECT_EQ(info.active_voxels, (1ull << 9) + (1ull << 21) + (1ull << 36));
     EXPECT_FLOAT_EQ(info.maximum, 0.3f);
@@ -160,8 +160,8 @@ TEST(VdbRead, WrongValuesAreMendedAndCounted) {
     EXPECT_EQ(value_at(back.volume, ivec3(0)), 0.5f);
     EXPECT_TRUE(back.volume.tiles.empty());
 
-    const ScratchDirectory scratch;
-    const VdbGridInfo info = vdb_info(scratch.file("in.vdb", authored({grid}))).grids.at(0);
+    const Scratch scratch;
+    const VdbGridInfo info = vdb_info(scratch.put("in.vdb", authored({grid}))).grids.at(0);
     EXPECT_EQ(info.non_finite, 515u);
     EXPECT_EQ(info.negative, 513u);
     EXPECT_EQ(info.minimum, -2);
@@ -256,8 +256,8 @@ TEST(VdbRead, OtherGridsAreNotInTheWay) {
         for (const uint32_t packing : {pack_none, pack_mask | pack_zip, pack_mask | pack_blosc}) {
             const std::string bytes = authored(grids, packing, offsets);
             EXPECT_EQ(read(bytes).volume.active_high, ivec3(5));
-            const ScratchDirectory scratch;
-            for (const VdbGridInfo& info : vdb_info(scratch.file("in.vdb", bytes)).grids)
+            const Scratch scratch;
+            for (const VdbGridInfo& info : vdb_info(scratch.put("in.vdb", bytes)).grids)
                 EXPECT_EQ(info.active_voxels,
                           info.name == "density" ? grids.back().voxels.size() : grids[0].voxels.size());
         }
@@ -266,8 +266,8 @@ TEST(VdbRead, OtherGridsAreNotInTheWay) {
 TEST(VdbInfo, TellsWhatIsThere) {
     AuthoredGrid grid = noisy_ball(ivec3(0), 5);
     grid.index_to_world = glm::scale(dmat4(1), dvec3(0.1, 0.2, 0.3));
-    const ScratchDirectory scratch;
-    const VdbInfo info = vdb_info(scratch.file("in.vdb", authored({grid, small("v", "vec3s")})));
+    const Scratch scratch;
+    const VdbInfo info = vdb_info(scratch.put("in.vdb", authored({grid, small("v", "vec3s")})));
     EXPECT_EQ(info.file_version, 224u);
     EXPECT_EQ(info.library_version, "10.0");
     EXPECT_EQ(info.metadata.at(0), std::make_pair(std::string("origin"), std::string("authored")));
@@ -286,20 +286,20 @@ TEST(VdbInfo, TellsWhatIsThere) {
 
 // Replaced by a rename or cut in place while it is read: the old fog, the new one or an Error.
 TEST(VdbRead, FileThatChangesUnderneath) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     AuthoredGrid ball = noisy_ball(ivec3(0), 12);
     const std::string old = authored({ball});
     ball.voxels[0].second = 2;
     const std::string fresh = authored({ball});
     const ivec3 at = ball.voxels[0].first;
-    const auto file = scratch.file("a.vdb", old);
+    const auto file = scratch.put("a.vdb", old);
     std::atomic<bool> done = false;
     std::thread other([&] {
         for (int i = 0; !done; ++i) {
             if (i % 3 == 0)
                 std::filesystem::resize_file(file, old.size() / 2);
             else
-                std::filesystem::rename(scratch.file("b.vdb", i % 3 == 1 ? old : fresh), file);
+                std::filesystem::rename(scratch.put("b.vdb", i % 3 == 1 ? old : fresh), file);
         }
     });
     const float before = noisy_ball(ivec3(0), 12).voxels[0].second;
@@ -319,30 +319,30 @@ TEST(VdbRead, MoreThanTheMemoryThereIs) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "the sanitizer takes more address space than there is memory";
 #endif
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     SparseVolume volume;
     volume.leaves.resize(20000); // 90 MB with the library's own tree
     for (int i = 0; i < 20000; ++i) {
         volume.leaves[static_cast<size_t>(i)].origin = ivec3(i % 100, i / 100, 0) * 8;
         volume.leaves[static_cast<size_t>(i)].values.fill(0.5f);
     }
-    write_vdb(scratch.path / "a.vdb", volume);
+    write_vdb(scratch.path() / "a.vdb", volume);
     volume = {};
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_AS, &before), 0);
     rlimit small = before;
     small.rlim_cur = 64 << 20;
     ASSERT_EQ(setrlimit(RLIMIT_AS, &small), 0);
-    const Error error = error_of([&] { read_vdb(scratch.path / "a.vdb"); });
+    const Error error = error_of([&] { read_vdb(scratch.path() / "a.vdb"); });
     setrlimit(RLIMIT_AS, &before);
     EXPECT_EQ(error.code, ExitCode::out_of_memory) << error.what();
-    EXPECT_EQ(error_of([&] { read_vdb(scratch.path / "a.vdb"); }).code, ExitCode::ok);
+    EXPECT_EQ(error_of([&] { read_vdb(scratch.path() / "a.vdb"); }).code, ExitCode::ok);
 }
 
 TEST(VdbRead, WhatIsNoVolume) {
-    const ScratchDirectory scratch;
-    EXPECT_EQ(error_of([&] { read_vdb(scratch.path / "missing.vdb"); }).code, ExitCode::unreadable);
-    EXPECT_EQ(error_of([&] { read_vdb(scratch.path); }).code, ExitCode::unreadable);
+    const Scratch scratch;
+    EXPECT_EQ(error_of([&] { read_vdb(scratch.path() / "missing.vdb"); }).code, ExitCode::unreadable);
+    EXPECT_EQ(error_of([&] { read_vdb(scratch.path()); }).code, ExitCode::unreadable);
     EXPECT_EQ(error_of([&] { read_vdb("/dev/zero"); }).code, ExitCode::unreadable);
     EXPECT_THAT(refusal("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n").what(),
                 HasSubstr("git lfs pull"));

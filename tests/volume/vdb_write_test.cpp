@@ -47,11 +47,11 @@ struct Encoding {
 class WriteEncodings : public ::testing::TestWithParam<Encoding> {};
 
 TEST_P(WriteEncodings, ReadBackTheSame) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     const SparseVolume volume = example();
-    write_vdb(scratch.path / "a.vdb", volume, {.half = GetParam().half, .blosc = GetParam().blosc});
+    write_vdb(scratch.path() / "a.vdb", volume, {.half = GetParam().half, .blosc = GetParam().blosc});
     VdbReadReport report;
-    const SparseVolume back = read_vdb(scratch.path / "a.vdb", "", &report);
+    const SparseVolume back = read_vdb(scratch.path() / "a.vdb", "", &report);
     EXPECT_EQ(report.summary(), "");
     EXPECT_EQ(back.name, "density");
     EXPECT_EQ(back.index_to_world, volume.index_to_world);
@@ -60,7 +60,7 @@ TEST_P(WriteEncodings, ReadBackTheSame) {
     EXPECT_EQ(value_at(back, ivec3(200)), 0.75f);
     expect_same_fog(volume, back);
 
-    const VdbInfo info = vdb_info(scratch.path / "a.vdb");
+    const VdbInfo info = vdb_info(scratch.path() / "a.vdb");
     ASSERT_EQ(info.grids.size(), 1u);
     EXPECT_EQ(info.grids[0].type, "float");
     EXPECT_EQ(info.grids[0].grid_class, "fog volume");
@@ -69,21 +69,21 @@ TEST_P(WriteEncodings, ReadBackTheSame) {
 }
 
 TEST_P(WriteEncodings, SameInputSameBytes) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     SparseVolume volume = example();
     const VdbWriteOptions options{.half = GetParam().half, .blosc = GetParam().blosc};
-    write_vdb(scratch.path / "a.vdb", volume, options);
+    write_vdb(scratch.path() / "a.vdb", volume, options);
     std::ranges::reverse(volume.leaves);
     set_thread_count(1);
-    write_vdb(scratch.path / "b.vdb", volume, options);
+    write_vdb(scratch.path() / "b.vdb", volume, options);
     set_thread_count(0);
-    const std::string a = bytes_of(scratch.path / "a.vdb");
-    EXPECT_EQ(a, bytes_of(scratch.path / "b.vdb"));
+    const std::string a = bytes_of(scratch.path() / "a.vdb");
+    EXPECT_EQ(a, bytes_of(scratch.path() / "b.vdb"));
 
     // Different content gets a different identity.
     volume.leaves[0].values[5] += 0.5f;
-    write_vdb(scratch.path / "b.vdb", volume, options);
-    EXPECT_NE(a.substr(21, 36), bytes_of(scratch.path / "b.vdb").substr(21, 36));
+    write_vdb(scratch.path() / "b.vdb", volume, options);
+    EXPECT_NE(a.substr(21, 36), bytes_of(scratch.path() / "b.vdb").substr(21, 36));
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WriteEncodings,
@@ -91,82 +91,83 @@ INSTANTIATE_TEST_SUITE_P(All, WriteEncodings,
                                            Encoding{false, false}));
 
 TEST(VdbWrite, ShearedTransformSurvives) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     dmat4 matrix(0.5);
     matrix[1][0] = 0.125, matrix[2][1] = -0.25, matrix[3] = glm::dvec4(1, 2, 3, 1);
-    write_vdb(scratch.path / "a.vdb", example(matrix));
-    EXPECT_EQ(read_vdb(scratch.path / "a.vdb").index_to_world, matrix);
+    write_vdb(scratch.path() / "a.vdb", example(matrix));
+    EXPECT_EQ(read_vdb(scratch.path() / "a.vdb").index_to_world, matrix);
 }
 
 TEST(VdbWrite, MetadataSurvives) {
-    const ScratchDirectory scratch;
-    write_vdb(scratch.path / "a.vdb", example(), {.creator = "someone"});
+    const Scratch scratch;
+    write_vdb(scratch.path() / "a.vdb", example(), {.creator = "someone"});
     const std::vector<std::pair<std::string, std::string>> expected = {{"creator", "someone"},
                                                                        {"note", "1"},
                                                                        {"tyndall_frame", "12"},
                                                                        {"tyndall_g", "0.3"},
                                                                        {"tyndall_settings_hash", "00ff"}};
-    EXPECT_EQ(vdb_metadata(scratch.path / "a.vdb"), expected);
-    EXPECT_EQ(read_vdb(scratch.path / "a.vdb").metadata, expected);
+    EXPECT_EQ(vdb_metadata(scratch.path() / "a.vdb"), expected);
+    EXPECT_EQ(read_vdb(scratch.path() / "a.vdb").metadata, expected);
 }
 
 TEST(VdbWrite, ValuesThatDoNotFitAreClamped) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     SparseVolume volume;
     volume.leaves.resize(1);
     volume.leaves[0].values = {65520, infinity, -1, std::nanf(""), 1e-8f, 0.1f};
-    write_vdb(scratch.path / "half.vdb", volume);
-    const SparseVolume half = read_vdb(scratch.path / "half.vdb");
+    write_vdb(scratch.path() / "half.vdb", volume);
+    const SparseVolume half = read_vdb(scratch.path() / "half.vdb");
     EXPECT_EQ(value_at(half, {0, 0, 0}), 65504);
     EXPECT_EQ(value_at(half, {0, 0, 1}), 65504);
     for (int z = 2; z <= 4; ++z) EXPECT_EQ(value_at(half, {0, 0, z}), 0);
     EXPECT_NEAR(value_at(half, {0, 0, 5}), 0.1f, 0.1f / 2048);
-    EXPECT_EQ(vdb_info(scratch.path / "half.vdb").grids[0].active_voxels, 3u); // zero voxels are inactive
+    EXPECT_EQ(vdb_info(scratch.path() / "half.vdb").grids[0].active_voxels, 3u); // zero voxels are inactive
 
-    write_vdb(scratch.path / "float.vdb", volume, {.half = false});
-    EXPECT_EQ(value_at(read_vdb(scratch.path / "float.vdb"), {0, 0, 4}), 1e-8f);
+    write_vdb(scratch.path() / "float.vdb", volume, {.half = false});
+    EXPECT_EQ(value_at(read_vdb(scratch.path() / "float.vdb"), {0, 0, 4}), 1e-8f);
 }
 
 TEST(VdbWrite, EmptyVolume) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     SparseVolume volume;
     volume.leaves.resize(2);
     volume.leaves[1].origin = ivec3(8);
-    write_vdb(scratch.path / "a.vdb", volume);
+    write_vdb(scratch.path() / "a.vdb", volume);
     VdbReadReport report;
-    EXPECT_TRUE(read_vdb(scratch.path / "a.vdb", "", &report).empty());
+    EXPECT_TRUE(read_vdb(scratch.path() / "a.vdb", "", &report).empty());
     EXPECT_TRUE(report.empty);
 }
 
 // A file size limit fails a write as a full disk does, in the middle and not at open.
 TEST(VdbWrite, FailedWriteLeavesNothing) {
-    const ScratchDirectory scratch;
+    const Scratch scratch;
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     std::signal(SIGXFSZ, SIG_IGN);
     rlimit small = before;
     small.rlim_cur = 2048;
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    const Error error = error_of([&] { write_vdb(scratch.path / "a.vdb", example()); });
+    const Error error = error_of([&] { write_vdb(scratch.path() / "a.vdb", example()); });
     setrlimit(RLIMIT_FSIZE, &before);
     EXPECT_EQ(error.code, ExitCode::unwritable) << error.what();
-    EXPECT_TRUE(scratch.empty());
+    EXPECT_TRUE(scratch.names().empty());
 }
 
 TEST(VdbWrite, FullDiskLeavesTheOldFile) {
-    const ScratchDirectory scratch;
-    if (mount("tmpfs", scratch.path.c_str(), "tmpfs", 0, "size=128k") != 0) GTEST_SKIP() << "cannot mount a small disk";
+    const Scratch scratch;
+    if (mount("tmpfs", scratch.path().c_str(), "tmpfs", 0, "size=128k") != 0)
+        GTEST_SKIP() << "cannot mount a small disk";
     SparseVolume large = example();
     for (int i = 1; i < 80; ++i) {
         large.leaves.push_back(large.leaves[0]);
         large.leaves.back().origin = ivec3(8 * i, 8, 0);
     }
-    write_vdb(scratch.path / "a.vdb", example());
-    const std::string old = bytes_of(scratch.path / "a.vdb");
-    const Error error = error_of([&] { write_vdb(scratch.path / "a.vdb", large, {.half = false}); });
-    const std::string now = bytes_of(scratch.path / "a.vdb");
-    const auto files = std::distance(std::filesystem::directory_iterator(scratch.path), {});
-    umount(scratch.path.c_str());
+    write_vdb(scratch.path() / "a.vdb", example());
+    const std::string old = bytes_of(scratch.path() / "a.vdb");
+    const Error error = error_of([&] { write_vdb(scratch.path() / "a.vdb", large, {.half = false}); });
+    const std::string now = bytes_of(scratch.path() / "a.vdb");
+    const auto files = std::distance(std::filesystem::directory_iterator(scratch.path()), {});
+    umount(scratch.path().c_str());
     EXPECT_EQ(error.code, ExitCode::unwritable) << error.what();
     EXPECT_TRUE(old == now && !old.empty());
     EXPECT_EQ(files, 1);
