@@ -34,8 +34,7 @@ TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
 }
 
 TEST(March, EmissionAbsorptionMatchesClosedForm) {
-    // j = 1, sigma = 0.5, s = 3: (j/sigma)(1 - exp(-sigma s)) = 1.553739680 (reliability table of the radiative
-    // transfer texts).
+    // j = 1, sigma = 0.5, s = 3: (j/sigma)(1 - exp(-sigma s)) = 1.553739680.
     Snapshot snapshot = scene_of({even_fog(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
     snapshot.media[0].optics.albedo = vec3(0), snapshot.media[0].optics.emission = vec3(1);
     Settings settings;
