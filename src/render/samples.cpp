@@ -45,7 +45,8 @@ uint32_t interleaved(ivec2 pixel, int frame) {
     return static_cast<uint32_t>((value - std::floor(value)) * 0x1p32) + static_cast<uint32_t>(frame) * 0x9e3779b9u;
 }
 
-// Sample `sample` of a shifted van der Corput sequence: the samples of a pixel are spread evenly over [0,1).
+// Sample `sample` of a shifted van der Corput sequence: the samples of a pixel are spread evenly over [0,1). Moved at
+// random within half its stratum, so that regular steps do not beat with regular shadows.
 float stratified(int sample, uint32_t shift) { return to_unit(reverse_bits(static_cast<uint32_t>(sample)) + shift); }
 
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
@@ -88,7 +89,8 @@ void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std
     for (int i = 0; i < s.count; ++i) {
         rays[i] = {s.path[i].ray.origin, s.path[i].ray.direction, s.length[i]};
         ids[i] = hash(s.path[i].seed, sample, layer, use_id);
-        jitter[i] = stratified(sample, s.path[i].shift + static_cast<uint32_t>(layer) * 0x9e3779b9u);
+        const uint32_t within = hash(ids[i], use_jitter) / static_cast<uint32_t>(2 * tracer.view.pixel_samples);
+        jitter[i] = stratified(sample, s.path[i].shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within);
     }
 
     std::vector<vec3> light_parts(lights * s.count, vec3(0));
