@@ -17,18 +17,22 @@ struct Scatter {
     float transmittance = 1; // share of what lies behind that comes through
     float validity = 1;      // 0 where the mode knows itself wrong
     int steps = 0;           // evaluations spent, for statistics
+    vec3 surface{0};         // of a mode with Surfaces::own: light of surfaces and background, through the fog
 };
 
 // Up to 16 neighbouring rays (4×4 pixels) of one pixel sample.
 struct RayBatch {
     std::span<const Ray> rays;
-    std::span<const uint32_t> ids; // a number per ray, unique to pixel and sample: seeds random choices
-    std::span<vec3> per_light;     // empty, or rays × lights: the part of radiance from each light
-    std::span<const float> jitter; // per ray in [0,1), stratified over the samples of a pixel; empty = ½
+    std::span<const uint32_t> ids;         // a number per ray, unique to pixel and sample: seeds random choices
+    std::span<vec3> per_light;             // empty, or rays × lights: the part of radiance from each light
+    std::span<const float> jitter;         // per ray in [0,1), stratified over the samples of a pixel; empty = ½
+    std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 
 enum class Accuracy { look, even_fog, single_scattering, multiple_scattering };
+// Who shades what lies behind the fog: the renderer; the mode, which then gets whole camera rays, follows them through
+// BLEND surfaces and adds surfaces and background itself; or nobody, because the mode works on the finished picture.
 enum class Surfaces { shared, own, post };
 enum class Severity { info, degraded, wrong };
 

@@ -60,8 +60,8 @@ const std::vector<std::string> switches{"off", "on"};
 std::vector<SettingRow> make_rows() {
     return {
         number_row("pixel.samples", "", 1, 4096, "camera rays per pixel", FIELD(pixel.samples)),
-        choice_row("pixel.filter", {"box", "tent", "gaussian", "blackman_harris"}, "pixel reconstruction filter",
-                   FIELD(pixel.filter)),
+        choice_row("pixel.filter", {"box", "tent", "gaussian", "blackman_harris", "center"},
+                   "pixel reconstruction filter; center = every sample at the pixel's centre", FIELD(pixel.filter)),
         number_row("pixel.filter_radius", "pixels", 0.25, 4, "how far a sample may lie from the pixel's centre",
                    FIELD(pixel.filter_radius)),
         number_row("march.step_depth", "", 1e-4, 10, "most optical depth one step may cross", FIELD(march.step_depth)),
@@ -89,6 +89,11 @@ std::vector<SettingRow> make_rows() {
                    FIELD(march.heterogeneity)),
         choice_row("march.emission", switches, "light the fog itself gives off", FIELD(march.emission)),
         choice_row("march.ambient", switches, "the scene's ambient light in the fog", FIELD(march.ambient)),
+        number_row("path.orders", "", 1, all_orders, "most times light scatters, in fog or on surfaces; 1 = once",
+                   FIELD(path.orders)),
+        choice_row("path.emission", switches, "light that fog and surfaces give off", FIELD(path.emission)),
+        choice_row("path.ambient", switches, "the scene's ambient light, as even surroundings far away",
+                   FIELD(path.ambient)),
     };
 }
 #undef FIELD

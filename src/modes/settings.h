@@ -37,9 +37,18 @@ struct MarchSettings {
     bool ambient = true;
 };
 
+inline constexpr int all_orders = 65536; // ends paths that nothing else ends
+
+struct PathSettings {
+    int orders = all_orders; // most scatterings of light, in fog or on surfaces
+    bool emission = true;
+    bool ambient = true;
+};
+
 struct Settings {
     PixelSettings pixel;
     MarchSettings march;
+    PathSettings path;
 };
 
 enum class Quality { draft, preview, final, reference };

@@ -16,7 +16,8 @@ struct Path {
     float through = 1;  // share of light that gets through fog and BLEND surfaces so far
     uint32_t seed = 0;  // of the pixel in this frame
     uint32_t shift = 0; // of its jitter
-    vec2 screen{0};     // position in the picture, 0..1
+    SamplePlace place;
+    vec2 screen{0}; // position in the picture, 0..1
     int lane = 0;
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
@@ -61,6 +62,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     const uint32_t index =
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
+    path.place = sample_place(view, pixel, sample);
     path.shift = interleaved(pixel, view.frame) + hash(view.seed, use_jitter);
     path.screen = position / vec2(view.size);
     path.lane = lane;
@@ -85,17 +87,19 @@ void add_fog(const FrameTracer& tracer, int layer, int sample, Stretches& s, std
     Ray rays[16];
     uint32_t ids[16];
     float jitter[16];
+    SamplePlace places[16];
     Scatter scatter[16];
     for (int i = 0; i < s.count; ++i) {
         rays[i] = {s.path[i].ray.origin, s.path[i].ray.direction, s.length[i]};
         ids[i] = hash(s.path[i].seed, sample, layer, use_id);
+        places[i] = s.path[i].place;
         const uint32_t within = hash(ids[i], use_jitter) / static_cast<uint32_t>(2 * tracer.view.pixel_samples);
         jitter[i] = stratified(sample, s.path[i].shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within);
     }
 
     std::vector<vec3> light_parts(lights * s.count, vec3(0));
     const size_t count = static_cast<size_t>(s.count);
-    tracer.scatter({{rays, count}, {ids, count}, light_parts, {jitter, count}}, {scatter, count});
+    tracer.scatter({{rays, count}, {ids, count}, light_parts, {jitter, count}, {places, count}}, {scatter, count});
 
     for (int i = 0; i < s.count; ++i) {
         Path& path = s.path[i];

@@ -54,17 +54,25 @@ float warped(PixelFilter filter, float u) {
         return looked_up(gaussian_table, u);
     case PixelFilter::blackman_harris:
         return looked_up(harris_table, u);
+    case PixelFilter::center:
+        break;
     }
     return 0;
 }
 }
 
-vec2 sample_position(const View& view, ivec2 pixel, int sample) {
-    const vec2 center = vec2(pixel) + 0.5f;
-    if (view.pixel_samples == 1) return center;
+SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
+    const int size = view.pixel_samples / view.batches, batch = sample / size;
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
-    const Sample2 u = sample2(static_cast<uint32_t>(sample), key);
+    return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};
+}
+
+vec2 sample_position(const View& view, ivec2 pixel, int sample) {
+    const vec2 center = vec2(pixel) + 0.5f;
+    if (view.pixel_samples == 1 || view.filter == PixelFilter::center) return center;
+    const SamplePlace place = sample_place(view, pixel, sample);
+    const Sample2 u = sample2(place.index, place.sequence);
     return center + view.filter_radius * vec2(warped(view.filter, u.x), warped(view.filter, u.y));
 }
 }

@@ -131,7 +131,7 @@ inline ScatterFunction prepare_everything(const View&, const Snapshot&, const Se
         for (size_t i = 0; i < results.size(); ++i) {
             const vec3 d = batch.rays[i].direction, o = batch.rays[i].origin;
             const float random = to_unit(hash(all, batch.ids[i]));
-            results[i] = {glm::abs(d) * random + glm::abs(o), 0.5f + 0.5f * batch.jitter[i], random, 1};
+            results[i] = {glm::abs(d) * random + glm::abs(o), 0.5f + 0.5f * batch.jitter[i], random, 1, {}};
         }
     };
 }
