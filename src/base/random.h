@@ -23,6 +23,12 @@ constexpr float random_unit(uint32_t pixel, uint32_t sample, uint32_t dimension,
     return to_unit(hash(pixel, sample, dimension, seed));
 }
 
+// Numbers in [0, 1) one after the other, for uses that cannot be counted beforehand.
+struct RandomStream {
+    uint32_t key, count = 0;
+    constexpr float next() { return to_unit(hash(key, count++)); }
+};
+
 constexpr uint32_t reverse_bits(uint32_t x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);

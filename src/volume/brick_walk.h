@@ -3,6 +3,8 @@
 #pragma once
 #include "volume/bricks.h"
 
+#include <type_traits>
+
 namespace tyndall {
 // origin + t·direction in local coordinates, t in world metres: the direction has any length.
 struct LocalRay {
@@ -44,8 +46,16 @@ inline Stretch clip(const Box& box, const LocalRay& ray, Stretch range) {
     return range.empty() ? Stretch{} : range;
 }
 
+// Calls a visitor; one that returns nothing always goes on.
+template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Arguments... arguments) {
+    if constexpr (std::is_void_v<std::invoke_result_t<Visit, Arguments...>>)
+        return visit(arguments...), true;
+    else
+        return visit(arguments...);
+}
+
 // Calls visit(cell, low, high) for every cell first..last of edge length `edge` the ray crosses on the stretch, in
-// order. The stretch has to lie inside these cells up to rounding.
+// order, until it returns false. The stretch has to lie inside these cells up to rounding.
 template<class Visit>
 void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, ivec3 last, const Visit& visit) {
     ivec3 cell, step;
@@ -60,7 +70,10 @@ void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, iv
     }
     for (double low = range.low;;) {
         const double next = std::min(border.x, std::min(border.y, border.z)), high = std::min(next, range.high);
-        if (high > low) visit(cell, low, high), low = high;
+        if (high > low) {
+            if (!goes_on(visit, cell, low, high)) return;
+            low = high;
+        }
         if (next >= range.high) return;
 
         // Over every border that lies here; through an edge or a corner several at once.
@@ -71,14 +84,15 @@ void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, iv
     }
 }
 
-// Calls visit(cell of the index, low, high) for every brick that is not empty, in order.
+// Calls visit(cell of the index, low, high) for every brick that is not empty, in order, until it returns
+// false.
 template<class Visit> void walk_bricks(const BrickPool& pool, const LocalRay& ray, Stretch range, const Visit& visit) {
     if (pool.empty()) return;
     range = clip(pool.local_bounds, ray, range);
     if (range.empty()) return;
     walk_cells(ray, range, 8, ivec3(0), pool.size - 1, [&](ivec3 brick, double low, double high) {
         const int64_t cell = (int64_t{brick.x} * pool.size.y + brick.y) * pool.size.z + brick.z;
-        if (pool.index[cell] != 0) visit(brick, cell, low, high);
+        return pool.index[cell] == 0 || goes_on(visit, brick, cell, low, high);
     });
 }
 }

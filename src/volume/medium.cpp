@@ -1,4 +1,4 @@
-// densities(): the vector sampler behind a plain interface.
+// Density at points: one by one, and the vector sampler behind a plain interface.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/medium.cpp"
 #include <hwy/foreach_target.h>
@@ -22,6 +22,17 @@ namespace tyndall {
 HWY_EXPORT(densities_kernel);
 void densities(const Medium& medium, const float* x, const float* y, const float* z, float* density) {
     HWY_DYNAMIC_DISPATCH(densities_kernel)(medium, x, y, z, density);
+}
+
+float density_at(const Medium& medium, vec3 point) {
+    if (medium.kind == DensityKind::bricks) return sample_density(*medium.bricks, point);
+    const vec3 local(medium.world_to_local * vec4(point, 1));
+    const Box& box = medium.bounds;
+    const bool inside =
+        glm::all(glm::greaterThanEqual(local, box.low)) && glm::all(glm::lessThanEqual(local, box.high));
+    if (!inside) return 0;
+    if (medium.kind == DensityKind::homogeneous) return 1;
+    return std::exp(-std::max(point.y - medium.height_base, 0.0f) / medium.height_falloff);
 }
 }
 #endif

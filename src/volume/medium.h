@@ -33,6 +33,9 @@ struct Medium {
     float majorant() const { return optics.extinction * (kind == DensityKind::bricks ? bricks->highest : 1.0f); }
 };
 
+// Density at a point; 0 outside the medium.
+float density_at(const Medium& medium, vec3 point);
+
 // Densities at 16 points (x, y, z of 16 each); 0 outside the medium. Kernels use density16() of medium_simd.h.
 void densities(const Medium& medium, const float* x, const float* y, const float* z, float* density);
 

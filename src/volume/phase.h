@@ -35,4 +35,7 @@ inline float phase_value(Phase phase, float cosine) {
     }
     return 0;
 }
+
+// A direction picked with density phase_value(phase, dot(direction, result)), by two numbers in [0,1).
+vec3 sample_phase(Phase phase, vec3 direction, vec2 u);
 }

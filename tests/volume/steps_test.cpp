@@ -14,13 +14,6 @@ std::vector<Step> steps_of(const Ray& ray, const Medium& medium, const StepRule&
     return steps_of(ray, std::span(&medium, 1), rule);
 }
 
-float density_at(const Medium& medium, vec3 point) {
-    alignas(64) float x[16], y[16], z[16], density[16];
-    std::fill_n(x, 16, point.x), std::fill_n(y, 16, point.y), std::fill_n(z, 16, point.z);
-    densities(medium, x, y, z, density);
-    return density[0];
-}
-
 double marched_depth(const Medium& medium, const Ray& ray, const StepRule& rule) {
     double sum = 0;
     for (const Step& step : steps_of(ray, medium, rule))

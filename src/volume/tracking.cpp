@@ -1,0 +1,119 @@
+// Delta and ratio tracking over the stretches of constant majorant that each kind of fog offers.
+#include "volume/tracking.h"
+
+#include "volume/brick_walk.h"
+#include "volume/half.h"
+
+namespace tyndall {
+namespace {
+// Fog between two distances along a ray: no denser than `majorant`, or exactly that dense.
+struct Fog {
+    double low = 0, high = 0;
+    float majorant = 0;
+    bool even = false;
+};
+
+float mixed(float a, float b, float weight) { return a + weight * (b - a); }
+
+// Trilinear density of a brick at a point in its own coordinates, 0..8.
+float brick_value(const uint16_t* values, vec3 point) {
+    const vec3 inside = glm::clamp(point, vec3(0), vec3(8));
+    const ivec3 cell = glm::min(ivec3(inside), ivec3(7));
+    const vec3 weight = inside - vec3(cell);
+    const uint16_t* corner = values + (cell.x * 9 + cell.y) * 9 + cell.z;
+    const auto along_z = [&](int offset) {
+        return mixed(float_from_half(corner[offset]), float_from_half(corner[offset + 1]), weight.z);
+    };
+    return mixed(mixed(along_z(0), along_z(9), weight.y), mixed(along_z(81), along_z(90), weight.y), weight.x);
+}
+
+template<class Visit> void walk_brick_fog(const BrickPool& pool, const Ray& ray, Stretch range, const Visit& visit) {
+    const LocalRay local = local_ray(pool, ray);
+    walk_bricks(pool, local, range, [&](ivec3 brick, int64_t at, double low, double high) {
+        const int32_t id = pool.index[at];
+        if (id < 0) return visit(Fog{low, high, pool.constants[-id - 1], true}, [](double) { return 0.0f; });
+        const uint16_t* values = &pool.values[size_t(id - 1) * brick_stride];
+        const dvec3 start = local.origin - dvec3(brick * 8);
+        return visit(Fog{low, high, pool.maximum[at], false},
+                     [&](double t) { return brick_value(values, vec3(start + t * local.direction)); });
+    });
+}
+
+// Height fog in layers half a scale height thick, up to where it is thinner than 2^-24.
+template<class Visit> void walk_height_fog(const Medium& medium, const Ray& ray, Stretch range, const Visit& visit) {
+    constexpr int layers = 34;
+    const double start = ray.origin.y - medium.height_base, slope = ray.direction.y, falloff = medium.height_falloff;
+    const auto density = [&](double t) {
+        return static_cast<float>(std::exp(-std::max(start + t * slope, 0.0) / falloff));
+    };
+    if (slope == 0) return void(visit(Fog{range.low, range.high, density(0), true}, density));
+
+    // Layer 0 lies below the base, layer k between (k-1)/2 and k/2 scale heights above it.
+    for (int i = 0; i <= layers && !range.empty(); ++i) {
+        const int layer = slope > 0 ? i : layers - i;
+        const double top = (0.5 * falloff * layer - start) / slope,
+                     bottom = layer == 0 ? -infinity : (0.5 * falloff * (layer - 1) - start) / slope;
+        const double enters = slope > 0 ? bottom : top;
+        const double leaves = slope > 0 ? top : (layer == 0 ? infinity : bottom);
+        const Fog fog{std::max(range.low, enters), std::min(range.high, leaves),
+                      layer == 0 ? 1.0f : static_cast<float>(std::exp(-0.5 * (layer - 1))), layer == 0};
+        if (fog.low < fog.high && !visit(fog, density)) return;
+    }
+}
+
+// Calls visit(fog, density at a distance) for the stretches of the ray in order until it returns false.
+template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interval range, const Visit& visit) {
+    const Stretch whole{range.low, range.high};
+    if (medium.kind == DensityKind::bricks) return walk_brick_fog(*medium.bricks, ray, whole, visit);
+    const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), whole);
+    if (inside.empty()) return;
+    if (medium.kind == DensityKind::height) return walk_height_fog(medium, ray, inside, visit);
+    visit(Fog{inside.low, inside.high, 1, true}, [](double) { return 1.0f; });
+}
+
+double free_depth(float u) { return -std::log1p(-static_cast<double>(u)); }
+}
+
+float collision_distance(const Medium& medium, const Ray& ray, Interval range, float first, RandomStream& random,
+                         int& lookups) {
+    double left = free_depth(first), found = infinity; // optical depth, by majorants, to the next collision
+    walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
+        const double majorant = static_cast<double>(medium.optics.extinction) * fog.majorant;
+        for (double t = fog.low; majorant > 0;) {
+            const double step = left / majorant;
+            if (t + step >= fog.high) {
+                left -= majorant * (fog.high - t);
+                break;
+            }
+            t += step;
+            if (fog.even || (++lookups, random.next() * fog.majorant < density(t))) return found = t, false;
+            left = free_depth(random.next());
+        }
+        return true;
+    });
+    return static_cast<float>(found);
+}
+
+float ratio_transmittance(const Medium& medium, const Ray& ray, Interval range, RandomStream& random, int& lookups) {
+    constexpr double small = 0.1;
+    double share = 1, left = free_depth(random.next());
+    walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
+        const double majorant = static_cast<double>(medium.optics.extinction) * fog.majorant;
+        if (fog.even) return (share *= std::exp(-majorant * (fog.high - fog.low))) > 0;
+        for (double t = fog.low; majorant > 0;) {
+            const double step = left / majorant;
+            if (t + step >= fog.high) {
+                left -= majorant * (fog.high - t);
+                break;
+            }
+            t += step, ++lookups;
+            share *= std::max(0.0, 1 - static_cast<double>(density(t)) / fog.majorant);
+            if (share < small) share = random.next() * small < share ? small : 0;
+            if (share == 0) return false;
+            left = free_depth(random.next());
+        }
+        return true;
+    });
+    return static_cast<float>(share);
+}
+}
