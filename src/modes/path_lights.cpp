@@ -1,0 +1,147 @@
+// Chances of lights and of distances.
+#include "modes/path_lights.h"
+
+namespace tyndall {
+namespace {
+float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
+
+// From the first fog to the last; of fog without end what lies within 8 optical depths or in the scene.
+Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
+    Interval stretch{infinity, 0};
+    for (const Medium& medium : snapshot.media) {
+        Interval inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
+        if (inside.empty()) continue;
+        if (std::isinf(inside.high)) {
+            const Interval scene = clip(snapshot.bounds, line.origin, line.direction, inside);
+            inside.high = std::max(scene.empty() ? 0 : scene.high, inside.low + 8 / medium.majorant());
+        }
+        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
+    }
+    return stretch;
+}
+
+// The part inside the ball of a light's range.
+Interval within_range(const LightAlong& along, float range, Interval stretch) {
+    if (std::isinf(range)) return stretch;
+    const float half = std::sqrt(std::max(0.0f, (range - along.height) * (range + along.height)));
+    if (along.height >= range) return {};
+    return {std::max(stretch.low, along.closest - half), std::min(stretch.high, along.closest + half)};
+}
+
+// The part inside a spot's cone, which is convex: tested between the crossings with the double cone
+// ((x-a)·v)² = cos² |x-a|².
+Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
+    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi || stretch.empty()) return stretch;
+    const dvec3 offset = dvec3(line.origin) - dvec3(light.position), direction(line.direction), axis(light.direction);
+    const double cosine = std::cos(static_cast<double>(light.outer_cone)), squared = cosine * cosine;
+    const double along = glm::dot(direction, axis), start = glm::dot(offset, axis);
+    const double a = along * along - squared, b = along * start - squared * glm::dot(direction, offset),
+                 c = start * start - squared * glm::dot(offset, offset);
+    const double inside_root = b * b - a * c;
+    double cuts[4] = {stretch.low, stretch.low, stretch.low, stretch.high};
+    if (inside_root > 0) {
+        const double q = -(b + std::copysign(std::sqrt(inside_root), b));
+        cuts[1] = a != 0 ? q / a : stretch.low, cuts[2] = q != 0 ? c / q : stretch.low;
+    }
+    for (double& cut : cuts) cut = std::clamp<double>(cut, stretch.low, stretch.high);
+    std::sort(cuts, cuts + 4);
+
+    Interval inside{infinity, 0};
+    for (int i = 0; i < 3; ++i) {
+        if (!(cuts[i] < cuts[i + 1])) continue;
+        const dvec3 middle = offset + 0.5 * (cuts[i] + cuts[i + 1]) * direction;
+        if (glm::dot(middle, axis) <= cosine * glm::length(middle)) continue;
+        inside.low = std::min(inside.low, static_cast<float>(cuts[i]));
+        inside.high = std::max(inside.high, static_cast<float>(cuts[i + 1]));
+    }
+    return inside.empty() ? Interval{} : inside;
+}
+
+LightAlong light_along(const Light& light, const Ray& line, Interval stretch) {
+    LightAlong along;
+    along.reach = stretch;
+    if (light.kind == LightKind::sun) {
+        along.chance = volume_brightness(light) * along.reach.length();
+        return along;
+    }
+    const vec3 offset = light.position - line.origin;
+    along.closest = glm::dot(offset, line.direction);
+    const float nearest = std::max(light.radius, smallest_radius);
+    along.height = std::max(glm::length(offset - along.closest * line.direction), nearest);
+    along.reach = within_cone(light, line, within_range(along, light.range, stretch));
+    if (along.reach.empty()) return along;
+    along.low_angle = std::atan((along.reach.low - along.closest) / along.height);
+    along.high_angle = std::atan((along.reach.high - along.closest) / along.height);
+    if (!(along.high_angle > along.low_angle)) return along;
+    along.chance = volume_brightness(light) * (along.high_angle - along.low_angle) / along.height;
+    return along;
+}
+
+template<class Irradiance> LightPick pick(size_t count, float u, const Irradiance& irradiance) {
+    double total = 0;
+    for (size_t i = 0; i < count; ++i) total += luminance(irradiance(i).irradiance);
+    if (!(total > 0)) return {};
+    double left = u * total;
+    LightPick result;
+    for (size_t i = 0; i < count; ++i) {
+        const Arrival arriving = irradiance(i);
+        const double share = luminance(arriving.irradiance);
+        if (!(share > 0)) continue;
+        result = {static_cast<int>(i), static_cast<float>(share / total), arriving.irradiance, arriving.to_light};
+        if ((left -= share) < 0) break;
+    }
+    return result;
+}
+}
+
+float LightAlong::distance(float u) const {
+    if (height == 0) return reach.low + u * reach.length();
+    const float t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
+    return std::clamp(t, reach.low, reach.high);
+}
+
+float LightAlong::density(float t) const {
+    if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
+    if (height == 0) return 1 / reach.length();
+    const float off = t - closest;
+    return height / ((high_angle - low_angle) * (height * height + off * off));
+}
+
+void lights_along(const Snapshot& snapshot, const Ray& line, std::vector<LightAlong>& lights) {
+    lights.clear();
+    const Interval stretch = fog_stretch(snapshot, line);
+    double total = 0;
+    for (const Light& light : snapshot.lights) {
+        lights.push_back(stretch.empty() ? LightAlong{} : light_along(light, line, stretch));
+        total += lights.back().chance;
+    }
+    if (total > 0)
+        for (LightAlong& along : lights) along.chance = static_cast<float>(along.chance / total);
+}
+
+LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
+    return pick(snapshot.lights.size(), u, [&](size_t i) {
+        Arrival arriving = arrival(snapshot.lights[i], point);
+        arriving.irradiance *= snapshot.lights[i].volume_scale;
+        return arriving;
+    });
+}
+
+LightPick pick_light(const Snapshot& snapshot, vec3 point, vec3 normal, float u) {
+    return pick(snapshot.lights.size(), u, [&](size_t i) {
+        Arrival arriving = arrival(snapshot.lights[i], point);
+        arriving.irradiance *= snapshot.lights[i].surface_scale * std::max(0.0f, glm::dot(normal, arriving.to_light));
+        return arriving;
+    });
+}
+
+float pick_chance(const Snapshot& snapshot, vec3 point, int light) {
+    double total = 0, wanted = 0;
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const double share = luminance(arrival(snapshot.lights[i], point).irradiance) * snapshot.lights[i].volume_scale;
+        total += share;
+        if (static_cast<int>(i) == light) wanted = share;
+    }
+    return total > 0 ? static_cast<float>(wanted / total) : 0;
+}
+}

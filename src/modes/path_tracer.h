@@ -1,0 +1,23 @@
+// Paths of light from the eye through fog and over surfaces, followed sixteen at a time.
+//
+// A path is a chain of straight lines. Along a line, through BLEND surfaces up to the first opaque one, light is
+// gathered in three ways: from a distance picked for the lights; from the point where delta tracking makes the path
+// collide with fog; and from every surface met, dimmed by ratio tracking. The first two cover the same light and share
+// it by multiple importance sampling. Where the path collided or met a surface it turns into its next line.
+#pragma once
+#include "modes/mode.h"
+#include "trace/glow.h"
+
+namespace tyndall {
+struct PathTracer {
+    Snapshot snapshot;
+    PathSettings settings;
+    Camera camera;
+    ivec2 size{0};
+    Glow glow;
+    bool glimmers = false; // fog, surfaces or surroundings give off light that paths must find by themselves
+};
+
+// Traces the paths of one pixel sample of up to 16 pixels.
+void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scatter> results);
+}
