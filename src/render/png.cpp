@@ -39,15 +39,18 @@ void append(void* context, void* data, int size) {
 
 void write_png(const std::filesystem::path& file, const Image<vec3>& linear, float exposure) {
     const float gain = std::exp2(exposure);
-    std::vector<uint8_t> codes;
-    codes.reserve(linear.pixels.size() * 3);
+    Image<glm::u8vec3> codes(linear.size);
     for (int y = 0; y < linear.size.y; ++y)
         for (int x = 0; x < linear.size.x; ++x)
-            for (int c = 0; c < 3; ++c) codes.push_back(code(gain * linear.at(x, y)[c], x, y, c));
+            for (int c = 0; c < 3; ++c) codes.at(x, y)[c] = code(gain * linear.at(x, y)[c], x, y, c);
+    write_png(file, codes);
+}
 
+void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb) {
+    static_assert(sizeof(glm::u8vec3) == 3);
     std::vector<std::byte> bytes;
     stbi_write_png_compression_level = 5;
-    if (!stbi_write_png_to_func(append, &bytes, linear.size.x, linear.size.y, 3, codes.data(), 3 * linear.size.x))
+    if (!stbi_write_png_to_func(append, &bytes, srgb.size.x, srgb.size.y, 3, srgb.pixels.data(), 3 * srgb.size.x))
         fail(ExitCode::out_of_memory, file.string(), "no memory to encode the picture");
     write_file_atomically(file, bytes);
 }

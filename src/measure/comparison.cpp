@@ -1,0 +1,92 @@
+#include "measure/comparison.h"
+
+#include "measure/ssim.h"
+
+namespace tyndall {
+namespace {
+const Errors* find_layer(const Comparison& comparison, const std::string& name) {
+    for (const auto& [own_name, errors] : comparison.layers)
+        if (own_name == name) return &errors;
+    return nullptr;
+}
+
+// The halves estimate the noise of the picture; they are no layers of their own.
+bool is_half(const std::string& name) { return name == "half_a" || name == "half_b"; }
+
+void add_halves(const Picture& test, const Picture& reference, Comparison& result) {
+    const Image<vec3>*r1 = reference.layer("half_a"), *r2 = reference.layer("half_b");
+    const Image<vec3>*a1 = test.layer("half_a"), *a2 = test.layer("half_b");
+    if (!r1 || !r2) return;
+    result.mse = product_of_errors(test.beauty, test.beauty, *r1, *r2);
+    if (a1 && a2) result.bias_squared = product_of_errors(*a1, *a2, *r1, *r2);
+}
+
+// Mean over frames that are independent of each other.
+std::optional<Estimate> averaged(std::span<const Comparison> frames, std::optional<Estimate> Comparison::*member) {
+    double sum = 0, variance = 0;
+    for (const Comparison& frame : frames) {
+        if (!(frame.*member)) return {};
+        sum += (frame.*member)->value, variance += std::pow((frame.*member)->standard_error, 2);
+    }
+    const double count = static_cast<double>(frames.size());
+    return Estimate{sum / count, std::sqrt(variance) / count};
+}
+}
+
+Viewing viewing_of(const Image<vec3>& reference) {
+    return {flip_exposures(reference), flip_pixels_per_degree, mean_luminance(reference)};
+}
+
+Viewing covering(std::span<const Viewing> frames) {
+    Viewing all = frames[0];
+    std::vector<FlipExposures> exposures;
+    all.mean_luminance = 0;
+    for (const Viewing& frame : frames) {
+        exposures.push_back(frame.exposures);
+        all.mean_luminance += frame.mean_luminance / static_cast<double>(frames.size());
+    }
+    all.exposures = covering(exposures);
+    return all;
+}
+
+double Comparison::worst_rmse() const {
+    const double own = relative(beauty.rmse, beauty.mean_reference);
+    const Errors* fog = find_layer(*this, "inscatter");
+    const double other = fog ? relative(fog->rmse, fog->mean_reference) : own;
+    return other > own || std::isnan(other) ? other : own;
+}
+
+Comparison compare(const Picture& test, const Picture& reference, const Viewing& viewing, Image<float>* flip_map) {
+    check_same_frame(test, reference);
+    Comparison result;
+    result.beauty = measure_errors(test.beauty, reference.beauty);
+    for (const auto& [name, image] : reference.layers)
+        if (const Image<vec3>* own = test.layer(name); own && !is_half(name))
+            result.layers.emplace_back(name, measure_errors(*own, image));
+    result.ssim = ssim(test.beauty, reference.beauty, viewing.mean_luminance);
+    Image<float> map = flip_hdr(test.beauty, reference.beauty, viewing.exposures, viewing.pixels_per_degree);
+    result.flip = flip_mean(map);
+    if (flip_map) *flip_map = std::move(map);
+    add_halves(test, reference, result);
+    return result;
+}
+
+Comparison pooled(std::span<const Comparison> frames) {
+    Comparison all;
+    std::vector<Errors> errors;
+    for (const Comparison& frame : frames) {
+        errors.push_back(frame.beauty);
+        all.ssim += frame.ssim / static_cast<double>(frames.size());
+        all.flip += frame.flip / static_cast<double>(frames.size());
+    }
+    all.beauty = pooled(errors);
+    for (const auto& [name, first] : frames[0].layers) {
+        errors.clear();
+        for (const Comparison& frame : frames)
+            if (const Errors* e = find_layer(frame, name)) errors.push_back(*e);
+        if (errors.size() == frames.size()) all.layers.emplace_back(name, pooled(errors));
+    }
+    all.mse = averaged(frames, &Comparison::mse), all.bias_squared = averaged(frames, &Comparison::bias_squared);
+    return all;
+}
+}
