@@ -1,0 +1,114 @@
+// tyndall verify: proves this program right, on its own scenes or on the user's.
+#include "base/error.h"
+#include "common.h"
+#include "measure/verify.h"
+#include "output.h"
+
+#include "base/text.h"
+
+namespace tyndall {
+namespace {
+struct Options {
+    std::string scene, frame, camera, resolution, samples, seed;
+};
+
+// Enough digits to see the tolerance.
+std::string value_text(double value) { return formatted("%.7g", value); }
+
+std::string table(const std::vector<Check>& checks) {
+    std::string text, topic;
+    for (const Check& check : checks) {
+        if (check.topic != topic) text += formatted("%s%s\n", topic.empty() ? "" : "\n", check.topic.c_str());
+        topic = check.topic;
+        text += formatted("  %-4s %-58s %11s  expected %11s +- %-9.2g %s\n", check.holds() ? "ok" : "OFF",
+                          check.name.c_str(), value_text(check.measured).c_str(), value_text(check.expected).c_str(),
+                          check.tolerance, check.basis.c_str());
+    }
+    return text;
+}
+
+std::string checks_json(const std::vector<Check>& checks, size_t off) {
+    std::vector<Json> items;
+    for (const Check& check : checks)
+        items.push_back(json_object({{"topic", json_of(std::string_view(check.topic))},
+                                     {"name", json_of(std::string_view(check.name))},
+                                     {"measured", json_of(check.measured)},
+                                     {"expected", json_of(check.expected)},
+                                     {"tolerance", json_of(check.tolerance)},
+                                     {"basis", json_of(std::string_view(check.basis))},
+                                     {"holds", json_of(check.holds())}}));
+    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
+                                    {"off", json_of(static_cast<uint64_t>(off))},
+                                    {"checks", json_array(std::move(items))}})) +
+           "\n";
+}
+
+SceneProof proof_of(const Options& texts) {
+    SceneProof proof;
+    if (!texts.resolution.empty()) proof.size = resolution_option("--res", texts.resolution);
+    if (!texts.samples.empty())
+        proof.samples = static_cast<int>(integer_option("--samples", texts.samples, 64, 65536) + 63) / 64 * 64;
+    if (!texts.seed.empty()) proof.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    proof.camera = texts.camera;
+    return proof;
+}
+
+void refuse_scene_options(const Options& texts) {
+    const std::pair<const char*, const std::string*> options[] = {{"--frame", &texts.frame},
+                                                                  {"--camera", &texts.camera},
+                                                                  {"--res", &texts.resolution},
+                                                                  {"--samples", &texts.samples},
+                                                                  {"--seed", &texts.seed}};
+    for (const auto& [name, text] : options)
+        if (!text->empty()) fail(ExitCode::usage, name, "belongs to the proof of a scene: tyndall verify SCENE.json");
+}
+
+int run_verify(const Options& texts, const Globals& globals) {
+    SceneProof proof = proof_of(texts);
+    if (texts.scene.empty()) refuse_scene_options(texts);
+    Progress progress(globals.progress, "verify", 1, true);
+    const VerifyControl control{&cancel_flag(), [&](double done) { progress.set(done); }};
+    std::vector<Check> checks;
+    if (texts.scene.empty()) {
+        checks = verify_program(control);
+    } else {
+        const Scene scene = load_scene(texts.scene);
+        proof.frame = texts.frame.empty() ? scene.first_frame
+                                          : static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
+        checks = verify_scene(scene, proof, control);
+    }
+    stop_if_cancelled();
+    progress.finish();
+    size_t off = 0;
+    for (const Check& check : checks) off += !check.holds();
+    print_report(globals.json ? checks_json(checks, off) : table(checks));
+    if (!globals.quiet)
+        say(count_text(checks.size(), "check") + ", " + (off ? std::to_string(off) + " off" : std::string("all hold")));
+    return static_cast<int>(off ? ExitCode::differs : ExitCode::ok);
+}
+}
+
+Run add_verify(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("verify", "prove this program right, or a scene's picture");
+    auto texts = std::make_shared<Options>();
+    command->add_option("SCENE", texts->scene, "a scene to check on its own data; without, the program alone")
+        ->type_name("");
+    command->add_option("--frame", texts->frame, "which frame of the scene (default: its first)")->type_name("N");
+    command->add_option("--camera", texts->camera, "which camera (default: the scene's)")->type_name("NAME");
+    command->add_option("--res", texts->resolution, "size of the pictures compared (default: 160x90)")
+        ->type_name("WxH");
+    command->add_option("--samples", texts->samples,
+                        "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
+                        "more of them find smaller differences")
+        ->type_name("N");
+    command->add_option("--seed", texts->seed, "other random numbers (default: 0)")->type_name("N");
+    command->footer("Examples: this program in about a minute; then a scene\n"
+                    "  tyndall verify\n"
+                    "  tyndall verify scenes/window.json --res 320x180 --samples 1024\n"
+                    "Without a scene: closed forms, published tables, conservation of energy, invariances. With one:\n"
+                    "same bits with any number of threads and for crops, units of length, lights that add up, the fog\n"
+                    "in a white furnace, and the march against the path tracer's first order, tile by tile.\n"
+                    "Exit code 0: all checks hold; 1: one is off.");
+    return [texts](const Globals& globals) { return run_verify(*texts, globals); };
+}
+}

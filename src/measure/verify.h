@@ -1,0 +1,40 @@
+// Proof that this program computes what it says: closed forms, published values, conservation laws and invariances,
+// measured by the code that renders.
+#pragma once
+#include "scene/scene.h"
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+// One statement: `measured` lies within `tolerance` of `expected`.
+struct Check {
+    std::string topic, name;
+    double measured = 0, expected = 0, tolerance = 0;
+    std::string basis; // what the tolerance is: "rounding", "3 standard errors", ...
+
+    bool holds() const;
+};
+
+struct VerifyControl {
+    std::atomic<bool>* cancel = nullptr;
+    std::function<void(double)> progress; // 0..1
+};
+
+// The program on its own: about a minute on two cores. Throws Error (internal) when cancelled.
+std::vector<Check> verify_program(const VerifyControl& control);
+
+struct SceneProof {
+    int frame = 1;
+    std::string camera; // empty = the scene's
+    ivec2 size{160, 90};
+    int samples = 256; // of the path tracer, per pixel; a multiple of 64
+    uint32_t seed = 0;
+};
+
+// The invariances on a user's scene, and the path tracer's first order against the deterministic reference. Throws
+// Error.
+std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control);
+}

@@ -1,0 +1,168 @@
+// Invariances of whole pictures: threads, crops, units of length, sums of lights, a furnace, and two methods that
+// share no code on the way of the light.
+#include "measure/metrics.h"
+#include "measure/scaled_scene.h"
+#include "measure/tile_scores.h"
+#include "measure/verify_rays.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "render/frame.h"
+
+#include <cstring>
+
+namespace tyndall {
+namespace {
+// A picture of a scene at the moment of the proof.
+struct Shot {
+    const SceneProof& proof;
+    const VerifyControl& control;
+    Settings settings;
+    bool per_light = false;
+    int batches = 1;
+    ivec2 crop_low{0}, crop_high{0};
+    std::string mode = "march";
+};
+
+Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
+    View view;
+    view.camera = camera_at(scene, find_camera(scene, shot.proof.camera), snapshot.seconds);
+    view.size = shot.proof.size;
+    view.crop_low = shot.crop_low, view.crop_high = shot.crop_high;
+    view.pixel_samples = shot.settings.pixel.samples, view.batches = shot.batches;
+    view.filter = shot.settings.pixel.filter, view.filter_radius = shot.settings.pixel.filter_radius;
+    view.seed = shot.proof.seed, view.frame = shot.proof.frame;
+    FrameOptions options;
+    options.per_light = shot.per_light, options.cancel = shot.control.cancel;
+    FrameStats stats;
+    return render_frame(find_mode(shot.mode), view, snapshot, shot.settings, options, stats);
+}
+
+Snapshot moment(const Scene& scene, const SceneProof& proof) {
+    return make_snapshot(scene, moment_of(scene, proof.frame), nullptr, MissingFrame::error);
+}
+
+// Pixels whose colour, fog light or transmittance differ in any bit; `offset`: where `part` lies in `whole`.
+int different_pixels(const Layers& part, const Layers& whole, ivec2 offset) {
+    int count = 0;
+    for (int y = 0; y < part.size.y; ++y)
+        for (int x = 0; x < part.size.x; ++x) {
+            const ivec2 p = ivec2(x, y) + offset;
+            count += part.color.at(x, y) != whole.color.at(p.x, p.y) ||
+                     part.inscatter.at(x, y) != whole.inscatter.at(p.x, p.y) ||
+                     part.transmittance.at(x, y) != whole.transmittance.at(p.x, p.y);
+        }
+    return count;
+}
+
+void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+    const Snapshot snapshot = moment(scene, proof);
+    Shot shot{proof, control, settings_for(Quality::preview)};
+    const Layers whole = render(shot, scene, snapshot);
+    const int threads = thread_count();
+    set_thread_count(1);
+    const Layers single = render(shot, scene, snapshot);
+    set_thread_count(threads);
+    checks.add("pixels that differ between 1 and " + std::to_string(threads) + " threads",
+               different_pixels(single, whole, ivec2(0)), 0, 0, "same bits");
+    shot.crop_low = proof.size / 4, shot.crop_high = glm::max(proof.size * 3 / 4, shot.crop_low + 1);
+    checks.add("pixels that differ between a crop and the whole",
+               different_pixels(render(shot, scene, snapshot), whole, shot.crop_low), 0, 0, "same bits");
+}
+
+void check_scale(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+    const Shot shot{proof, control, settings_for(Quality::preview)};
+    const Layers usual = render(shot, scene, moment(scene, proof));
+    for (const float factor : {0.5f, 64.0f}) {
+        const Scene other = scaled(scene, factor);
+        const Layers layers = render(shot, other, moment(other, proof));
+        const Errors errors = measure_errors(layers.color, usual.color);
+        checks.add(factor < 1 ? "rmse_rel of everything at half the size" : "rmse_rel of everything 64 times as large",
+                   relative(errors.rmse, errors.mean_reference), 0, 1e-3, "rounding");
+    }
+}
+
+// The scene as single scattering sees it: without light that modes treat differently.
+Scene only_lights(Scene scene) {
+    scene.ambient = Keyed<vec3>(vec3(0));
+    for (Material& material : scene.materials) material.emission = vec3(0);
+    for (MediumSource& medium : scene.media) medium.emission = Keyed<vec3>(vec3(0));
+    return scene;
+}
+
+void check_lights(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+    Scene dark = only_lights(scene);
+    dark.background = {};
+    Shot shot{proof, control, settings_for(Quality::preview)};
+    shot.per_light = true;
+    const Layers layers = render(shot, dark, moment(dark, proof));
+    Image<vec3> sum(layers.size, vec3(0));
+    for (const auto& [name, light] : layers.lights)
+        for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += light.pixels[i];
+    const Errors errors = measure_errors(sum, layers.color);
+    checks.add("rmse_rel of the sum over the lights' layers", relative(errors.rmse, errors.mean_reference), 0, 1e-5,
+               "rounding");
+}
+
+// The scene's fog, made white, alone in even surroundings of radiance 1.
+void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+    Scene fog = only_lights(scene);
+    fog.instances.clear(), fog.lights.clear();
+    fog.ambient = Keyed<vec3>(vec3(1));
+    fog.background = {};
+    fog.background.color = Keyed<vec3>(vec3(1));
+    for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1));
+    Shot shot{proof, control, settings_for(Quality::preview)};
+    shot.mode = "path", shot.settings.pixel.samples = shot.batches = 64;
+    const Layers layers = render(shot, fog, moment(fog, proof));
+    double mean = 0, variance = 0;
+    const double pixels = static_cast<double>(layers.color.pixels.size());
+    for (size_t i = 0; i < layers.color.pixels.size(); ++i)
+        mean += layers.color.pixels[i].x / pixels, variance += layers.variance.pixels[i].x / (pixels * pixels);
+    checks.add("the fog, made white, in even surroundings", mean, 1, 3 * std::sqrt(variance) + 1e-6,
+               "3 standard errors");
+}
+
+void check_march(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+    const Scene lit = only_lights(scene);
+    const Snapshot snapshot = moment(lit, proof);
+    Shot exact{proof, control, settings_for(Quality::reference)};
+    exact.settings.pixel.filter = PixelFilter::center;
+    const bool soft = std::ranges::any_of(snapshot.lights, is_soft);
+    exact.settings.pixel.samples = soft ? 64 : 1;
+    const Layers reference = render(exact, lit, snapshot);
+
+    Shot noisy = exact;
+    noisy.mode = "path", noisy.settings.path.orders = 1;
+    noisy.settings.pixel.samples = proof.samples, noisy.batches = 64;
+    const Layers layers = render(noisy, lit, snapshot);
+    const TileScores scores = tile_scores(layers.color, layers.variance, reference.color);
+    if (scores.tiles == 0) return checks.add("lit tiles", 0, 0, 0, "nothing is lit: nothing to compare");
+
+    // The mean of n scores varies by 1/√n, their deviation by 1/√(2n), and 0.27 % of them lie beyond 3.
+    const double n = scores.tiles;
+    checks.add("mean score of " + std::to_string(scores.tiles) + " lit tiles, path against march", scores.mean, 0,
+               std::max(0.1, 4 / std::sqrt(n)), "0.1, or 4/sqrt(tiles)");
+    checks.add("standard deviation of the scores", scores.deviation, 1, std::max(0.2, 4 / std::sqrt(2 * n)),
+               "0.2, or 4/sqrt(2 tiles)");
+    checks.add("share of scores within 3", scores.within_3, 1, std::max(0.005, 0.0027 + 4 * std::sqrt(0.0027 / n)),
+               "0.005, or chance");
+    checks.add("share of tiles known to 1 %", scores.precise, 1, 1, "for information: --samples raises it");
+}
+
+std::vector<CheckGroup> scene_checks(const Scene& scene, const SceneProof& proof, const VerifyControl& control) {
+    using Check = void (*)(const Scene&, const SceneProof&, const VerifyControl&, Checks&);
+    const auto group = [&](const char* topic, double share, Check check) {
+        return CheckGroup{topic, share, [&, check](Checks& checks) { check(scene, proof, control, checks); }};
+    };
+    return {group("same bits", 2, check_bits), group("units of length", 2, check_scale),
+            group("lights add up", 1, check_lights), group("white furnace", 4, check_furnace),
+            group("two methods", 12, check_march)};
+}
+}
+
+std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control) {
+    if (scene.media.empty()) refuse(scene.file.string(), "has no fog to verify");
+    return run_checks(scene_checks(scene, proof, control), control);
+}
+}
