@@ -55,9 +55,9 @@ tyndall --help lists all commands; tyndall COMMAND --help explains one, with an 
 )";
 
 constexpr const char* exit_codes =
-    R"(Exit codes: 0 done, 1 problems found (check), 2 wrong command line, 3 input refused, 4 input missing
-or unreadable, 5 output could not be written, 6 rendered but some samples were not finite numbers,
-33 out of memory, 70 internal error, 128+n stopped by signal n.)";
+    R"(Exit codes: 0 done, 1 problems found (check) or more noise left than wanted (render), 2 wrong command
+line, 3 input refused, 4 input missing or unreadable, 5 output could not be written, 6 rendered but some
+samples were not finite numbers, 33 out of memory, 70 internal error, 128+n stopped by signal n.)";
 
 struct GlobalTexts {
     std::string threads, progress;

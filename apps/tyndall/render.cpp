@@ -2,99 +2,15 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/frames.h"
-#include "base/isa.h"
 #include "common.h"
 #include "output.h"
-#include "render/sequence.h"
+#include "render/to_target.h"
+#include "render_options.h"
+
+#include <utility>
 
 namespace tyndall {
 namespace {
-struct Options {
-    std::string scene, output, frames, mode = "march", quality = "preview", camera, resolution, crop, samples;
-    std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
-    std::vector<std::string> settings;
-    bool png = false, resume = false;
-};
-
-constexpr int largest_side = 16384; // pixels; what EXR readers take
-
-ivec2 parsed_resolution(const std::string& text) {
-    const size_t cross = text.find('x');
-    if (cross == text.npos)
-        fail(ExitCode::usage, "--res", "expected WIDTHxHEIGHT, like 1280x720; got '" + printable(text, 40) + "'");
-    return {integer_option("--res", text.substr(0, cross), 1, largest_side),
-            integer_option("--res", text.substr(cross + 1), 1, largest_side)};
-}
-
-void read_crop(const std::string& text, RenderJob& job) {
-    const std::vector<std::string> edges = comma_list(text);
-    if (edges.size() != 4)
-        fail(ExitCode::usage, "--crop", "expected X0,Y0,X1,Y1 in pixels; got '" + printable(text, 40) + "'");
-    int values[4];
-    for (int i = 0; i < 4; ++i) values[i] = static_cast<int>(integer_option("--crop", edges[i], 0, largest_side));
-    job.crop_low = {values[0], values[1]}, job.crop_high = {values[2], values[3]};
-    if (job.crop_low.x >= job.crop_high.x || job.crop_low.y >= job.crop_high.y)
-        fail(ExitCode::usage, "--crop",
-             "X1,Y1 have to lie right of and below X0,Y0; got '" + printable(text, 40) + "'");
-}
-
-void check_crop(const RenderJob& job, ivec2 picture) {
-    if (job.crop_high.x > picture.x || job.crop_high.y > picture.y)
-        fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
-}
-
-// Layers beside RGBA, from --aov.
-std::vector<std::string> parsed_layers(const std::string& text) {
-    if (text == "none") return {};
-    const std::vector<std::string> known{"Z", "inscatter", "transmittance", "validity", "lights"};
-    std::vector<std::string> layers;
-    for (const std::string& name : comma_list(text)) layers.push_back(known[choice_option("--aov", name, known)]);
-    return layers;
-}
-
-// Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
-// the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
-std::string chosen_isa(const std::string& text) {
-    const std::string_view kernels = set_isa(text);
-    set_embree_isa(text);
-    return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
-}
-
-// Everything the command line alone decides; throws Error (usage) before any file is touched.
-RenderJob make_job(const Options& texts) {
-    RenderJob job;
-    job.scene_file = texts.scene;
-    job.output = texts.output;
-    if (!texts.frames.empty()) job.frames = parse_frames(texts.frames);
-    check_pattern(texts.output, ".exr", job.frames.size() > 1);
-    job.mode = find_mode(texts.mode).name;
-    job.quality = quality_named(texts.quality);
-    job.settings = settings_for(job.quality);
-    if (!texts.samples.empty())
-        job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
-    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
-    job.camera = texts.camera;
-    if (!texts.resolution.empty()) job.resolution = parsed_resolution(texts.resolution);
-    if (!texts.crop.empty()) read_crop(texts.crop, job);
-    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(job, job.resolution);
-    if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    job.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
-    if (!texts.exposure.empty() && !texts.png)
-        fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
-    if (!texts.exposure.empty())
-        job.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
-    if (!texts.aov.empty()) job.exr.layers = parsed_layers(texts.aov);
-    job.png = texts.png, job.resume = texts.resume;
-    job.isa = chosen_isa(texts.isa);
-    return job;
-}
-
-LoadOptions load_options(const Options& texts) {
-    constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    return {units[choice_option("--light-units", texts.light_units, {"spec", "unitless", "raw"})]};
-}
-
 void choose_frames(const Scene& scene, RenderJob& job) {
     if (job.frames.empty())
         for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame) job.frames.push_back(frame);
@@ -124,6 +40,19 @@ void say_limits(const Scene& scene, const std::vector<Limit>& limits, const Glob
         if (globals.verbose || limit.severity != Severity::info) say(limit_line(limit));
 }
 
+// Takes as many samples as measuring noise needs, and says so; half floats hide the last of it.
+void settle_noise(RenderJob& job, const Globals& globals) {
+    if (!measures_noise(job)) return;
+    int& samples = job.settings.pixel.samples;
+    const int asked = std::exchange(samples, batched_samples(samples));
+    if (globals.quiet) return;
+    if (samples != asked)
+        say(formatted("note: %d camera rays per pixel instead of %d: noise is measured in %d equal batches", samples,
+                      asked, noise_batches));
+    if (job.target_error > 0 && job.target_error < 1e-3 && !job.exr.full_float)
+        say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
+}
+
 void say_summary(const RenderReport& report, const RenderJob& job) {
     int kept = 0;
     for (const FrameReport& frame : report.frames) kept += frame.kept;
@@ -139,7 +68,7 @@ void say_summary(const RenderReport& report, const RenderJob& job) {
         say("look: add --png for pictures any program shows; the .exr opens in tev, Blender, Nuke and others");
 }
 
-int run_render(const Options& texts, const Globals& globals) {
+int run_render(const RenderOptions& texts, const Globals& globals) {
     RenderJob job = make_job(texts);
     const LoadOptions options = load_options(texts);
     job.light_units = options.light_units;
@@ -156,6 +85,7 @@ int run_render(const Options& texts, const Globals& globals) {
     places.check(job.output, job.frames);
     find_camera(scene, job.camera);
     check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
+    settle_noise(job, globals);
     const std::vector<Limit> limits = limits_of(scene, job);
     say_limits(scene, limits, globals);
 
@@ -170,82 +100,21 @@ int run_render(const Options& texts, const Globals& globals) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
         say_summary(report, job);
     }
+    if (report.non_finite == 0 && report.missed)
+        fail(ExitCode::differs, job.scene_file.string(),
+             formatted("all frames were written, but %d of them %s noisier than %g after %d camera rays per pixel",
+                       report.missed, report.missed == 1 ? "is" : "are", job.target_error, most_target_samples));
     if (report.non_finite == 0) return 0;
     fail(ExitCode::non_finite, job.scene_file.string(),
          "all frames were written, but " + count_text(report.non_finite, "sample") +
              " were not finite numbers and were left out");
 }
-
-void add_what(CLI::App& command, Options& texts) {
-    command.add_option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself")
-        ->type_name("")
-        ->required();
-    command.add_option("-o,--output", texts.output, "files to write; #### stands for the frame number")
-        ->type_name("out.####.exr")
-        ->required();
-    command
-        .add_option("--frames", texts.frames,
-                    "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
-                    "(default: the scene's range)")
-        ->type_name("RANGE");
-    command.add_option("--camera", texts.camera, "camera by name (default: the scene's)")->type_name("NAME");
-    command.add_option("--res", texts.resolution, "picture size in pixels (default: the scene's)")->type_name("WxH");
-    command.add_option("--crop", texts.crop, "only the pixels from X0,Y0 (upper left, included) to X1,Y1 (excluded)")
-        ->type_name("X0,Y0,X1,Y1");
-    command
-        .add_option("--missing", texts.missing,
-                    "a missing frame of a VDB sequence: error (default), hold the one\n"
-                    "before, or skip the fog")
-        ->type_name("WHAT");
-    command
-        .add_option("--light-units", texts.light_units,
-                    "what a glTF's light intensities mean: spec (candela, lux;\n"
-                    "default), or Blender's unitless or raw (watts) export")
-        ->type_name("UNITS");
-}
-
-void add_how(CLI::App& command, Options& texts) {
-    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
-        command.add_option(name, text, help)->type_name(type)->group("Quality");
-    };
-    option("--quality", texts.quality, "draft, preview (default), final or reference", "NAME");
-    option("--samples", texts.samples, "camera rays per pixel, instead of the quality's", "N");
-    option("--mode", texts.mode, "rendering technique (default: march); tyndall modes lists them", "NAME");
-    command
-        .add_option("--set", texts.settings,
-                    "one setting, for instance march.step_depth=0.1; may be repeated;\n"
-                    "tyndall modes lists them")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false)
-        ->group("Quality");
-    option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
-    option("--isa", texts.isa,
-           "instruction set: auto (default), avx2 or avx512. Pictures are equal bit\n"
-           "for bit only with the same one",
-           "NAME");
-}
-
-void add_results(CLI::App& command, Options& texts) {
-    const auto group = [](CLI::Option* option) { return option->group("Results"); };
-    group(command.add_option("--aov", texts.aov,
-                             "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
-                             "validity, lights (one layer per light); none for the picture alone"))
-        ->type_name("NAMES");
-    group(command.add_flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)"));
-    group(command.add_option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops"))
-        ->type_name("EV");
-    group(command.add_flag("--resume", texts.resume, "keep frames that are already there and still right"));
-    group(command.add_option("--stats-json", texts.stats, "write times and counts of every frame to a file"))
-        ->type_name("FILE");
-}
 }
 
 Run add_render(CLI::App& app) {
     CLI::App* command = app.add_subcommand("render", "light a scene and render its frames to OpenEXR files");
-    auto texts = std::make_shared<Options>();
-    add_what(*command, *texts);
-    add_how(*command, *texts);
-    add_results(*command, *texts);
+    auto texts = std::make_shared<RenderOptions>();
+    add_render_options(*command, *texts);
     command->footer("Example: the first second at full HD, with PNGs to look at\n"
                     "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
                     "A quick look first: --quality draft --res 480x270 --frames 1\n"

@@ -26,6 +26,10 @@ const Mode& find_mode(std::string_view name) {
     fail(ExitCode::usage, "--mode", "no mode '" + printable(name, 40) + "'; there is " + joined(names, ", "));
 }
 
+bool error_is_noise(const Mode& mode) {
+    return mode.surfaces == Surfaces::own && mode.accuracy == Accuracy::multiple_scattering;
+}
+
 std::string_view name_of(Accuracy accuracy) {
     constexpr std::string_view names[] = {"look", "even fog", "single scattering", "multiple scattering"};
     return names[static_cast<size_t>(accuracy)];

@@ -27,6 +27,7 @@ struct RayBatch {
     std::span<vec3> per_light;             // empty, or rays × lights: the part of radiance from each light
     std::span<const float> jitter;         // per ray in [0,1), stratified over the samples of a pixel; empty = ½
     std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
+    std::span<const float> near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 
@@ -53,6 +54,9 @@ struct Mode {
 
 std::span<const Mode> modes();
 const Mode& find_mode(std::string_view name); // throws Error (usage) listing the names
+
+// Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
+bool error_is_noise(const Mode& mode);
 
 std::string_view name_of(Accuracy accuracy);
 std::string_view name_of(Severity severity);

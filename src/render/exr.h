@@ -1,8 +1,10 @@
 // OpenEXR pictures. The only user of OpenEXR. Encoded in memory, then written atomically.
 //
 // Channels: R G B A (premultiplied; RGB holds the background as far as it shows, A does not), Z, inscatter.R/G/B,
-// transmittance.T, validity.T, light_NAME.R/G/B. Half floats, clamped to ±65504 (tyndall:clamped counts them); Z is a
-// 32 bit float, 1e10 where there is no surface. Rec.709, ZIP, no date and no host: the same input gives the same bytes.
+// transmittance.T, validity.T, light_NAME.R/G/B, Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of
+// the even and odd batches). Half floats, clamped to ±65504 (tyndall:clamped counts them), or 32 bit on request; always
+// 32 bit are Z, 1e10 where there is no surface, Variance and the halves. Rec.709, ZIP, no date and no host: the same
+// input gives the same bytes.
 #pragma once
 #include "render/frame.h"
 
@@ -21,11 +23,14 @@ struct Provenance {
     std::map<std::string, std::string> attributes; // "tyndall:mode" -> "march", ...: text for each, names to 31 bytes
 };
 
-// Which layers go into the file besides RGBA: Z, inscatter, transmittance, validity, lights.
+// Which layers go into the file besides RGBA.
 struct ExrOptions {
     std::vector<std::string> layers{"Z", "inscatter", "transmittance"};
     bool full_float = false; // colours as 32 bit instead of half
 };
+
+// Z, inscatter, transmittance, validity, lights, variance, halves: all a file can hold.
+const std::vector<std::string>& layer_names();
 
 // Throws Error (usage) naming a layer there is none of.
 void check_layer_names(const ExrOptions& options);

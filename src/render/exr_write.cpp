@@ -1,6 +1,7 @@
 // Layers to an OpenEXR file in memory, then to disk.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "render/exr_header.h"
 
 #include <ImfChannelList.h>
@@ -11,6 +12,7 @@
 #include <half.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstring>
 #include <deque>
 #include <set>
@@ -88,6 +90,11 @@ std::vector<Channel> make_channels(const Layers& layers, const Image<float>& dep
     if (wants(options, "inscatter")) add_color(channels, "inscatter.", layers.inscatter, wide);
     if (wants(options, "transmittance")) add_value(channels, "transmittance.T", layers.transmittance, wide);
     if (wants(options, "validity")) add_value(channels, "validity.T", layers.validity, wide);
+    if (wants(options, "variance")) add_color(channels, "Variance.", layers.variance, true);
+    if (wants(options, "halves")) {
+        add_color(channels, "half_a.", layers.half_a, true);
+        add_color(channels, "half_b.", layers.half_b, true);
+    }
     if (!wants(options, "lights")) return channels;
 
     std::vector<std::string> names;
@@ -115,6 +122,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
     for (float& z : depth.pixels)
         if (std::isinf(z)) z = no_surface_z;
     const std::vector<Channel> channels = make_channels(layers, depth, options);
+    for ([[maybe_unused]] const Channel& channel : channels) assert(channel.values); // the layer was rendered
 
     // Slices point at the image's own floats, or at halves made here.
     Imf::Header header = make_exr_header(layers, provenance);
@@ -146,11 +154,17 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
 }
 }
 
+const std::vector<std::string>& layer_names() {
+    static const std::vector<std::string> names{"Z",      "inscatter", "transmittance", "validity",
+                                                "lights", "variance",  "halves"};
+    return names;
+}
+
 void check_layer_names(const ExrOptions& options) {
+    const std::vector<std::string>& known = layer_names();
     for (const std::string& name : options.layers)
-        if (name != "Z" && name != "inscatter" && name != "transmittance" && name != "validity" && name != "lights")
-            fail(ExitCode::usage, "--aov",
-                 "no layer '" + printable(name, 40) + "'; there is Z, inscatter, transmittance, validity, lights");
+        if (std::ranges::find(known, name) == known.end())
+            fail(ExitCode::usage, "--aov", "no layer '" + printable(name, 40) + "'; there is " + joined(known, ", "));
 }
 
 std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options) {

@@ -3,7 +3,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/samples.h"
+#include "render/noise.h"
+#include "render/pixel_sum.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,11 +15,6 @@ namespace {
 constexpr int tile_side = 4;   // a tile's 16 rays are traced together
 constexpr int block_side = 32; // a task's pixels
 
-struct BlockStats {
-    uint64_t camera_rays = 0, steps = 0, non_finite = 0;
-    ivec2 first_non_finite{-1};
-};
-
 // What all blocks of a frame share.
 struct FrameTask {
     FrameTracer tracer;
@@ -26,20 +22,7 @@ struct FrameTask {
     Layers layers;
 };
 
-// A pixel's sums over its samples.
-struct PixelSum {
-    vec3 color{0}, inscatter{0};
-    float alpha = 0, transmittance = 0, validity = 0;
-    float depth = infinity, off_center = infinity;
-
-    void add(const PixelSample& sample) {
-        color += sample.color, inscatter += sample.inscatter;
-        alpha += sample.alpha, transmittance += sample.transmittance, validity += sample.validity;
-        if (sample.off_center < off_center) off_center = sample.off_center, depth = sample.depth;
-    }
-};
-
-Layers make_layers(const View& view) {
+Layers make_layers(const View& view, bool halves) {
     const bool cropped = view.crop_low != view.crop_high;
     Layers layers;
     layers.display = view.size;
@@ -49,6 +32,8 @@ Layers make_layers(const View& view) {
     assert(layers.low.x + layers.size.x <= view.size.x && layers.low.y + layers.size.y <= view.size.y);
     layers.color = layers.inscatter = Image<vec3>(layers.size);
     layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
+    if (view.batches > 1) layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+    if (halves) layers.half_a = layers.half_b = Image<vec3>(layers.size);
     return layers;
 }
 
@@ -72,28 +57,14 @@ bool contains(const Layers& layers, ivec2 pixel) {
     return p.x >= 0 && p.y >= 0 && p.x < layers.size.x && p.y < layers.size.y;
 }
 
-void store_pixel(const FrameTask& task, ivec2 pixel, const PixelSum& sum, std::span<const vec3> lights,
-                 Layers& layers) {
-    const ivec2 p = pixel - layers.low;
-    const float samples = static_cast<float>(task.tracer.view.pixel_samples);
-    layers.color.at(p.x, p.y) = sum.color / samples;
-    layers.inscatter.at(p.x, p.y) = sum.inscatter / samples;
-    layers.alpha.at(p.x, p.y) = sum.alpha / samples;
-    layers.transmittance.at(p.x, p.y) = sum.transmittance / samples;
-    layers.validity.at(p.x, p.y) = sum.validity / samples;
-    layers.depth.at(p.x, p.y) = sum.depth;
-    for (size_t l = 0; l < lights.size(); ++l)
-        layers.lights[task.light_layers[l]].second.at(p.x, p.y) += lights[l] / samples;
-}
-
-void count_dropped(ivec2 pixel, BlockStats& stats) {
-    const ivec2 first = stats.first_non_finite;
-    if (stats.non_finite++ == 0 || pixel.y < first.y || (pixel.y == first.y && pixel.x < first.x))
-        stats.first_non_finite = pixel;
+void count_dropped(ivec2 pixel, FrameStats& stats) {
+    FrameStats one;
+    one.non_finite = 1, one.first_non_finite = pixel;
+    stats.add(one);
 }
 
 // Traces all pixels of a tile, also those outside the crop: a mode may let neighbours share steps.
-void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, BlockStats& stats) {
+void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats& stats) {
     const View& view = task.tracer.view;
     const ivec2 end = glm::min(corner + tile_side, view.size);
     ivec2 pixels[16];
@@ -107,6 +78,7 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, BlockStats
     if (!wanted) return;
 
     const size_t lights = task.light_layers.size();
+    const int batch_size = view.pixel_samples / view.batches;
     PixelSum sums[16];
     PixelSample samples[16];
     std::vector<vec3> light_parts(lights * count), light_sums(lights * count, vec3(0));
@@ -123,23 +95,31 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, BlockStats
             sums[i].add(samples[i]);
             for (size_t l = 0; l < lights; ++l) light_sums[i * lights + l] += parts[l];
         }
+        if ((s + 1) % batch_size) continue;
+        for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
     }
-    for (size_t i = 0; i < count; ++i)
-        if (contains(layers, pixels[i]))
-            store_pixel(task, pixels[i], sums[i], {light_sums.data() + i * lights, lights}, layers);
+
+    const float samples_float = static_cast<float>(view.pixel_samples);
+    for (size_t i = 0; i < count; ++i) {
+        if (!contains(layers, pixels[i])) continue;
+        const ivec2 p = pixels[i] - layers.low;
+        store_pixel(sums[i], view.pixel_samples, p, layers);
+        for (size_t l = 0; l < lights; ++l)
+            layers.lights[task.light_layers[l]].second.at(p.x, p.y) += light_sums[i * lights + l] / samples_float;
+    }
 }
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                    bool per_light) {
+                    const FrameOptions& options) {
     // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
-    Layers layers = make_layers(view);
+    Layers layers = make_layers(view, options.halves);
     ScatterFunction scatter = mode.prepare(view, snapshot, settings, nullptr);
-    FrameTask task{{view, snapshot, std::move(scatter), {}}, {}, std::move(layers)};
-    if (snapshot.occluders && !snapshot.occluders->empty())
+    FrameTask task{{view, snapshot, std::move(scatter), mode.surfaces, {}}, {}, std::move(layers)};
+    if (mode.surfaces == Surfaces::shared && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(
                 make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
-    if (per_light) task.light_layers = make_light_layers(snapshot, task.layers);
+    if (options.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
     return task;
 }
 
@@ -148,11 +128,20 @@ double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::ste
 }
 }
 
+void FrameStats::add(const FrameStats& other) {
+    prepare_seconds += other.prepare_seconds, render_seconds += other.render_seconds;
+    camera_rays += other.camera_rays, steps += other.steps;
+    const ivec2 a = other.first_non_finite, b = first_non_finite;
+    if (other.non_finite && (non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x))) first_non_finite = a;
+    non_finite += other.non_finite, samples += other.samples;
+}
+
 Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options, FrameStats& stats) {
-    assert(mode.surfaces == Surfaces::shared && view.pixel_samples > 0);
+    assert(mode.surfaces != Surfaces::post && view.pixel_samples > 0);
+    assert(view.batches > 0 && view.pixel_samples % view.batches == 0);
     const auto start = std::chrono::steady_clock::now();
-    FrameTask task = make_task(mode, view, snapshot, settings, options.per_light);
+    FrameTask task = make_task(mode, view, snapshot, settings, options);
     const auto prepared = std::chrono::steady_clock::now();
 
     // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
@@ -160,7 +149,7 @@ Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot
     const ivec2 first = layers.low / block_side, last = (layers.low + layers.size - 1) / block_side;
     const ivec2 blocks = last - first + 1;
     const int64_t block_count = int64_t{blocks.x} * blocks.y;
-    std::vector<BlockStats> block_stats(static_cast<size_t>(block_count));
+    std::vector<FrameStats> block_stats(static_cast<size_t>(block_count));
     std::atomic<int64_t> done = 0;
     parallel_for(block_count, [&](int64_t b) {
         if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
@@ -175,13 +164,9 @@ Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot
     stats = {};
     stats.prepare_seconds = seconds_between(start, prepared);
     stats.render_seconds = seconds_between(prepared, std::chrono::steady_clock::now());
-    for (const BlockStats& block : block_stats) {
-        stats.camera_rays += block.camera_rays, stats.steps += block.steps;
-        const ivec2 a = block.first_non_finite, b = stats.first_non_finite;
-        if (block.non_finite && (stats.non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x)))
-            stats.first_non_finite = a;
-        stats.non_finite += block.non_finite;
-    }
+    stats.samples = view.pixel_samples;
+    for (const FrameStats& block : block_stats) stats.add(block);
+    if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
     return std::move(task.layers);
 }
 }

@@ -3,8 +3,11 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "render/to_target.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 
 namespace tyndall {
@@ -85,6 +88,8 @@ std::string command_text(const RenderJob& job, const View& view) {
                        std::to_string(view.frame) + " --mode " + job.mode + " --quality " +
                        std::string(name_of(job.quality)) + " --res " + pair_text(view.size, "x") + " --seed " +
                        std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
+    if (job.exr.full_float) text += " --float";
+    if (job.target_error > 0) text += " --target-error " + number(job.target_error);
     if (!job.isa.empty()) text += " --isa " + job.isa;
     if (!job.camera.empty()) text += " --camera \"" + job.camera + "\"";
     if (view.crop_low != view.crop_high)
@@ -102,6 +107,11 @@ std::string command_text(const RenderJob& job, const View& view) {
 }
 }
 
+bool measures_noise(const RenderJob& job) {
+    const auto wants = [&](std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; };
+    return job.target_error > 0 || wants("variance") || wants("halves");
+}
+
 View view_of(const Scene& scene, const RenderJob& job, int frame) {
     View view;
     view.camera = camera_at(scene, find_camera(scene, job.camera), moment_of(scene, frame).seconds);
@@ -110,6 +120,7 @@ View view_of(const Scene& scene, const RenderJob& job, int frame) {
     view.pixel_samples = job.settings.pixel.samples;
     view.filter = job.settings.pixel.filter, view.filter_radius = job.settings.pixel.filter_radius;
     view.seed = job.seed, view.frame = frame;
+    if (measures_noise(job)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;
 }
 
@@ -138,9 +149,26 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
     attributes["tyndall:hash"] = hash;
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
+    if (stats.noise) {
+        attributes["tyndall:samples"] = std::to_string(stats.samples);
+        attributes["tyndall:achievedError"] = number(stats.noise->error);
+        attributes["tyndall:errorBound"] = number(stats.noise->bound);
+    }
+    if (job.target_error > 0) attributes["tyndall:targetError"] = number(job.target_error);
     std::string limits;
     for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;
     if (!limits.empty()) attributes["tyndall:limits"] = limits;
     return result;
+}
+
+void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats) {
+    const auto value = [&](const char* name) {
+        const auto found = attributes.find(name);
+        return found == attributes.end() ? -1 : std::strtod(found->second.c_str(), nullptr);
+    };
+    const Noise noise{value("tyndall:achievedError"), value("tyndall:errorBound")};
+    if (noise.error < 0 || noise.bound < 0) return;
+    stats.noise = noise;
+    stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));
 }
 }

@@ -21,4 +21,7 @@ std::string frame_hash(const Scene& scene, const RenderJob& job, const View& vie
 // How to make the frame again.
 Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
                          const FrameStats& stats);
+
+// Takes samples and noise back from the attributes of a picture.
+void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats);
 }

@@ -23,7 +23,8 @@ struct FrameTracer {
     const View& view;
     const Snapshot& snapshot;
     ScatterFunction scatter;
-    std::vector<LightDepth> light_depths; // of every light, for surfaces; empty when there are none
+    Surfaces surfaces;                    // shared or own: who shades them
+    std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
 };
 
 // Traces sample `sample` of up to 16 pixels. `per_light` is empty or receives pixels × lights of the snapshot.

@@ -2,12 +2,13 @@
 #include "render/sequence.h"
 
 #include "base/error.h"
-#include "base/file.h"
 #include "base/frames.h"
 #include "base/parallel.h"
+#include "render/check_job.h"
 #include "render/png.h"
 #include "render/provenance.h"
 #include "render/resume.h"
+#include "render/to_target.h"
 
 #include <sys/resource.h>
 
@@ -16,14 +17,11 @@
 #include <cstdio>
 #include <exception>
 #include <optional>
-#include <set>
 
 namespace tyndall {
 namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-constexpr int largest_side = 16384; // what read_exr takes back
 
 // A frame ready to render, and after that ready to write.
 struct Work {
@@ -48,9 +46,7 @@ struct Pipeline {
     size_t next = 0; // index of the first frame not yet looked at
 };
 
-bool wants_lights(const RenderJob& job) { return std::ranges::count(job.exr.layers, "lights") > 0; }
-
-std::filesystem::path png_name(const std::string& exr) { return std::filesystem::path(exr).replace_extension(".png"); }
+bool wants(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
 
 float png_exposure(const Pipeline& pipeline, int frame) {
     return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
@@ -62,40 +58,6 @@ float png_exposure(const Pipeline& pipeline, int frame) {
     const size_t split = text.rfind(": ", 200);
     if (split == text.npos) fail(error.code, name, text);
     fail(error.code, name + ": " + text.substr(0, split), text.substr(split + 2));
-}
-
-void check_picture(const Scene& scene, const RenderJob& job) {
-    const ivec2 size = job.resolution.x > 0 ? job.resolution : scene.resolution;
-    if (size.x < 1 || size.y < 1 || size.x > largest_side || size.y > largest_side)
-        fail(ExitCode::usage, "resolution", "expected 1 to 16384 pixels on each side");
-    const ivec2 low = job.crop_low, high = job.crop_high;
-    if (low == high) return;
-    if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
-        fail(ExitCode::usage, "crop", "it has to lie inside the picture and hold a pixel");
-}
-
-// Names, directories and leftovers. Nothing that was read may be written over.
-void check_outputs(const Scene& scene, const RenderJob& job) {
-    if (job.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
-    if (std::filesystem::path(job.output).extension() != ".exr")
-        fail(ExitCode::usage, printable(job.output), "the output has to end in .exr");
-    if (job.frames.size() > 1 && !has_frame_token(job.output))
-        fail(ExitCode::usage, printable(job.output), "several frames need a place for the number, as in name.####.exr");
-
-    std::set<std::filesystem::path> inputs, directories;
-    for (const std::filesystem::path& input : scene.inputs) inputs.insert(std::filesystem::weakly_canonical(input));
-    for (const int frame : job.frames) {
-        const std::string exr = frame_name(job.output, frame);
-        std::vector<std::filesystem::path> outputs{exr};
-        if (job.png) outputs.push_back(png_name(exr));
-        for (const std::filesystem::path& output : outputs) {
-            if (inputs.contains(std::filesystem::weakly_canonical(output)))
-                fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be written over");
-            check_output(output);
-            directories.insert(output.has_parent_path() ? output.parent_path() : ".");
-        }
-    }
-    for (const std::filesystem::path& directory : directories) sweep_temporaries(directory);
 }
 
 void say(const Pipeline& pipeline, const Work& work, const std::string& what) {
@@ -129,6 +91,7 @@ bool keep(Pipeline& pipeline, Work& work) {
     if (pipeline.job.png)
         write_png(png_name(work.report.file), color_of(*exr), png_exposure(pipeline, work.report.frame));
     work.report.kept = true;
+    read_noise(exr->attributes, work.report.stats);
     say(pipeline, work, "kept " + work.report.file);
     return true;
 }
@@ -165,14 +128,27 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
 void render(const Pipeline& pipeline, Work& work) {
     const RenderJob& job = pipeline.job;
     const auto start = Clock::now();
-    FrameOptions options{wants_lights(job), &pipeline.cancel, {}};
+    FrameOptions options{wants(job, "lights"), wants(job, "halves"), &pipeline.cancel, {}};
     options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
+    FrameStats& stats = work.report.stats;
     try {
-        work.layers = render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, work.report.stats);
+        work.layers = job.target_error > 0
+                          ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, job.target_error,
+                                             options, stats)
+                          : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
     work.report.seconds = seconds_since(start);
+}
+
+std::string noise_text(const FrameStats& stats, double target) {
+    if (!stats.noise) return {};
+    char noise[80], wanted[40], samples[40];
+    std::snprintf(noise, sizeof noise, ", noise %.3g, at most %.3g", stats.noise->error, stats.noise->bound);
+    std::snprintf(wanted, sizeof wanted, " (wanted %.3g)", target);
+    std::snprintf(samples, sizeof samples, ", %d samples per pixel", stats.samples);
+    return std::string(noise) + (target > 0 ? wanted : "") + samples;
 }
 
 void write(Pipeline& pipeline, Work& work) {
@@ -193,7 +169,7 @@ void write(Pipeline& pipeline, Work& work) {
 
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
-    std::string text = std::string(seconds) + " -> " + report.file;
+    std::string text = std::string(seconds) + " -> " + report.file + noise_text(report.stats, job.target_error);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }
@@ -249,10 +225,7 @@ uint64_t peak_memory() {
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
                              std::atomic<bool>& cancel) {
     const auto start = Clock::now();
-    check_layer_names(job.exr);
-    check_picture(scene, job);
-    find_camera(scene, job.camera);
-    check_outputs(scene, job);
+    check_job(scene, job, mode);
     flush_denormals();
 
     std::vector<std::string> lights;
@@ -264,6 +237,8 @@ RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mod
     std::ranges::sort(report.frames, {}, [&](const FrameReport& frame) {
         return std::ranges::find(job.frames, frame.frame) - job.frames.begin();
     });
+    for (const FrameReport& frame : report.frames)
+        report.missed += job.target_error > 0 && frame.stats.noise && frame.stats.noise->bound > job.target_error;
     report.cancelled = cancel && report.frames.size() < job.frames.size();
     report.seconds = seconds_since(start);
     report.peak_memory_bytes = peak_memory();

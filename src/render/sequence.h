@@ -24,14 +24,19 @@ struct RenderJob {
     LightUnits light_units = LightUnits::spec; // how the scene was loaded; for the header
     float exposure = 0;                        // added to the scene's, for PNGs
     ExrOptions exr;
+    double target_error = 0; // render until the noise is below this share of the picture's mean; 0 = settings decide
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
 };
 
+// Whether the noise of this job's pictures is measured: for a target error, or for layers that hold it. Then each pixel
+// takes noise_batches batches, and as many samples as they divide.
+bool measures_noise(const RenderJob& job);
+
 struct FrameReport {
     int frame = 0;
     std::string file;
-    bool kept = false; // by resume; nothing was rendered
+    bool kept = false; // by resume; nothing was rendered, noise and samples are those of the file
     double load_seconds = 0, seconds = 0, write_seconds = 0;
     FrameStats stats;
 };
@@ -39,6 +44,7 @@ struct FrameReport {
 struct RenderReport {
     std::vector<FrameReport> frames; // complete ones, in the order of the job
     std::vector<std::string> notes;
+    int missed = 0;         // frames that are noisier than the target error
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;

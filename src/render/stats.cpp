@@ -49,6 +49,11 @@ Json json_of(const FrameReport& frame) {
                         {"camera_rays", json_of(frame.stats.camera_rays)},
                         {"steps", json_of(frame.stats.steps)},
                         {"non_finite", json_of(frame.stats.non_finite)}});
+    if (frame.stats.noise) {
+        json.members.emplace_back("samples", json_of(frame.stats.samples));
+        json.members.emplace_back("achieved_error", json_of(frame.stats.noise->error));
+        json.members.emplace_back("error_bound", json_of(frame.stats.noise->bound));
+    }
     if (frame.stats.non_finite) json.members.emplace_back("first_non_finite", json_of(frame.stats.first_non_finite));
     return json;
 }
@@ -83,20 +88,25 @@ std::string stats_json(const RenderReport& report, const RenderJob& job) {
     Json frames;
     frames.kind = Json::Kind::array;
     for (const FrameReport& frame : report.frames) frames.items.push_back(json_of(frame));
-    return format_json(object({{"schema", json_of(std::string("tyndall-render-stats"))},
-                               {"schema_version", json_of(1)},
-                               {"version", json_of(std::string(TYNDALL_VERSION))},
-                               {"scene", json_of(job.scene_file.string())},
-                               {"output", json_of(job.output)},
-                               {"mode", json_of(job.mode)},
-                               {"quality", json_of(std::string(name_of(job.quality)))},
-                               {"isa", json_of(job.isa)},
-                               {"seed", json_of(static_cast<uint64_t>(job.seed))},
-                               {"settings", object(std::move(settings))},
-                               {"limits", json_of(job.limits_said)},
-                               {"notes", json_of(report.notes)},
-                               {"cancelled", json_of(report.cancelled)},
-                               {"frames", std::move(frames)},
-                               {"totals", totals(report)}}));
+    Json json = object({{"schema", json_of(std::string("tyndall-render-stats"))},
+                        {"schema_version", json_of(1)},
+                        {"version", json_of(std::string(TYNDALL_VERSION))},
+                        {"scene", json_of(job.scene_file.string())},
+                        {"output", json_of(job.output)},
+                        {"mode", json_of(job.mode)},
+                        {"quality", json_of(std::string(name_of(job.quality)))},
+                        {"isa", json_of(job.isa)},
+                        {"seed", json_of(static_cast<uint64_t>(job.seed))},
+                        {"settings", object(std::move(settings))},
+                        {"limits", json_of(job.limits_said)},
+                        {"notes", json_of(report.notes)},
+                        {"cancelled", json_of(report.cancelled)},
+                        {"frames", std::move(frames)},
+                        {"totals", totals(report)}});
+    if (job.target_error > 0) {
+        json.members.emplace_back("target_error", json_of(job.target_error));
+        json.members.emplace_back("missed", json_of(report.missed));
+    }
+    return format_json(json);
 }
 }

@@ -10,7 +10,7 @@ OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
                "--exposure", "--light-units", "--missing", "--aov", "--png", "--resume", "--seed", "--isa",
-               "--stats-json"],
+               "--stats-json", "--orders", "--target-error", "--float"],
 }
 
 
@@ -76,7 +76,9 @@ class CommandLine(ProgramTest):
             "--exposure": ["bright", "nan", "1000"],
             "--light-units": ["watts"],
             "--missing": ["ignore"],
-            "--aov": ["depth", "Z,,inscatter"],
+            "--aov": ["depth", "Z,,inscatter", "Variance", "half_a"],
+            "--orders": ["", "0", "-1", "1.5", "65537", "all"],
+            "--target-error": ["", "0", "-0.1", "nan", "1e-6", "11", "low"],
             "--seed": ["-1", "4294967296", "1.5"],
             "--isa": ["sse2", "neon"],
         }
@@ -100,10 +102,14 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["--exposure", "--png"], *self.render("--exposure", "1"))
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
-        for option in ["--orders", "--target-error", "--time-budget", "--history", "--time-samples"]:
+        for option in ["--time-budget", "--history", "--time-samples"]:
             self.refuse(2, [option], *self.render(option, "1"))
         for mode in ["march,march", "all", "auto"]:
             self.refuse(2, ["march"], *self.render("--mode", mode))
+
+    def test_what_a_mode_cannot_do_is_refused(self):
+        self.refuse(2, ["--orders", "march scatters light once", "--mode path"], *self.render("--orders", "2"))
+        self.refuse(2, ["--target-error", "'march'", "--mode path"], *self.render("--target-error", "0.1"))
 
     def test_output_names(self):
         several = ("--frames", "1-2")

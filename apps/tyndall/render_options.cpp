@@ -1,0 +1,185 @@
+// The options of tyndall render: how they read, and what they mean.
+#include "render_options.h"
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "base/isa.h"
+#include "output.h"
+#include "render/to_target.h"
+
+namespace tyndall {
+namespace {
+constexpr int largest_side = 16384; // pixels; what EXR readers take
+
+ivec2 parsed_resolution(const std::string& text) {
+    const size_t cross = text.find('x');
+    if (cross == text.npos)
+        fail(ExitCode::usage, "--res", "expected WIDTHxHEIGHT, like 1280x720; got '" + printable(text, 40) + "'");
+    return {integer_option("--res", text.substr(0, cross), 1, largest_side),
+            integer_option("--res", text.substr(cross + 1), 1, largest_side)};
+}
+
+void read_crop(const std::string& text, RenderJob& job) {
+    const std::vector<std::string> edges = comma_list(text);
+    if (edges.size() != 4)
+        fail(ExitCode::usage, "--crop", "expected X0,Y0,X1,Y1 in pixels; got '" + printable(text, 40) + "'");
+    int values[4];
+    for (int i = 0; i < 4; ++i) values[i] = static_cast<int>(integer_option("--crop", edges[i], 0, largest_side));
+    job.crop_low = {values[0], values[1]}, job.crop_high = {values[2], values[3]};
+    if (job.crop_low.x >= job.crop_high.x || job.crop_low.y >= job.crop_high.y)
+        fail(ExitCode::usage, "--crop",
+             "X1,Y1 have to lie right of and below X0,Y0; got '" + printable(text, 40) + "'");
+}
+
+// Layers beside RGBA, from --aov.
+std::vector<std::string> parsed_layers(const std::string& text) {
+    if (text == "none") return {};
+    const std::vector<std::string>& known = layer_names();
+    std::vector<std::string> layers;
+    for (const std::string& name : comma_list(text)) layers.push_back(known[choice_option("--aov", name, known)]);
+    return layers;
+}
+
+// Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
+// the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
+std::string chosen_isa(const std::string& text) {
+    const std::string_view kernels = set_isa(text);
+    set_embree_isa(text);
+    return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
+}
+
+// --orders, for modes that follow light further than once.
+void read_orders(const std::string& text, RenderJob& job) {
+    const int orders = static_cast<int>(integer_option("--orders", text, 1, all_orders));
+    if (find_mode(job.mode).accuracy == Accuracy::multiple_scattering)
+        job.settings.path.orders = orders;
+    else if (orders > 1)
+        fail(ExitCode::usage, "--orders", job.mode + " scatters light once only; --mode path takes more");
+}
+
+void add_what(CLI::App& command, RenderOptions& texts) {
+    command.add_option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself")
+        ->type_name("")
+        ->required();
+    command.add_option("-o,--output", texts.output, "files to write; #### stands for the frame number")
+        ->type_name("out.####.exr")
+        ->required();
+    command
+        .add_option("--frames", texts.frames,
+                    "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
+                    "(default: the scene's range)")
+        ->type_name("RANGE");
+    command.add_option("--camera", texts.camera, "camera by name (default: the scene's)")->type_name("NAME");
+    command.add_option("--res", texts.resolution, "picture size in pixels (default: the scene's)")->type_name("WxH");
+    command.add_option("--crop", texts.crop, "only the pixels from X0,Y0 (upper left, included) to X1,Y1 (excluded)")
+        ->type_name("X0,Y0,X1,Y1");
+    command
+        .add_option("--missing", texts.missing,
+                    "a missing frame of a VDB sequence: error (default), hold the one\n"
+                    "before, or skip the fog")
+        ->type_name("WHAT");
+    command
+        .add_option("--light-units", texts.light_units,
+                    "what a glTF's light intensities mean: spec (candela, lux;\n"
+                    "default), or Blender's unitless or raw (watts) export")
+        ->type_name("UNITS");
+}
+
+void add_how(CLI::App& command, RenderOptions& texts) {
+    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
+        command.add_option(name, text, help)->type_name(type)->group("Quality");
+    };
+    option("--quality", texts.quality, "draft, preview (default), final or reference", "NAME");
+    option("--samples", texts.samples, "camera rays per pixel, instead of the quality's", "N");
+    option("--target-error", texts.target_error,
+           "go on until noise is below this share of the picture's mean, 0.01 for\n"
+           "instance; for modes with no other error (path); exit code 1 when 65536\n"
+           "rays per pixel are not enough",
+           "E");
+    option("--orders", texts.orders,
+           "how many times light scatters, in fog or on surfaces (default: as often\n"
+           "as the mode can)",
+           "N");
+    option("--mode", texts.mode, "rendering technique (default: march); tyndall modes lists them", "NAME");
+    command
+        .add_option("--set", texts.settings,
+                    "one setting, for instance march.step_depth=0.1; may be repeated;\n"
+                    "tyndall modes lists them")
+        ->type_name("ROW=VALUE")
+        ->allow_extra_args(false)
+        ->group("Quality");
+    option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
+    option("--isa", texts.isa,
+           "instruction set: auto (default), avx2 or avx512. Pictures are equal bit\n"
+           "for bit only with the same one",
+           "NAME");
+}
+
+void add_results(CLI::App& command, RenderOptions& texts) {
+    const auto group = [](CLI::Option* option) { return option->group("Results"); };
+    group(command.add_option("--aov", texts.aov,
+                             "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
+                             "validity, lights (one layer per light), variance (of the mean), halves\n"
+                             "(two independent pictures); none for the picture alone"))
+        ->type_name("NAMES");
+    group(command.add_flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit"));
+    group(command.add_flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)"));
+    group(command.add_option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops"))
+        ->type_name("EV");
+    group(command.add_flag("--resume", texts.resume, "keep frames that are already there and still right"));
+    group(command.add_option("--stats-json", texts.stats, "write times and counts of every frame to a file"))
+        ->type_name("FILE");
+}
+}
+
+void add_render_options(CLI::App& command, RenderOptions& texts) {
+    add_what(command, texts);
+    add_how(command, texts);
+    add_results(command, texts);
+}
+
+void check_crop(const RenderJob& job, ivec2 picture) {
+    if (job.crop_high.x > picture.x || job.crop_high.y > picture.y)
+        fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
+}
+
+RenderJob make_job(const RenderOptions& texts) {
+    RenderJob job;
+    job.scene_file = texts.scene;
+    job.output = texts.output;
+    if (!texts.frames.empty()) job.frames = parse_frames(texts.frames);
+    check_pattern(texts.output, ".exr", job.frames.size() > 1);
+    job.mode = find_mode(texts.mode).name;
+    job.quality = quality_named(texts.quality);
+    job.settings = settings_for(job.quality);
+    if (!texts.samples.empty())
+        job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
+    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
+    if (!texts.orders.empty()) read_orders(texts.orders, job);
+    if (!texts.target_error.empty()) {
+        job.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
+        check_target(find_mode(job.mode));
+    }
+    job.camera = texts.camera;
+    if (!texts.resolution.empty()) job.resolution = parsed_resolution(texts.resolution);
+    if (!texts.crop.empty()) read_crop(texts.crop, job);
+    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(job, job.resolution);
+    if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
+    job.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
+    if (!texts.exposure.empty() && !texts.png)
+        fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
+    if (!texts.exposure.empty())
+        job.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
+    if (!texts.aov.empty()) job.exr.layers = parsed_layers(texts.aov);
+    job.exr.full_float = texts.full_float;
+    job.png = texts.png, job.resume = texts.resume;
+    job.isa = chosen_isa(texts.isa);
+    return job;
+}
+
+LoadOptions load_options(const RenderOptions& texts) {
+    constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
+    return {units[choice_option("--light-units", texts.light_units, {"spec", "unitless", "raw"})]};
+}
+}

@@ -1,0 +1,21 @@
+// The command line of tyndall render, as text and as a job.
+#pragma once
+#include "common.h"
+#include "render/sequence.h"
+
+namespace tyndall {
+struct RenderOptions {
+    std::string scene, output, frames, mode = "march", quality = "preview", camera, resolution, crop, samples;
+    std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
+    std::string orders, target_error;
+    std::vector<std::string> settings;
+    bool png = false, resume = false, full_float = false;
+};
+
+void add_render_options(CLI::App& command, RenderOptions& texts);
+
+// Everything the command line alone decides; throws Error (usage) before any file is touched.
+RenderJob make_job(const RenderOptions& texts);
+LoadOptions load_options(const RenderOptions& texts);
+void check_crop(const RenderJob& job, ivec2 picture);
+}

@@ -1,0 +1,106 @@
+"""Noise: variances, halves, full floats, and pictures rendered to an error that was asked for."""
+import json
+import unittest
+
+from program import ProgramTest, run, scene
+
+MODES = [mode["name"] for mode in json.loads(run("modes", "--json").stdout)["modes"]]
+
+
+class Layers(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        media = [{"type": "homogeneous", "extinction": 0.1, "g": 0.7}]  # changes within a pixel
+        self.scene = self.write("scene.json", scene(frames="1", resolution=[16, 9], media=media))
+        self.output = self.path("out.exr")
+
+    def render(self, *more, **options):
+        return self.succeed("render", self.scene, "-o", self.output, *more, **options)
+
+    def report(self):
+        """Channels by name, and attributes, of the picture."""
+        report = json.loads(self.succeed("info", "--json", self.output).stdout)
+        return {channel["name"]: channel for channel in report["channels"]}, report["attributes"]
+
+    def test_variance_and_halves_are_layers(self):
+        stats = self.path("stats.json")
+        result = self.render("--aov", "variance,halves", "--samples", "70", "--stats-json", stats)
+        notes = [line for line in result.stderr.splitlines() if "note:" in line]
+        self.assertEqual(len(notes), 1, result.stderr)
+        self.assertIn("128 camera rays per pixel instead of 70", notes[0])
+        channels, attributes = self.report()
+        for layer in ("Variance", "half_a", "half_b"):
+            for component in "RGB":
+                self.assertIn(f"{layer}.{component}", channels)
+        for c in "RGB":
+            self.assertGreater(channels[f"Variance.{c}"]["maximum"], 0)
+            halves = (channels[f"half_a.{c}"]["mean"] + channels[f"half_b.{c}"]["mean"]) / 2
+            self.assertAlmostEqual(halves, channels[c]["mean"], delta=2**-11 * halves)  # colours are halves
+        self.assertEqual(attributes["tyndall:samples"], "128")
+        frame = json.loads(stats.read_text())["frames"][0]
+        self.assertEqual(frame["samples"], 128)
+        self.assertAlmostEqual(frame["achieved_error"], float(attributes["tyndall:achievedError"]), delta=1e-8)
+        self.assertGreater(frame["error_bound"], frame["achieved_error"])
+        self.assertIn("Variance.R", self.succeed("info", self.output).stdout)
+
+    def test_nothing_is_said_where_nothing_changed(self):
+        self.assertNotIn("note:", self.render("--aov", "variance", "--samples", "128").stderr)
+        self.assertNotIn("note:", self.render("--samples", "3").stderr)
+        self.assertNotIn("tyndall:samples", self.report()[1])
+        self.assertEqual(self.render("--aov", "variance", "-q").stderr, "")
+
+    def test_full_floats(self):
+        self.render("--aov", "none", "--samples", "1")
+        half = self.report()[0]["R"]["maximum"]
+        self.render("--aov", "none", "--samples", "1", "--float")
+        full = self.report()[0]["R"]["maximum"]
+        self.assertNotEqual(full, half)
+        self.assertAlmostEqual(full, half, delta=2**-11 * full)
+        again = self.render("--aov", "none", "--samples", "1", "--resume", "--json")
+        self.assertFalse(json.loads(again.stdout)["frames"][0]["kept"], "halves are no full floats")
+        again = self.render("--aov", "none", "--samples", "1", "--float", "--resume", "--json")
+        self.assertFalse(json.loads(again.stdout)["frames"][0]["kept"])
+        again = self.render("--aov", "none", "--samples", "1", "--float", "--resume", "--json")
+        self.assertTrue(json.loads(again.stdout)["frames"][0]["kept"])
+
+    def test_march_scatters_light_once_when_asked_or_not(self):
+        self.render()
+        before = self.output.read_bytes()
+        self.render("--orders", "1")
+        self.assertEqual(self.output.read_bytes(), before)
+
+
+@unittest.skipUnless("path" in MODES, "there is no mode whose error is noise")
+class Target(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.json", scene(frames="1", resolution=[16, 9]))
+        self.output = self.path("out.exr")
+
+    def render(self, *more):
+        return run("render", self.scene, "-o", self.output, "--mode", "path", "--json", *more)
+
+    def attributes(self):
+        return json.loads(self.succeed("info", "--json", self.output).stdout)["attributes"]
+
+    def test_it_is_reached(self):
+        result = self.render("--target-error", "0.05", "--orders", "2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        report, attributes = json.loads(result.stdout), self.attributes()
+        self.assertEqual(attributes["tyndall:targetError"], "0.05")
+        self.assertLessEqual(float(attributes["tyndall:errorBound"]), 0.05)
+        self.assertEqual(int(attributes["tyndall:samples"]), report["frames"][0]["samples"])
+        self.assertEqual(report["missed"], 0)
+        self.assertIn("wanted 0.05", result.stderr)
+        self.assertIn("path.orders=2", attributes["tyndall:settings"])
+
+    def test_a_miss_writes_the_picture_and_exits_with_1(self):
+        result = self.render("--target-error", "1e-5", "--res", "2x1", "--orders", "1")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertIn("noisier than 1e-05", result.stderr)
+        self.assertEqual(self.attributes()["tyndall:samples"], "65536")
+        self.assertEqual(json.loads(result.stdout)["missed"], 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
