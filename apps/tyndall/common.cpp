@@ -60,6 +60,14 @@ double number_option(std::string_view option, std::string_view text, double low,
     return value;
 }
 
+ivec2 resolution_option(std::string_view option, std::string_view text) {
+    const size_t cross = text.find('x');
+    if (cross == text.npos)
+        fail(ExitCode::usage, option, "expected WIDTHxHEIGHT, like 1280x720; got '" + printable(text, 40) + "'");
+    return {integer_option(option, text.substr(0, cross), 1, largest_side),
+            integer_option(option, text.substr(cross + 1), 1, largest_side)};
+}
+
 size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices) {
     for (size_t i = 0; i < choices.size(); ++i)
         if (choices[i] == text) return i;

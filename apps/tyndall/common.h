@@ -28,6 +28,7 @@ Run add_render(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_check(CLI::App& app);
 Run add_modes(CLI::App& app);
+Run add_verify(CLI::App& app);
 
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
@@ -45,6 +46,9 @@ void print_report(std::string_view text);
 // An option's value as a number in low..high. Throws Error (usage) naming the option.
 int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high);
 double number_option(std::string_view option, std::string_view text, double low, double high);
+// WIDTHxHEIGHT in pixels, each up to largest_side.
+inline constexpr int largest_side = 16384; // what EXR readers take
+ivec2 resolution_option(std::string_view option, std::string_view text);
 // The position of an option's value among its choices. Throws Error (usage) listing them.
 size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices);
 // The pieces between commas.

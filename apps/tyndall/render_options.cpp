@@ -9,16 +9,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int largest_side = 16384; // pixels; what EXR readers take
-
-ivec2 parsed_resolution(const std::string& text) {
-    const size_t cross = text.find('x');
-    if (cross == text.npos)
-        fail(ExitCode::usage, "--res", "expected WIDTHxHEIGHT, like 1280x720; got '" + printable(text, 40) + "'");
-    return {integer_option("--res", text.substr(0, cross), 1, largest_side),
-            integer_option("--res", text.substr(cross + 1), 1, largest_side)};
-}
-
 void read_crop(const std::string& text, RenderJob& job) {
     const std::vector<std::string> edges = comma_list(text);
     if (edges.size() != 4)
@@ -161,7 +151,7 @@ RenderJob make_job(const RenderOptions& texts) {
         check_target(find_mode(job.mode));
     }
     job.camera = texts.camera;
-    if (!texts.resolution.empty()) job.resolution = parsed_resolution(texts.resolution);
+    if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);
     if (!texts.crop.empty()) read_crop(texts.crop, job);
     if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(job, job.resolution);
     if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));

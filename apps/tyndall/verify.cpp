@@ -1,7 +1,7 @@
 // tyndall verify: proves this program right, on its own scenes or on the user's.
+#include "measure/verify.h"
 #include "base/error.h"
 #include "common.h"
-#include "measure/verify.h"
 #include "output.h"
 
 #include "base/text.h"
@@ -97,9 +97,10 @@ Run add_verify(CLI::App& app) {
     command->add_option("--camera", texts->camera, "which camera (default: the scene's)")->type_name("NAME");
     command->add_option("--res", texts->resolution, "size of the pictures compared (default: 160x90)")
         ->type_name("WxH");
-    command->add_option("--samples", texts->samples,
-                        "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
-                        "more of them find smaller differences")
+    command
+        ->add_option("--samples", texts->samples,
+                     "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
+                     "more of them find smaller differences")
         ->type_name("N");
     command->add_option("--seed", texts->seed, "other random numbers (default: 0)")->type_name("N");
     command->footer("Examples: this program in about a minute; then a scene\n"

@@ -46,15 +46,14 @@ void check_grids(Checks& checks) {
         const double a = optical_depth(coarse, ray), b = optical_depth(fine, ray);
         if (a > 0.3) worst = std::max(worst, std::abs(b / a - 1));
     }
-    checks.add("optical depth of a grid made three times as fine, worst of 64 rays", 1 + worst, 1, 1e-3,
-               "half floats");
+    checks.add("optical depth of a grid made three times as fine, worst of 64 rays", 1 + worst, 1, 1e-3, "half floats");
 
     Medium half = noise_medium(1.5f);
     const Snapshot once = snapshot_of({noise_medium(3)}, {sun}), twice = snapshot_of({half, half}, {sun});
     const Ray ray{{0.4f, 0.3f, 3}, {0, 0, -1}, 9};
     const double whole = reference_light(once, ray).radiance.x;
-    checks.add("light of one fog, and of two halves of it", reference_light(twice, ray).radiance.x, whole,
-               1e-4 * whole, "1e-4");
+    checks.add("light of one fog, and of two halves of it", reference_light(twice, ray).radiance.x, whole, 1e-4 * whole,
+               "1e-4");
 }
 
 // A room with a slatted window, sun, a spot and rough fog.

@@ -119,9 +119,7 @@ RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int o
     constexpr int batches = 64;
     Settings settings;
     settings.path.orders = orders;
-    View view;
-    view.camera.near = 0;
-    const ScatterFunction scatter = find_mode("path").prepare(view, snapshot, settings, nullptr);
+    const ScatterFunction scatter = find_mode("path").prepare(View{}, snapshot, settings, nullptr);
     std::vector<double> means(batches, 0);
     parallel_for(batches, [&](int64_t b) {
         const uint32_t batch = static_cast<uint32_t>(b);

@@ -186,8 +186,7 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
     for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
         Walker walker;
         walker.lane = lane, walker.ray = batch.rays[lane], walker.id = batch.ids[lane];
-        const float along = glm::dot(walker.ray.direction, tracer.camera.forward);
-        walker.skip = tracer.camera.near / std::max(along, 1e-6f);
+        walker.skip = batch.near.empty() ? 0 : batch.near[lane];
         walker.place = batch.places.empty() ? SamplePlace{walker.id, 0} : batch.places[lane];
         scratch.walkers.push_back(walker);
     }

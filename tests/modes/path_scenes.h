@@ -49,9 +49,7 @@ inline vec3 surface_light(const Scatter& s) { return s.surface; }
 inline ScatterFunction path_mode(const Snapshot& snapshot, int orders = all_orders) {
     Settings settings;
     settings.path.orders = orders;
-    View view;
-    view.camera.near = 0; // rays start where they say
-    return find_mode("path").prepare(view, snapshot, settings, nullptr);
+    return find_mode("path").prepare(View{}, snapshot, settings, nullptr);
 }
 
 inline Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders) {
