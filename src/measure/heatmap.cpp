@@ -8,7 +8,7 @@ constexpr Color8 not_a_number(0, 255, 0);
 }
 
 Color8 heat_color(double t) {
-    constexpr double start = 0.35, rotations = 0.75, saturation = 1.25;
+    constexpr double start = 0.1, rotations = 0.42, saturation = 1.3;
     t = std::clamp(t, 0.0, 1.0);
     const double angle = 2 * 3.14159265358979323846 * (start / 3 + 1 + rotations * t);
     const double amplitude = saturation * t * (1 - t) / 2, u = std::cos(angle), v = std::sin(angle);

@@ -6,7 +6,7 @@ namespace tyndall {
 using Color8 = glm::u8vec3; // sRGB
 
 // 0 black, 1 white, brightness even in between and rising, so that the map reads the same for colour-blind eyes and in
-// print: cubehelix (Green 2011), through violet, red and orange.
+// print: cubehelix (Green 2011), through violet, rose and sand.
 Color8 heat_color(double t);
 
 // The values of a map from `low` (black) to `high` (white); logarithmic when `log`, with low > 0. NaN is bright green,
