@@ -18,22 +18,20 @@ struct Pair {
     std::string test, reference;
 };
 
-// Heat maps span these values, from black to white.
-struct MapScale {
-    const char* name;
-    double low, high;
-    bool log;
+// What a heat map can show.
+struct MapKind {
     const char* unit;
+    HeatScale scale;
 };
-constexpr MapScale map_scales[] = {{"error", 1e-3, 10, true, "of the reference's mean, logarithmic"},
-                                   {"flip", 0, 1, false, "FLIP"}};
+constexpr MapKind map_kinds[] = {{"of the reference's mean, logarithmic", {1e-3, 10, true}}, {"FLIP", {0, 1, false}}};
+enum : size_t { error_kind, flip_kind };
 
 // What the command line alone decides.
 struct Job {
     std::vector<Pair> pairs;
     std::vector<Bound> bounds;
     double pixels_per_degree = flip_pixels_per_degree;
-    MapScale map = map_scales[0];
+    size_t map = error_kind;
     std::string heatmap;
     bool sequence = false;
 };
@@ -57,12 +55,16 @@ Job make_job(const Options& texts, OutputPlaces& places) {
     Job job;
     job.pairs = make_pairs(texts);
     job.sequence = has_frame_token(texts.test);
-    for (const std::string& text : texts.fail_above) job.bounds.push_back(parsed_bound(text));
+    for (const std::string& text : texts.fail_above) {
+        job.bounds.push_back(parsed_bound(text));
+        if (job.bounds.back().metric->name == "flicker" && job.pairs.size() < 2)
+            fail(ExitCode::usage, "--fail-above", "flicker needs a sequence of two frames at least");
+    }
     if (!texts.pixels_per_degree.empty())
         job.pixels_per_degree = number_option("--ppd", texts.pixels_per_degree, 1, 1000);
     if (!texts.map.empty() && texts.heatmap.empty())
         fail(ExitCode::usage, "--map", "says what a heat map shows: add --heatmap FILE.png");
-    if (!texts.map.empty()) job.map = map_scales[choice_option("--map", texts.map, {"error", "flip"})];
+    if (!texts.map.empty()) job.map = choice_option("--map", texts.map, {"error", "flip"});
     job.heatmap = texts.heatmap;
     if (job.heatmap.empty()) return job;
 
@@ -99,7 +101,7 @@ Viewing common_viewing(const Job& job, References& references) {
 }
 
 void write_heat_map(const Job& job, const Pair& pair, const Image<float>& map) {
-    write_png(frame_name(job.heatmap, pair.frame), heat_map(map, job.map.low, job.map.high, job.map.log));
+    write_png(frame_name(job.heatmap, pair.frame), heat_map(map, map_kinds[job.map].scale));
 }
 
 CompareResult compare_all(const Job& job, Progress* progress) {
@@ -122,7 +124,7 @@ CompareResult compare_all(const Job& job, Progress* progress) {
         flicker.add_frame(test.beauty, reference.beauty);
         if (!job.heatmap.empty()) {
             const double mean = result.frames.back().comparison.beauty.mean_reference;
-            if (job.map.log) map = error_map(test.beauty, reference.beauty, mean);
+            if (job.map == error_kind) map = error_map(test.beauty, reference.beauty, mean);
             write_heat_map(job, pair, map);
         }
         if (progress) progress->set(static_cast<double>(result.frames.size()));
@@ -145,6 +147,13 @@ std::vector<Exceeded> find_exceeded(const CompareResult& result, const std::vect
     return exceeded;
 }
 
+void say_scale(const Job& job) {
+    const MapKind& kind = map_kinds[job.map];
+    say(formatted("heat map: black %g, white %g %s; green: not a number; ", kind.scale.low, kind.scale.high,
+                  kind.unit) +
+        printable(job.heatmap));
+}
+
 int run_compare(const Options& texts, const Globals& globals) {
     OutputPlaces places;
     const Job job = make_job(texts, places);
@@ -157,17 +166,16 @@ int run_compare(const Options& texts, const Globals& globals) {
 
     const std::vector<Exceeded> exceeded = find_exceeded(result, job.bounds);
     print_report(globals.json ? compare_json(result, exceeded) : compare_text(result));
-    if (!job.heatmap.empty() && !globals.quiet)
-        say(formatted("heat map: black %g, white %g %s; green: not a number; ", job.map.low, job.map.high,
-                      job.map.unit) +
-            printable(job.heatmap));
-    for (const Exceeded& e : exceeded) say(formatted("%s is %g, above %g", e.metric.c_str(), e.value, e.limit));
+    if (!job.heatmap.empty() && !globals.quiet) say_scale(job);
+    for (const Exceeded& e : exceeded)
+        say(e.metric + (std::isnan(e.value) ? std::string(" is undefined") : formatted(" is %g", e.value)) +
+            formatted("; the limit is %g", e.limit));
     if (!exceeded.empty()) return static_cast<int>(ExitCode::differs);
 
-    const Errors& e = result.overall.beauty;
-    if (e.non_finite_test + e.non_finite_reference == 0) return 0;
-    fail(ExitCode::non_finite, e.non_finite_test ? texts.test : texts.reference,
-         count_text(e.non_finite_test + e.non_finite_reference, "pixel") + " not finite; the rest was compared");
+    const uint64_t bad = result.overall.non_finite();
+    if (bad == 0) return 0;
+    fail(ExitCode::non_finite, printable(texts.test) + " against " + printable(texts.reference),
+         count_text(bad, "pixel") + " of pictures and layers not finite; the rest was compared");
 }
 
 std::string metric_help() {
@@ -187,14 +195,15 @@ Run add_compare(CLI::App& app) {
     command->add_option("--frames", texts->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9")->type_name("RANGE");
     command
         ->add_option("--fail-above", texts->fail_above,
-                     "exit with code 1 when METRIC is larger than VALUE; may be repeated")
+                     "exit with code 1 when METRIC (of all frames together) is larger than\n"
+                     "VALUE; may be repeated")
         ->type_name("METRIC=VALUE")
         ->expected(1)
         ->take_all();
     command
         ->add_option("--heatmap", texts->heatmap,
                      "a picture of where the differences are; the strip below it is the\n"
-                     "scale, from none (black) to large (white)")
+                     "scale")
         ->type_name("FILE.png");
     command
         ->add_option("--map", texts->map,

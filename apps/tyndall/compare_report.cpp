@@ -9,6 +9,10 @@ std::string percent(double error, double mean) { return formatted("%.4g %%", 100
 
 Json window_json(ivec2 size) { return json_array({json_of(size.x), json_of(size.y)}); }
 
+Json non_finite_json(const Errors& e) {
+    return json_object({{"test", json_of(e.non_finite_test)}, {"reference", json_of(e.non_finite_reference)}});
+}
+
 Json errors_json(const Errors& e) {
     return json_object({{"rmse_rel", json_of(relative(e.rmse, e.mean_reference))},
                         {"bias_rel", json_of(relative(e.bias, e.mean_reference))},
@@ -16,7 +20,8 @@ Json errors_json(const Errors& e) {
                         {"bias", json_of(e.bias)},
                         {"max", json_of(e.most)},
                         {"mean", json_of(e.mean_test)},
-                        {"mean_reference", json_of(e.mean_reference)}});
+                        {"mean_reference", json_of(e.mean_reference)},
+                        {"non_finite", non_finite_json(e)}});
 }
 
 Json layers_json(const Comparison& comparison) {
@@ -62,9 +67,12 @@ std::string layers_table(const CompareResult& result) {
     const Comparison& all = result.overall;
     std::string text = formatted("\n  %-24s %12s %12s %12s\n", "layer", "rmse_rel", "bias_rel", "mean");
     const auto row = [&](const std::string& name, const Errors& e) {
-        text += formatted("  %-24s %12s %12s %12.4g\n", printable(name, 60).c_str(),
+        text += formatted("  %-24s %12s %12s %12.4g", printable(name, 60).c_str(),
                           percent(e.rmse, e.mean_reference).c_str(), percent(e.bias, e.mean_reference).c_str(),
                           e.mean_reference);
+        if (const uint64_t bad = e.non_finite_test + e.non_finite_reference)
+            text += "  " + count_text(bad, "pixel") + " left out, not finite";
+        text += "\n";
     };
     row("picture", all.beauty);
     for (const auto& [name, errors] : all.layers) row(name, errors);
@@ -87,10 +95,6 @@ std::string compare_text(const CompareResult& result) {
     std::string text = printable(result.test) + " against " + printable(result.reference) +
                        formatted(": %d x %d pixels", result.size.x, result.size.y);
     text += result.sequence ? ", " + count_text(result.frames.size(), "frame") + "\n" : std::string("\n");
-    if (const uint64_t bad = all.beauty.non_finite_test + all.beauty.non_finite_reference)
-        text +=
-            formatted("  left out, not finite: %s, %llu of them in the reference\n", count_text(bad, "pixel").c_str(),
-                      static_cast<unsigned long long>(all.beauty.non_finite_reference));
     text += errors_table(all.beauty);
     text += formatted("\n  %-16s %12.4g   without the largest 0.1 %%: %.4g\n", "relMSE", all.beauty.rel_mse,
                       all.beauty.rel_mse_trimmed);
@@ -125,8 +129,7 @@ std::string compare_json(const CompareResult& result, const std::vector<Exceeded
         {"reference", json_of(std::string_view(result.reference))},
         {"size", window_json(result.size)},
         {"pixels", json_of(e.pixels)},
-        {"non_finite",
-         json_object({{"test", json_of(e.non_finite_test)}, {"reference", json_of(e.non_finite_reference)}})},
+        {"non_finite", non_finite_json(e)},
         {"mean", json_of(e.mean_test)},
         {"mean_reference", json_of(e.mean_reference)},
         {"metrics", metrics_json(result)},

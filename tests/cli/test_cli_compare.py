@@ -186,7 +186,7 @@ class Limits(Compare):
     def test_what_was_exceeded_is_said(self):
         report = self.report(*self.pair, "--fail-above", "rmse_rel=0.1", "--fail-above", "bias=9", code=1)
         self.assertEqual(report["exceeded"], [{"metric": "rmse_rel", "value": 0.25, "limit": 0.1}])
-        self.assertIn("rmse_rel is 0.25, above 0.1", run("compare", *self.pair, "--fail-above", "rmse_rel=0.1").stderr)
+        self.assertIn("rmse_rel is 0.25; the limit is 0.1", run("compare", *self.pair, "--fail-above", "rmse_rel=0.1").stderr)
 
     def test_unknown_metrics_and_values(self):
         self.refuse(2, ["rmsd", "rmse_rel", "flip", "flicker"], "compare", *self.pair, "--fail-above", "rmsd=1")
@@ -200,11 +200,16 @@ class Limits(Compare):
         reference = self.picture("inf.exr", grey(lambda x, y: INF if x == 5 else 2))
         result = run("compare", test, reference, "--json")
         self.assertEqual(result.returncode, 6)
-        self.assertIn("9 pixels not finite", result.stderr)
+        self.assertIn("9 pixels", result.stderr)
         report = json.loads(result.stdout)
         self.assertEqual(report["non_finite"], {"test": 1, "reference": 8})
         self.assertEqual((report["pixels"], report["metrics"]["rmse"]), (128 - 9, 0))
         self.assertEqual(run("compare", test, self.pair[0], "--fail-above", "rmse=0").returncode, 1)
+        fog = color_layer("inscatter", lambda x, y: NAN if y == 0 else 1)
+        layer = self.picture("layer.exr", grey(2, **fog))
+        report = self.report(layer, layer, code=6)
+        self.assertEqual(report["layers"]["inscatter"]["non_finite"], {"test": 16, "reference": 16})
+        self.assertIn("left out", run("compare", layer, layer).stdout)
         nothing = self.picture("nothing.exr", grey(NAN))
         self.assertIsNone(self.report(nothing, self.pair[1], code=6)["metrics"]["rmse"])
         self.assertEqual(run("compare", nothing, self.pair[1], "--fail-above", "rmse=1e9").returncode, 1)

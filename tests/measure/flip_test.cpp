@@ -1,5 +1,5 @@
-// The expected means and pixels marked `published` come from flip-evaluator 1.7, the implementation of FLIP's authors,
-// on the same pictures: made by formula here and there.
+// The means under AgreesWithThePublishedImplementation come from flip-evaluator 1.7, the implementation of FLIP's
+// authors, on the same pictures: made by formula here and there.
 #include "pictures.h"
 
 #include "measure/flip.h"

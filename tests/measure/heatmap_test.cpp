@@ -33,14 +33,32 @@ TEST(HeatMap, LinearAndLogarithmicScales) {
     Image<float> values({100, 1});
     values.at(0, 0) = 0, values.at(1, 0) = 0.1f, values.at(2, 0) = 10, values.at(3, 0) = 1e30f;
     values.at(4, 0) = std::numeric_limits<float>::quiet_NaN(), values.at(5, 0) = infinity;
-    const Image<Color8> log = heat_map(values, 1e-3, 10, true);
+    const Image<Color8> log = heat_map(values, {1e-3, 10, true});
     EXPECT_EQ(log.at(0, 0), heat_color(0));
     EXPECT_EQ(log.at(1, 0), heat_color(0.5));
     for (const int x : {2, 3, 5}) EXPECT_EQ(log.at(x, 0), heat_color(1)) << x;
     EXPECT_EQ(log.at(4, 0), Color8(0, 255, 0));
-    const Image<Color8> linear = heat_map(values, 0, 0.2, false);
+    const Image<Color8> linear = heat_map(values, {0, 0.2, false});
     EXPECT_EQ(linear.at(1, 0), heat_color(0.5));
     EXPECT_EQ(linear.at(2, 0), heat_color(1));
+}
+
+TEST(HeatMap, StripHoldsTheScaleAndItsFigures) {
+    for (const int width : {1, 50, 401, 1600}) {
+        const Image<float> values({width, 3});
+        const Image<Color8> map = heat_map(values, {1e-3, 10, true});
+        ASSERT_EQ(map.size, ivec2(width, 3 + heat_strip_height(width)));
+        int strangers = 0; // neither background nor black: the figures
+        for (int x = 0; x < width; ++x) {
+            EXPECT_EQ(map.at(x, 2), heat_color(0));
+            EXPECT_EQ(map.at(x, 3), heat_color((x + 0.5) / width));
+            EXPECT_EQ(map.at(x, map.size.y - 1), heat_color((x + 0.5) / width));
+            for (int y = 3; y < map.size.y; ++y) strangers += map.at(x, y) != heat_color((x + 0.5) / width);
+        }
+        // 0.001 0.01 0.1 1 10: seven zeros of 12 dots, five ones of 8, three points of 1.
+        const int dot = std::max(1, width / 400);
+        EXPECT_EQ(strangers, width < 100 ? 0 : dot * dot * (7 * 12 + 5 * 8 + 3)) << width;
+    }
 }
 
 TEST(HeatMap, ErrorsRelativeToTheMean) {
