@@ -6,6 +6,8 @@
 
 #include "base/text.h"
 
+#include <optional>
+
 namespace tyndall {
 namespace {
 struct Options {
@@ -49,6 +51,7 @@ SceneProof proof_of(const Options& texts) {
     if (!texts.samples.empty())
         proof.samples = static_cast<int>(integer_option("--samples", texts.samples, 64, 65536) + 63) / 64 * 64;
     if (!texts.seed.empty()) proof.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    if (!texts.frame.empty()) proof.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
     proof.camera = texts.camera;
     return proof;
 }
@@ -66,17 +69,14 @@ void refuse_scene_options(const Options& texts) {
 int run_verify(const Options& texts, const Globals& globals) {
     SceneProof proof = proof_of(texts);
     if (texts.scene.empty()) refuse_scene_options(texts);
+    std::optional<Scene> scene;
+    if (!texts.scene.empty()) scene = load_scene(texts.scene);
+    if (scene && scene->media.empty()) refuse(scene->file.string(), "has no fog to verify");
+    if (scene && texts.frame.empty()) proof.frame = scene->first_frame;
+
     Progress progress(globals.progress, "verify", 1, true);
     const VerifyControl control{&cancel_flag(), [&](double done) { progress.set(done); }};
-    std::vector<Check> checks;
-    if (texts.scene.empty()) {
-        checks = verify_program(control);
-    } else {
-        const Scene scene = load_scene(texts.scene);
-        proof.frame = texts.frame.empty() ? scene.first_frame
-                                          : static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
-        checks = verify_scene(scene, proof, control);
-    }
+    const std::vector<Check> checks = scene ? verify_scene(*scene, proof, control) : verify_program(control);
     stop_if_cancelled();
     progress.finish();
     size_t off = 0;

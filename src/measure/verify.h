@@ -34,7 +34,7 @@ struct SceneProof {
     uint32_t seed = 0;
 };
 
-// The invariances on a user's scene, and the path tracer's first order against the deterministic reference. Throws
-// Error.
+// The invariances on a user's scene that has fog, and the path tracer's first order against the deterministic
+// reference. Throws Error.
 std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control);
 }

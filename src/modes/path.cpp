@@ -15,8 +15,13 @@ bool glimmers(const PathTracer& tracer) {
 }
 }
 
-std::vector<Limit> path_limits(const View&, const Snapshot&, const Settings& settings) {
+std::vector<Limit> path_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits;
+    for (const Medium& medium : snapshot.media)
+        if (!is_finite(medium.world_bounds.size()) && max_component(medium.optics.albedo) > 0.995f)
+            limits.push_back(
+                {Severity::info, "medium " + medium.name,
+                 "has no bounds and takes hardly any light: paths are very long; bounds or --orders help"});
     if (settings.path.orders < all_orders)
         limits.push_back({Severity::info, "path.orders",
                           "light that scatters more than " + std::to_string(settings.path.orders) +
