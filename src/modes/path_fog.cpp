@@ -42,8 +42,8 @@ float gather_on_the_way(const Walk& walk, Line& line) {
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     walk.scratch.lights.clear();
-    if (walk.turns) lights_along(snapshot, stretch, walk.scratch.lights);
-    const std::vector<LightAlong>& lights = walk.scratch.lights;
+    if (walk.turns) lights_on_line(snapshot, stretch, walk.scratch.lights);
+    const std::vector<LineLight>& lights = walk.scratch.lights;
 
     const vec2 u = line.numbers(use_distance);
     size_t picked = 0;
@@ -51,7 +51,7 @@ float gather_on_the_way(const Walk& walk, Line& line) {
     while (picked > 0 && (picked == lights.size() || !(lights[picked].chance > 0))) --picked;
     if (lights.empty() || !(lights[picked].chance > 0) || !(line.through > 0)) return passing({0, line.end});
 
-    const LightAlong& along = lights[picked];
+    const LineLight& along = lights[picked];
     const float t = along.distance(u.y), before = passing({0, t});
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(t), fog, lookups);
@@ -78,7 +78,7 @@ void gather_at_collision(const Walk& walk, Line& line, float distance, const Fog
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.chance > 0) {
-        const LightAlong& along = walk.scratch.lights[pick.light];
+        const LineLight& along = walk.scratch.lights[pick.light];
         const float mine = guessed_collision_density(snapshot, line, distance, fog) * pick.chance,
                     other = along.chance * along.density(distance);
         const vec3 scattered = fog.scattered(snapshot, glm::dot(pick.to_light, line.rest.direction)) * pick.irradiance;

@@ -21,7 +21,7 @@ Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
 }
 
 // The part inside the ball of a light's range.
-Interval within_range(const LightAlong& along, float range, Interval stretch) {
+Interval within_range(const LineLight& along, float range, Interval stretch) {
     if (std::isinf(range)) return stretch;
     const float half = std::sqrt(std::max(0.0f, (range - along.height) * (range + along.height)));
     if (along.height >= range) return {};
@@ -57,8 +57,8 @@ Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
     return inside.empty() ? Interval{} : inside;
 }
 
-LightAlong light_along(const Light& light, const Ray& line, Interval stretch) {
-    LightAlong along;
+LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
+    LineLight along;
     along.reach = stretch;
     if (light.kind == LightKind::sun) {
         along.chance = volume_brightness(light) * along.reach.length();
@@ -94,29 +94,29 @@ template<class Irradiance> LightPick pick(size_t count, float u, const Irradianc
 }
 }
 
-float LightAlong::distance(float u) const {
+float LineLight::distance(float u) const {
     if (height == 0) return reach.low + u * reach.length();
     const float t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
     return std::clamp(t, reach.low, reach.high);
 }
 
-float LightAlong::density(float t) const {
+float LineLight::density(float t) const {
     if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
     if (height == 0) return 1 / reach.length();
     const float off = t - closest;
     return height / ((high_angle - low_angle) * (height * height + off * off));
 }
 
-void lights_along(const Snapshot& snapshot, const Ray& line, std::vector<LightAlong>& lights) {
+void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
     lights.clear();
     const Interval stretch = fog_stretch(snapshot, line);
     double total = 0;
     for (const Light& light : snapshot.lights) {
-        lights.push_back(stretch.empty() ? LightAlong{} : light_along(light, line, stretch));
+        lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));
         total += lights.back().chance;
     }
     if (total > 0)
-        for (LightAlong& along : lights) along.chance = static_cast<float>(along.chance / total);
+        for (LineLight& along : lights) along.chance = static_cast<float>(along.chance / total);
 }
 
 LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {

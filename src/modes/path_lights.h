@@ -8,7 +8,7 @@
 namespace tyndall {
 // One light along a line: distances are picked even in angle around a local light (Kulla & Fajardo 2012), even in
 // length under the sun.
-struct LightAlong {
+struct LineLight {
     Interval reach;                      // of the line, where there is fog and the light can be; empty = nowhere
     float closest = 0, height = 0;       // local lights: the line's closest point, and how far the light is from it
     float low_angle = 0, high_angle = 0; // of `reach`, seen from the light
@@ -20,7 +20,7 @@ struct LightAlong {
 
 // All lights along a line that ends at line.t_max, in the order of the snapshot. Chances are in proportion to the light
 // that would arrive on the line without fog and shadows; all 0 when there is none.
-void lights_along(const Snapshot& snapshot, const Ray& line, std::vector<LightAlong>& lights);
+void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights);
 
 // A light for a point, picked in proportion to what would arrive there without fog and shadows; chance 0 = none.
 struct LightPick {

@@ -84,7 +84,7 @@ struct Scratch {
     std::vector<Line> lines;
     std::vector<Walker> walkers;
     std::vector<Connection> connections;
-    std::vector<LightAlong> lights;
+    std::vector<LineLight> lights;
     FogPoint fog;
 };
 
