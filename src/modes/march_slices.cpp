@@ -157,8 +157,8 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     dvec3 sum(0);
     const auto add = [&](size_t piece, double t, double weight) {
         const dvec3 light = scattered_at(on, piece, t, weight);
-        // A thousand millions of such nodes would not change the seventh digit.
-        if (glm::all(glm::lessThanEqual(light, 1e-16 * sum))) return;
+        // A million such nodes would not change the seventh digit.
+        if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
         const dvec3 position = on.at(t);
         const int i = pending.count++;
         pending.x[i] = float(position.x), pending.y[i] = float(position.y), pending.z[i] = float(position.z);

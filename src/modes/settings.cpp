@@ -144,7 +144,7 @@ Settings settings_for(Quality quality) {
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
-        march.step_depth = 0.02f, march.step_voxels = 0.5f, march.step_share = 1.0f / 512, march.near_light = 0.1f;
+        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
         march.visibility = Visibility::slices;
         march.light_resolution = 256;
