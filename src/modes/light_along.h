@@ -10,7 +10,7 @@ struct LightAlong {
     LightPoint point;                 // that casts the shadows of this ray
     dvec3 origin{0}, direction{0};    // of the ray
     double nearest = 0, distance = 0; // local lights: where the ray passes, and how near
-    double cone_scale, cone_offset;   // as ConeFalloff, in double
+    double cone_scale = 0, cone_offset = 1;   // as ConeFalloff, in double
     std::vector<Stretch> lit;         // ascending; cut where the light's strength has a kink
     std::vector<double> kinks;        // memory that find_light() reuses
 
