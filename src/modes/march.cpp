@@ -1,6 +1,7 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
 #include "modes/march_kernel.h"
+#include "modes/march_slices.h"
 #include "modes/techniques.h"
 
 #include <cstdio>
@@ -57,6 +58,9 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
     for (const Light& light : snapshot.lights)
         if (march.visibility == Visibility::off && light.shadows)
             limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
+    if (march.visibility == Visibility::slices && snapshot.occluders && snapshot.occluders->has_alpha())
+        limits.push_back(
+            {Severity::info, "march.visibility", "shadows of MASK and BLEND surfaces are sampled, not sliced"});
     if (!snapshot.media.empty() && march.light == LightTransmittance::off)
         limits.push_back(
             {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
@@ -84,6 +88,9 @@ ScatterFunction prepare_march(const View&, const Snapshot& snapshot, const Setti
         march->cones.push_back(cone_falloff(light));
         if (light.kind != LightKind::sun) march->near_points.push_back(light.position);
     }
-    return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
+    if (settings.march.visibility != Visibility::slices)
+        return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
+    if (snapshot.occluders) march->slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
+    return [march](const RayBatch& batch, std::span<Scatter> results) { march_slices(*march, batch, results); };
 }
 }

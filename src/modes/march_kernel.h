@@ -2,6 +2,7 @@
 #pragma once
 #include "modes/mode.h"
 #include "trace/light_depth.h"
+#include "trace/shadow_slices.h"
 
 #include <vector>
 
@@ -13,6 +14,7 @@ struct March {
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     std::vector<vec3> near_points;  // positions of the local lights
+    ShadowSlices slices;            // with Visibility::slices
 };
 
 // Fog along up to 16 rays. Source function and extinction are sampled once per step; within a step they are constant

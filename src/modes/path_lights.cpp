@@ -1,6 +1,8 @@
 // Chances of lights and of distances.
 #include "modes/path_lights.h"
 
+#include "scene/cone.h"
+
 namespace tyndall {
 namespace {
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
@@ -28,33 +30,12 @@ Interval within_range(const LineLight& along, float range, Interval stretch) {
     return {std::max(stretch.low, along.closest - half), std::min(stretch.high, along.closest + half)};
 }
 
-// The part inside a spot's cone, which is convex: tested between the crossings with the double cone
-// ((x-a)·v)² = cos² |x-a|².
 Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
-    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi || stretch.empty()) return stretch;
-    const dvec3 offset = dvec3(line.origin) - dvec3(light.position), direction(line.direction), axis(light.direction);
-    const double cosine = std::cos(static_cast<double>(light.outer_cone)), squared = cosine * cosine;
-    const double along = glm::dot(direction, axis), start = glm::dot(offset, axis);
-    const double a = along * along - squared, b = along * start - squared * glm::dot(direction, offset),
-                 c = start * start - squared * glm::dot(offset, offset);
-    const double inside_root = b * b - a * c;
-    double cuts[4] = {stretch.low, stretch.low, stretch.low, stretch.high};
-    if (inside_root > 0) {
-        const double q = -(b + std::copysign(std::sqrt(inside_root), b));
-        cuts[1] = a != 0 ? q / a : stretch.low, cuts[2] = q != 0 ? c / q : stretch.low;
-    }
-    for (double& cut : cuts) cut = std::clamp<double>(cut, stretch.low, stretch.high);
-    std::sort(cuts, cuts + 4);
-
-    Interval inside{infinity, 0};
-    for (int i = 0; i < 3; ++i) {
-        if (!(cuts[i] < cuts[i + 1])) continue;
-        const dvec3 middle = offset + 0.5 * (cuts[i] + cuts[i + 1]) * direction;
-        if (glm::dot(middle, axis) <= cosine * glm::length(middle)) continue;
-        inside.low = std::min(inside.low, static_cast<float>(cuts[i]));
-        inside.high = std::max(inside.high, static_cast<float>(cuts[i + 1]));
-    }
-    return inside.empty() ? Interval{} : inside;
+    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi) return stretch;
+    const Stretch inside =
+        inside_cone(light.position, light.direction, light.outer_cone, dvec3(line.origin), dvec3(line.direction));
+    return {static_cast<float>(std::max<double>(stretch.low, inside.low)),
+            static_cast<float>(std::min<double>(stretch.high, inside.high))};
 }
 
 LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {

@@ -72,13 +72,20 @@ std::vector<SettingRow> make_rows() {
                    FIELD(march.step_share)),
         number_row("march.near_light", "", 0.005, 10, "a step is at most this share of the distance to a local light",
                    FIELD(march.near_light)),
-        number_row("march.max_steps", "", 1, 1e6, "most steps per ray; they get longer beyond", FIELD(march.max_steps)),
+        number_row("march.max_steps", "", 1, 1e6,
+                   "most steps per ray; they get longer beyond (slices take all they need)", FIELD(march.max_steps)),
         number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
                    FIELD(march.min_transmittance)),
-        choice_row("march.jitter", {"none", "interleaved"},
-                   "where in its steps a ray looks: the middle, or shifted from pixel to pixel and sample to sample",
-                   FIELD(march.jitter)),
-        choice_row("march.visibility", {"off", "rays"}, "shadows of surfaces in the fog", FIELD(march.visibility)),
+        choice_row(
+            "march.jitter", {"none", "interleaved"},
+            "where in its steps a ray looks: the middle, or shifted from pixel to pixel and sample to sample (slices "
+            "need none)",
+            FIELD(march.jitter)),
+        choice_row(
+            "march.visibility", {"off", "rays", "slices"},
+            "shadows of surfaces in the fog; rays = sampled at each step, slices = exact: only lit stretches are "
+            "integrated, as exactly as the fog allows",
+            FIELD(march.visibility)),
         choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
                    FIELD(march.light)),
         number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",
@@ -137,8 +144,9 @@ Settings settings_for(Quality quality) {
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
-        march.step_depth = 0.02f, march.step_voxels = 0.5f, march.step_share = 1.0f / 512, march.near_light = 0.1f;
+        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
+        march.visibility = Visibility::slices;
         march.light_resolution = 256;
         break;
     }

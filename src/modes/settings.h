@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tyndall {
-enum class Visibility { off, rays };
+enum class Visibility { off, rays, slices };
 enum class Jitter { none, interleaved };
 
 struct PixelSettings {

@@ -64,6 +64,20 @@ bool Occluders::shares_with(const Occluders& other) const {
     return impl_->still == other.impl_->still && impl_->moving == other.impl_->moving;
 }
 
+bool Occluders::has_alpha() const { return impl_->still->has_alpha || impl_->moving->has_alpha; }
+
+std::vector<ShadowTriangle> Occluders::shadow_triangles() const {
+    std::vector<ShadowTriangle> result;
+    result.reserve(triangle_count());
+    for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()})
+        for (const OccluderGeometry& geometry : set->geometries) {
+            const std::vector<vec3>& at = geometry.positions;
+            for (const glm::uvec3 c : geometry.traced())
+                result.push_back({{at[c.x], at[c.y], at[c.z]}, geometry.passes_light()});
+        }
+    return result;
+}
+
 SurfacePoint Occluders::surface(const Ray& ray, const Hits& hits, int lane) const {
     const OccluderGeometry& geometry = *impl_->by_instance[hits.instance[lane]];
     const Mesh& mesh = *geometry.mesh;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace tyndall {
 // What 16 rays meet first. instance < 0 = nothing, and t is infinite.
@@ -23,6 +24,12 @@ struct SurfacePoint {
     vec3 base_color{1};
     vec3 emission{0};
     float alpha = 1;
+};
+
+// A triangle that casts shadows, in world space.
+struct ShadowTriangle {
+    vec3 corners[3];
+    bool has_alpha = false; // MASK or BLEND: light may get through
 };
 
 // Instruction set of the ray tracer: "avx2", "avx512", or "auto" (avx2: the same hits on every machine). Takes effect
@@ -61,6 +68,10 @@ public:
     float transmission(const Ray& ray, float t_min) const; // a single ray: the slow way, for tests and benchmarks
 
     SurfacePoint surface(const Ray& ray, const Hits& hits, int lane) const;
+
+    // The very triangles that shadow rays meet, for exact shadows; and whether any of them has alpha.
+    std::vector<ShadowTriangle> shadow_triangles() const;
+    bool has_alpha() const;
 
 private:
     Occluders();

@@ -30,7 +30,7 @@ uint64_t leave_out_bad_triangles(OccluderGeometry& geometry) {
     if (good.size() == triangles.size()) return 0;
     for (const uint32_t i : good) geometry.kept.push_back(triangles[i]);
     geometry.originals = std::move(good);
-    return triangles.size() - geometry.kept.size();
+    return geometry.left_out = triangles.size() - geometry.kept.size();
 }
 
 OccluderGeometry placed_geometry(const Scene& scene, int index, const mat4& matrix) {
@@ -52,14 +52,12 @@ OccluderGeometry placed_geometry(const Scene& scene, int index, const mat4& matr
 
 // What casts shadows by its alpha needs a callback; everything else is traced at full speed.
 void set_callbacks(RTCGeometry handle, const OccluderGeometry& geometry) {
-    const bool textured = geometry.base_texture != nullptr;
     if (geometry.masks()) rtcSetGeometryIntersectFilterFunction(handle, pass_mask_holes);
-    if (geometry.masks() || (geometry.blends() && (textured || geometry.material->alpha < 1)))
-        rtcSetGeometryOccludedFilterFunction(handle, pass_light);
+    if (geometry.passes_light()) rtcSetGeometryOccludedFilterFunction(handle, pass_light);
 }
 
 void attach(RTCDevice device, OccluderSet& set, const OccluderGeometry& geometry, uint32_t id) {
-    const std::vector<glm::uvec3>& triangles = geometry.originals.empty() ? geometry.mesh->triangles : geometry.kept;
+    const std::vector<glm::uvec3>& triangles = geometry.traced();
     const RTCGeometry handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
                                sizeof(vec3), geometry.positions.size() - 1);
@@ -97,10 +95,8 @@ std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::ve
     set->scene = rtcNewScene(device);
     check_embree();
     rtcSetSceneFlags(set->scene, RTC_SCENE_FLAG_ROBUST);
-    for (uint32_t i = 0; i < set->geometries.size(); ++i) {
-        const bool all_bad = dropped[i] == set->geometries[i].mesh->triangles.size();
-        if (!all_bad) attach(device, *set, set->geometries[i], i);
-    }
+    for (uint32_t i = 0; i < set->geometries.size(); ++i)
+        if (!set->geometries[i].traced().empty()) attach(device, *set, set->geometries[i], i);
     if (set->triangles > 0) rtcCommitScene(set->scene);
     check_embree();
     set->instances = std::move(instances);

@@ -28,10 +28,15 @@ struct OccluderGeometry {
     std::vector<vec3> positions;     // one more than the mesh has: Embree loads 16 bytes at a time
     std::vector<glm::uvec3> kept;    // triangles when some were left out; else the mesh's own are used
     std::vector<uint32_t> originals; // their indices in the mesh; empty when all were kept
+    uint64_t left_out = 0;
 
     uint32_t triangle_in_mesh(uint32_t primitive) const { return originals.empty() ? primitive : originals[primitive]; }
     bool masks() const { return material && material->alpha_mode == AlphaMode::mask; }
     bool blends() const { return material && material->alpha_mode == AlphaMode::blend; }
+    // Whether light may get through: masks, and sheets that are not opaque all over.
+    bool passes_light() const { return masks() || (blends() && (base_texture || material->alpha < 1)); }
+    // What Embree has: all triangles of the mesh, or those that were kept.
+    const std::vector<glm::uvec3>& traced() const { return left_out ? kept : mesh->triangles; }
     // Opacity at a point of a triangle of the mesh: 1 for opaque materials, 0 or 1 for masks.
     float opacity(uint32_t triangle, float u, float v) const;
 };

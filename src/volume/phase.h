@@ -3,6 +3,8 @@
 #pragma once
 #include "base/math.h"
 
+#include <numbers>
+
 namespace tyndall {
 enum class PhaseKind { isotropic, henyey_greenstein, schlick, rayleigh };
 
@@ -14,27 +16,31 @@ struct Phase {
 inline constexpr float largest_g = 0.99f;        // beyond it the lobe is narrower than a pixel
 inline constexpr float largest_schlick_g = 0.5f; // beyond it Schlick's form departs from the one it stands for
 
-// Value in 1/sr.
-inline float phase_value(Phase phase, float cosine) {
+// Value in 1/sr, to the rounding of T.
+template<class T> T phase_value_of(Phase phase, T cosine) {
+    constexpr T circle = std::numbers::pi_v<T>;
+    const T mean = phase.g;
     switch (phase.kind) {
     case PhaseKind::isotropic:
-        return 1 / (4 * pi);
+        return 1 / (4 * circle);
     case PhaseKind::rayleigh:
-        return 3 / (16 * pi) * (1 + cosine * cosine);
+        return 3 / (16 * circle) * (1 + cosine * cosine);
     case PhaseKind::henyey_greenstein: {
         // (1-|g|)² + 2|g|(1-c), c measured from the lobe, is 1+g²-2g·cosine without its cancellation in the lobe.
-        const float g = std::min(std::abs(phase.g), largest_g), c = phase.g < 0 ? -cosine : cosine;
-        const float q = std::max((1 - g) * (1 - g) + 2 * g * (1 - c), 1e-7f);
-        return (1 - g * g) / (4 * pi * q * std::sqrt(q));
+        const T g = std::min<T>(std::abs(mean), largest_g), c = mean < 0 ? -cosine : cosine;
+        const T q = std::max<T>((1 - g) * (1 - g) + 2 * g * (1 - c), 1e-7f);
+        return (1 - g * g) / (4 * circle * q * std::sqrt(q));
     }
     case PhaseKind::schlick: {
-        const float k = 1.55f * phase.g - 0.55f * phase.g * phase.g * phase.g;
-        const float q = 1 - k * cosine;
-        return (1 - k * k) / (4 * pi * q * q);
+        const T k = T(1.55f) * mean - T(0.55f) * mean * mean * mean;
+        const T q = 1 - k * cosine;
+        return (1 - k * k) / (4 * circle * q * q);
     }
     }
     return 0;
 }
+
+inline float phase_value(Phase phase, float cosine) { return phase_value_of<float>(phase, cosine); }
 
 // A direction picked with density phase_value(phase, dot(direction, result)), by two numbers in [0,1).
 vec3 sample_phase(Phase phase, vec3 direction, vec2 u);

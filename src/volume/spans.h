@@ -1,5 +1,5 @@
 // Stretches of a ray over which the fog's majorant does not change: what steps are placed in. Internal to
-// append_steps().
+// append_steps(); find_fog() shares the horizon.
 #pragma once
 #include "volume/steps.h"
 

@@ -64,7 +64,7 @@ TEST(March, SlantedSunInEvenFogMatchesClosedForm) {
         const Interval path = clip(unit_box, point, -direction, {0, infinity});
         return extinction / (4 * M_PI) * std::exp(-extinction * (t - 1 + path.high));
     };
-    EXPECT_NEAR(marched(snapshot, exact_settings(), ray).radiance.x / integral(integrand, 1, 2), 1, 1e-3);
+    EXPECT_NEAR(marched(snapshot, sampled_settings(), ray).radiance.x / integral(integrand, 1, 2), 1, 1e-3);
 }
 
 // Airlight of an isotropic point light of 1 cd at distance h from the ray, camera a before the closest point.
@@ -77,7 +77,7 @@ TEST_P(PointLightInEvenFog, MatchesTheAirlightIntegral) {
     const auto [extinction, h, a, expected] = GetParam();
     const Snapshot snapshot = scene_of({even_fog(extinction)}, {point_light({0, h, -a})});
     const float far = a + 60 / extinction;
-    EXPECT_NEAR(marched(snapshot, exact_settings(), {{0, 0, 0}, {0, 0, -1}, far}).radiance.x / expected, 1, 1e-3);
+    EXPECT_NEAR(marched(snapshot, sampled_settings(), {{0, 0, 0}, {0, 0, -1}, far}).radiance.x / expected, 1, 1e-3);
 }
 INSTANTIATE_TEST_SUITE_P(March, PointLightInEvenFog,
                          testing::Values(Airlight{1, 1, 1, 0.01745864f}, Airlight{0.1f, 1, 5, 0.01151431f},
@@ -97,7 +97,7 @@ TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
             const double p = phase_value({PhaseKind::henyey_greenstein, g}, glm::dot(at.to_light, ray.direction));
             return extinction * p * at.irradiance.x * std::exp(-extinction * (t + at.distance));
         };
-        EXPECT_NEAR(marched(snapshot, exact_settings(), ray).radiance.x / integral(integrand, 0, 6), 1, 1e-3) << g;
+        EXPECT_NEAR(marched(snapshot, sampled_settings(), ray).radiance.x / integral(integrand, 0, 6), 1, 1e-3) << g;
     }
 }
 
@@ -105,7 +105,7 @@ TEST(March, HeightFogTransmittanceMatchesClosedForm) {
     // s0 = 0.1, H = 10, upward cosine 0.5, length 40 from the base: tau = 1.729329434.
     Medium medium;
     medium.kind = DensityKind::height, medium.optics = {0.1f, vec3(1), {}, vec3(0)}, medium.height_falloff = 10;
-    Settings settings = exact_settings();
+    Settings settings = sampled_settings();
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
     EXPECT_NEAR(marched(scene_of({medium}, {}), settings, ray).transmittance / 0.177403331, 1, 1e-4);
 }
@@ -113,7 +113,7 @@ TEST(March, HeightFogTransmittanceMatchesClosedForm) {
 TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
     // Ratio of looking into the sun and away from it: ((1+g)/(1-g))³.
     const float g = 0.6f;
-    Settings settings = exact_settings();
+    Settings settings = sampled_settings();
     settings.march.light = LightTransmittance::off;
     const Snapshot snapshot =
         scene_of({even_fog(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})}, {sun({0, 0, 1})});
@@ -128,7 +128,7 @@ TEST(March, ConstantGridEqualsEvenFog) {
     const Snapshot even = scene_of({even_fog(2, unit_box)}, {light});
     for (const vec3 origin : {vec3(0.5f, 0.5f, 3), vec3(0.21f, 0.77f, 3), vec3(0.83f, 0.36f, 3)}) {
         const Ray ray{origin, glm::normalize(vec3(0.02f, -0.03f, -1)), 10};
-        const Scatter a = marched(grid, exact_settings(), ray), b = marched(even, exact_settings(), ray);
+        const Scatter a = marched(grid, sampled_settings(), ray), b = marched(even, sampled_settings(), ray);
         EXPECT_NEAR(a.radiance.x / b.radiance.x, 1, 0.005);
         EXPECT_NEAR(a.transmittance / b.transmittance, 1, 0.005);
     }
@@ -141,7 +141,7 @@ TEST(March, TwoHalfDensityCopiesEqualOne) {
     const Snapshot one = scene_of({grid_fog(3, volume)}, {light});
     const Snapshot two = scene_of({grid_fog(1.5f, volume), grid_fog(1.5f, volume)}, {light});
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}, 10};
-    const Scatter a = marched(one, exact_settings(), ray), b = marched(two, exact_settings(), ray);
+    const Scatter a = marched(one, sampled_settings(), ray), b = marched(two, sampled_settings(), ray);
     EXPECT_NEAR(a.radiance.x / b.radiance.x, 1, 1e-4);
     EXPECT_NEAR(a.transmittance / b.transmittance, 1, 1e-4);
 }
@@ -156,7 +156,7 @@ TEST(March, ErrorFallsWithTheSteps) {
         rays.push_back({{0.1f + 0.8f * at.x, 0.1f + 0.8f * at.y, 3}, {0, 0, -1}, 10});
     }
     const auto run = [&](float share) {
-        Settings settings = exact_settings();
+        Settings settings = sampled_settings();
         settings.march.step_share = share, settings.march.step_voxels = 64, settings.march.step_depth = 10;
         return marched(snapshot, settings, rays);
     };

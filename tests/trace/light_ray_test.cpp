@@ -68,5 +68,28 @@ TEST(LightRay, SunDiscHasItsAngle) {
     }
     EXPECT_NEAR(share, 0.5, 5e-3);
 }
+
+TEST(LightRay, PointsOnABallLookLikeAnEvenDiscFromEverySide) {
+    Light light = light_of(LightKind::point);
+    light.radius = 0.5f;
+    constexpr int count = 8192;
+    for (const vec3 side : {vec3(0, 0, 1), glm::normalize(vec3(1, 2, -1)), vec3(1, 0, 0)}) {
+        int inner = 0;
+        dvec3 mean(0);
+        for (uint32_t i = 0; i < count; ++i) {
+            const Sample2 u = sample2(i, 5), v = sample2(i, 6);
+            const LightPoint point = point_on(light, {vec3(0), vec3(0, 0, 1)}, {u.x, u.y, v.x});
+            const dvec3 off = point.at - point.center;
+            EXPECT_LE(glm::length(off), 0.5 + 1e-6);
+            inner += glm::length(off - glm::dot(off, dvec3(side)) * dvec3(side)) < 0.25;
+            mean += off / double(count);
+        }
+        // A quarter lies within half the radius; four standard errors of as many independent points.
+        EXPECT_NEAR(inner / double(count), 0.25, 4 * std::sqrt(0.25 * 0.75 / count));
+        EXPECT_LT(glm::length(mean), 4 * 0.25 / std::sqrt(count));
+    }
+    light.radius = 0;
+    EXPECT_EQ(point_on(light, {vec3(0), vec3(0, 0, 1)}, vec3(0.3f)).at, dvec3(light.position));
+}
 }
 }

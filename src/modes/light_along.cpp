@@ -1,0 +1,103 @@
+#include "modes/light_along.h"
+
+#include "scene/cone.h"
+
+namespace tyndall {
+namespace {
+double reach_of(const Light& light) { return std::max(light.radius, smallest_radius); }
+
+// Where a sphere about the light cuts the ray.
+Stretch inside_sphere(const LightAlong& along, double radius) {
+    const double squared = radius * radius - along.distance * along.distance;
+    if (!(squared > 0)) return {};
+    const double half = std::sqrt(squared) / glm::length(along.direction);
+    return {along.nearest - half, along.nearest + half};
+}
+
+Stretch common(Stretch a, Stretch b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
+
+void set_cone(const Light& light, LightAlong& along) {
+    const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
+    along.cone_scale = 1 / std::max(inner - outer, 1e-6), along.cone_offset = -outer * along.cone_scale;
+}
+
+// The stretch a local light reaches at all; notes where its strength has kinks.
+Stretch reached(const Light& light, LightAlong& along, Stretch range) {
+    const auto note = [&](Stretch stretch) {
+        if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
+    };
+    along.kinks.push_back(along.nearest);
+    note(inside_sphere(along, reach_of(light)));
+    if (!std::isinf(light.range)) range = common(range, inside_sphere(along, light.range));
+    if (light.kind != LightKind::spot) return range;
+    set_cone(light, along);
+    const dvec3 axis = glm::normalize(dvec3(light.direction));
+    const auto cone = [&](double angle) {
+        return inside_cone(dvec3(light.position), axis, angle, along.origin, along.direction);
+    };
+    const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
+    note(cone(std::acos(std::min(full, 1.0))));
+    return common(range, cone(light.outer_cone));
+}
+
+// Cuts the lit stretches at the kinks and clips them to what the light reaches.
+void cut_lit(Stretch range, LightAlong& along) {
+    std::sort(along.kinks.begin(), along.kinks.end());
+    static thread_local std::vector<Stretch> pieces;
+    pieces.clear();
+    for (Stretch stretch : along.lit) {
+        stretch = common(stretch, range);
+        for (const double kink : along.kinks)
+            if (kink > stretch.low && kink < stretch.high) pieces.push_back({stretch.low, kink}), stretch.low = kink;
+        if (!stretch.empty()) pieces.push_back(stretch);
+    }
+    std::swap(pieces, along.lit);
+}
+}
+
+double LightAlong::distance_to(double low, double high) const {
+    const double off = std::max({low - nearest, nearest - high, 0.0}) * glm::length(direction);
+    return std::sqrt(off * off + distance * distance);
+}
+
+ArrivingAt arriving_at(const LightAlong& along, double t) {
+    const Light& light = *along.light;
+    if (!along.local()) return {-glm::normalize(dvec3(light.direction)), 1};
+    const dvec3 towards = (dvec3(light.position) - along.origin) - t * along.direction;
+    const double squared = glm::dot(towards, towards), away = std::sqrt(squared), reach = reach_of(light);
+    const dvec3 to_light = away > 0 ? towards / away : -dvec3(light.direction);
+    double amount = 1 / std::max(squared, reach * reach);
+    if (!std::isinf(light.range)) {
+        const double share = away / light.range;
+        amount *= std::clamp(1 - share * share * share * share, 0.0, 1.0);
+    }
+    if (light.kind == LightKind::spot) {
+        const double cosine = -glm::dot(to_light, dvec3(light.direction));
+        const double edge = std::clamp(cosine * along.cone_scale + along.cone_offset, 0.0, 1.0);
+        amount *= edge * edge;
+    }
+    return {to_light, amount};
+}
+
+void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,
+                LightAlong& along) {
+    along.light = &light, along.point = point;
+    along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
+    along.kinks.clear(), along.lit.clear();
+    Stretch range{0, ray.t_max};
+    if (along.local()) {
+        const dvec3 towards = dvec3(light.position) - along.origin;
+        along.nearest = glm::dot(towards, along.direction) / glm::dot(along.direction, along.direction);
+        along.distance = glm::length(towards - along.nearest * along.direction);
+        range = reached(light, along, range);
+    }
+    if (range.empty()) return;
+    if (slices && light.shadows) {
+        const float end = std::nextafter(static_cast<float>(range.high), infinity);
+        find_lit(*slices, {ray.origin, ray.direction, std::min(end, ray.t_max)}, point, along.lit);
+    } else {
+        along.lit.push_back(range);
+    }
+    cut_lit(range, along);
+}
+}

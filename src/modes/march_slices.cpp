@@ -1,0 +1,232 @@
+#include "modes/march_slices.h"
+
+#include "base/random.h"
+#include "modes/light_along.h"
+#include "volume/fog_pieces.h"
+
+#include <array>
+
+namespace tyndall {
+namespace {
+constexpr uint32_t use_light_point = 0x51ce5u; // tells these random numbers from others of the same sample
+
+// Gauss–Legendre on -1..1.
+struct Node {
+    double at, weight;
+};
+constexpr std::array<Node, 2> gauss{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
+
+// Memory that a thread keeps from ray to ray.
+struct Scratch {
+    FogPieces fog;
+    LightAlong along;
+};
+
+struct RayMarch {
+    const March& march;
+    const Ray& ray;
+    Scratch& scratch;
+    double longest = 0; // step by length alone
+    int nodes = 0;
+
+    dvec3 at(double t) const { return dvec3(ray.origin) + t * dvec3(ray.direction); }
+};
+
+// Splits a stretch of one piece of fog until every part obeys the march's bounds. `distance(low, high)` is that to a
+// local light, infinite without one.
+template<class Distance, class Visit>
+void split(const RayMarch& on, size_t piece, double low, double high, const Distance& distance, const Visit& visit) {
+    const MarchSettings& settings = on.march.settings;
+    const FogPieces& fog = on.scratch.fog;
+    constexpr double closest = 1e-3; // metres: nearer to a light parts shrink no further
+    const double length = high - low, away = std::max(distance(low, high), closest);
+    if (length > away && length > settings.near_light * away) {
+        split(on, piece, low, 0.5 * (low + high), distance, visit);
+        return split(on, piece, 0.5 * (low + high), high, distance, visit);
+    }
+    const double depth = fog.depth_at(piece, high) - fog.depth_at(piece, low);
+    const double wanted =
+        std::max({depth / settings.step_depth, length * fog.pieces[piece].voxels / settings.step_voxels,
+                  length / on.longest, length / (settings.near_light * away)});
+    const double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));
+    for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
+}
+
+// Emission and ambient light of all fog, lit or not.
+dvec3 glow(RayMarch& on) {
+    const FogPieces& fog = on.scratch.fog;
+    const auto nowhere = [](double, double) { return double(infinity); };
+    dvec3 sum(0);
+    for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
+        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nowhere, [&](double low, double high) {
+            for (const Node node : gauss) {
+                const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
+                const double weight = 0.5 * (high - low) * node.weight * std::exp(-fog.depth_at(piece, t));
+                for (size_t m = 0; m < fog.media; ++m) {
+                    const Optics& optics = on.march.snapshot.media[m].optics;
+                    const dvec3 per_density =
+                        double(optics.extinction) * dvec3(optics.albedo * on.march.snapshot.ambient);
+                    sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
+                }
+                ++on.nodes;
+            }
+        });
+    return sum;
+}
+
+// Sixteen points at which a light is asked for at once.
+struct Pending {
+    alignas(64) float x[16] = {}, y[16] = {}, z[16] = {};
+    alignas(64) int32_t active[16] = {};
+    dvec3 position[16], light[16]; // what each adds if nothing dims the light on its way
+    int count = 0;
+};
+
+// Shadow rays to the light's point, through surfaces with alpha.
+void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& pending, float* share) {
+    Occluders::ShadowRays rays;
+    for (int i = 0; i < 16; ++i) {
+        rays.active[i] = pending.active[i];
+        if (!rays.active[i]) continue;
+        const dvec3 towards = to.far ? to.at : to.at - pending.position[i];
+        const double distance = glm::length(towards);
+        const dvec3 direction = towards / distance;
+        double end = to.far ? double(infinity) : distance;
+        if (to.radius > 0) { // at the ball's surface
+            const dvec3 center = to.center - pending.position[i];
+            const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
+            end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
+        }
+        rays.ox[i] = pending.x[i], rays.oy[i] = pending.y[i], rays.oz[i] = pending.z[i];
+        rays.dx[i] = float(direction.x), rays.dy[i] = float(direction.y), rays.dz[i] = float(direction.z);
+        rays.t_min[i] = 0, rays.t_max[i] = static_cast<float>(end * 0.9999);
+    }
+    on.march.snapshot.occluders->transmission(rays, share);
+}
+
+// Adds the pending points to the sum, dimmed by the fog between them and the light.
+void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum) {
+    if (pending.count == 0) return;
+    alignas(64) float depth[16] = {}, share[16];
+    for (int i = 0; i < 16; ++i) pending.active[i] = i < pending.count ? -1 : 0, share[i] = 1;
+    const LightAlong& along = on.scratch.along;
+    const Occluders* occluders = on.march.snapshot.occluders.get();
+    if (along.light->shadows && occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
+    light_depths(on.march.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
+    for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
+    on.nodes += pending.count;
+    pending.count = 0;
+}
+
+// Light scattered towards the eye at a node of given weight, before what dims it on its way from the light.
+dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
+    const FogPieces& fog = on.scratch.fog;
+    const ArrivingAt light_at = arriving_at(on.scratch.along, t);
+    const double cosine = glm::dot(light_at.to_light, dvec3(on.ray.direction));
+    dvec3 scattering(0);
+    for (size_t m = 0; m < fog.media; ++m) {
+        const double density = fog.density(piece, m, t);
+        if (density == 0) continue;
+        const Optics& optics = on.march.snapshot.media[m].optics;
+        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
+    }
+    return scattering * (weight * light_at.amount * std::exp(-fog.depth_at(piece, t)));
+}
+
+// Nodes of one part: for the sun in t; for a local light in θ with t = nearest + scale·tan θ, so that
+// dt = (scale² + (t - nearest)²) / scale dθ.
+template<class Add> void visit_nodes(const LightAlong& along, double low, double high, const Add& add) {
+    if (!along.local()) {
+        for (const Node node : gauss)
+            add(0.5 * (low + high) + 0.5 * (high - low) * node.at, 0.5 * (high - low) * node.weight);
+        return;
+    }
+    const double scale = std::max({along.distance, double(along.light->radius), double(smallest_radius)});
+    const double from = std::atan((low - along.nearest) / scale), to = std::atan((high - along.nearest) / scale);
+    for (const Node node : gauss) {
+        const double x = std::tan(0.5 * (from + to) + 0.5 * (to - from) * node.at);
+        add(along.nearest + scale * x, 0.5 * (to - from) * node.weight * scale * (1 + x * x));
+    }
+}
+
+// Light of the scratch's light along the ray: the lit stretches, piece of fog by piece of fog.
+dvec3 light_along_ray(RayMarch& on, size_t light_index) {
+    const FogPieces& fog = on.scratch.fog;
+    const LightAlong& along = on.scratch.along;
+    Pending pending;
+    dvec3 sum(0);
+    const auto add = [&](size_t piece, double t, double weight) {
+        const dvec3 light = scattered_at(on, piece, t, weight);
+        // A million such nodes would not change the seventh digit.
+        if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
+        const dvec3 position = on.at(t);
+        const int i = pending.count++;
+        pending.x[i] = float(position.x), pending.y[i] = float(position.y), pending.z[i] = float(position.z);
+        pending.position[i] = position, pending.light[i] = light;
+        if (pending.count == 16) add_pending(on, light_index, pending, sum);
+    };
+    const auto distance = [&](double low, double high) {
+        return along.local() ? along.distance_to(low, high) : double(infinity);
+    };
+
+    size_t piece = 0;
+    for (const Stretch& lit : along.lit) {
+        while (piece < fog.pieces.size() && fog.pieces[piece].high <= lit.low) ++piece;
+        for (; piece < fog.pieces.size() && fog.pieces[piece].low < lit.high; ++piece) {
+            const double low = std::max(fog.pieces[piece].low, lit.low);
+            const double high = std::min(fog.pieces[piece].high, lit.high);
+            split(on, piece, low, high, distance, [&](double from, double to) {
+                visit_nodes(along, from, to, [&](double t, double weight) { add(piece, t, weight); });
+            });
+            if (fog.pieces[piece].high >= lit.high) break;
+        }
+    }
+    add_pending(on, light_index, pending, sum);
+    return sum * dvec3(along.light->intensity * along.light->volume_scale);
+}
+
+// The point of a light that casts the shadows of one ray.
+LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index) {
+    if (!is_soft(light)) return center_of(light);
+    const uint32_t index = static_cast<uint32_t>(light_index);
+    Sample2 u, v;
+    if (batch.places.empty()) {
+        const uint32_t key = hash(batch.ids[ray], use_light_point, index);
+        u = {to_unit(hash(key, 0u)), to_unit(hash(key, 1u))}, v = {to_unit(hash(key, 2u)), 0};
+    } else {
+        const SamplePlace place = batch.places[ray];
+        u = sample2(place.index, hash(place.sequence, use_light_point, index, 0u));
+        v = sample2(place.index, hash(place.sequence, use_light_point, index, 1u));
+    }
+    return point_on(light, batch.rays[ray], {u.x, u.y, v.x});
+}
+
+void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scatter& result) {
+    static thread_local Scratch scratch;
+    const Ray& ray = batch.rays[ray_index];
+    RayMarch on{march, ray, scratch};
+    const FogPieces& fog = scratch.fog;
+    find_fog(ray, march.snapshot.media, march.settings.min_transmittance, scratch.fog);
+    result = {};
+    if (fog.pieces.empty()) return;
+
+    const double stretch = fog.pieces.back().high - fog.pieces.front().low;
+    on.longest = std::min<double>(march.settings.step_length, march.settings.step_share * stretch);
+    dvec3 sum = glow(on);
+    const std::vector<Light>& lights = march.snapshot.lights;
+    for (size_t l = 0; l < lights.size(); ++l) {
+        find_light(lights[l], light_point(batch, ray_index, lights[l], l), ray, &march.slices, scratch.along);
+        const dvec3 light = light_along_ray(on, l);
+        sum += light;
+        if (!batch.per_light.empty()) batch.per_light[ray_index * lights.size() + l] += vec3(light);
+    }
+    result.radiance = vec3(sum);
+    result.transmittance = static_cast<float>(std::exp(-fog.depth));
+    result.steps = on.nodes;
+}
+}
+
+void march_slices(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+    for (size_t i = 0; i < batch.rays.size(); ++i) march_ray(march, batch, i, results[i]);
+}
+}
