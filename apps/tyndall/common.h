@@ -28,6 +28,7 @@ Run add_render(CLI::App& app);
 Run add_info(CLI::App& app);
 Run add_check(CLI::App& app);
 Run add_modes(CLI::App& app);
+Run add_compare(CLI::App& app);
 Run add_verify(CLI::App& app);
 
 // Set by SIGINT and SIGTERM; long work ends soon after.

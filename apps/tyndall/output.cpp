@@ -9,15 +9,15 @@
 namespace tyndall {
 namespace fs = std::filesystem;
 
-void check_pattern(const std::string& pattern, std::string_view extension, bool several) {
+void check_pattern(const std::string& pattern, std::string_view extension, bool several, std::string_view option) {
     const fs::path name = fs::path(pattern).filename();
     if (name.extension() != extension || name.stem().empty())
-        fail(ExitCode::usage, "--output",
+        fail(ExitCode::usage, option,
              "expected a name ending in " + std::string(extension) + ", like out.####" + std::string(extension) +
                  "; got '" + printable(pattern, 60) + "'");
     const bool numbered = has_frame_token(pattern);
     if (several && !numbered)
-        fail(ExitCode::usage, "--output",
+        fail(ExitCode::usage, option,
              "several frames need a frame number in the name, like " + name.stem().string() + ".####" +
                  std::string(extension));
 }
@@ -45,13 +45,13 @@ void OutputPlaces::check(const fs::path& file) {
     sweep_temporaries(directory.empty() ? fs::path(".") : directory);
 }
 
-void OutputPlaces::check(const std::string& pattern, const std::vector<int>& frames) {
+void OutputPlaces::check(const std::string& pattern, const std::vector<int>& frames, std::string_view option) {
     std::vector<std::string> names;
     for (const int frame : frames) names.push_back(frame_name(pattern, frame));
     for (const std::string& name : names) check(fs::path(name));
     std::sort(names.begin(), names.end());
     const auto twice = std::adjacent_find(names.begin(), names.end());
     if (twice != names.end())
-        fail(ExitCode::usage, "--output", "two frames would be written to '" + printable(*twice, 100) + "'");
+        fail(ExitCode::usage, option, "two frames would be written to '" + printable(*twice, 100) + "'");
 }
 }

@@ -56,6 +56,12 @@ double Comparison::worst_rmse() const {
     return other > own || std::isnan(other) ? other : own;
 }
 
+uint64_t Comparison::non_finite() const {
+    uint64_t count = beauty.non_finite_test + beauty.non_finite_reference;
+    for (const auto& [name, errors] : layers) count += errors.non_finite_test + errors.non_finite_reference;
+    return count;
+}
+
 Comparison compare(const Picture& test, const Picture& reference, const Viewing& viewing, Image<float>* flip_map) {
     check_same_frame(test, reference);
     Comparison result;

@@ -31,6 +31,9 @@ struct Comparison {
 
     // E: the relative RMSE of the picture or of its fog light (`inscatter`), whichever is larger.
     double worst_rmse() const;
+
+    // Pixels left out, in the picture, its layers and those of the reference.
+    uint64_t non_finite() const;
 };
 
 // Throws Error (refused) when the frames do not match. The FLIP map goes to `flip_map` if given.

@@ -152,7 +152,7 @@ FlipExposures flip_exposures(const Image<vec3>& reference) {
         if (is_finite(color)) luminances.push_back(0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z);
     std::ranges::sort(luminances);
     if (luminances.empty() || !(luminances.back() > 0)) return {};
-    double median = 0.5 * (luminances[(luminances.size() - 1) / 2] + luminances[luminances.size() / 2]);
+    double median = luminances[luminances.size() / 2];
     if (!(median > 0)) median = darkest_median * luminances.back();
 
     const double white = aces_inverse(nearly_white);

@@ -2,13 +2,71 @@
 
 #include "measure/metrics.h"
 
+#include <cstdio>
+#include <string>
+
 namespace tyndall {
 namespace {
 constexpr Color8 not_a_number(0, 255, 0);
+
+// Figures of 3 × 5 dots: a row is an octal digit, its bits the dots from left to right.
+constexpr const char* figures[] = {"75557", "26227", "71747", "71717", "55711", "74717",
+                                   "74757", "71222", "75757", "75717", "00002"};
+constexpr int figure_width = 4, figure_height = 5; // with a gap
+
+int dot_side(int width) { return std::max(1, width / 400); }
+
+struct Tick {
+    double position; // 0 to 1
+    std::string text;
+};
+
+// Powers of ten, or quarters.
+std::vector<Tick> ticks_of(const HeatScale& scale) {
+    const int steps = scale.logarithmic ? static_cast<int>(std::lround(std::log10(scale.high / scale.low))) : 4;
+    std::vector<Tick> ticks;
+    for (int i = 0; i <= steps; ++i) {
+        const double share = static_cast<double>(i) / steps;
+        char text[32];
+        std::snprintf(text, sizeof text, "%g",
+                      scale.logarithmic ? scale.low * std::pow(10, i) : scale.low + share * (scale.high - scale.low));
+        ticks.push_back({share, text});
+    }
+    return ticks;
+}
+
+void draw_text(Image<Color8>& picture, ivec2 corner, int dot, const std::string& text, Color8 color) {
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char* rows = figures[text[i] == '.' ? 10 : text[i] - '0'];
+        for (int y = 0; y < figure_height * dot; ++y)
+            for (int x = 0; x < 3 * dot; ++x)
+                if ((rows[y / dot] - '0') & (4 >> (x / dot)))
+                    picture.at(corner.x + static_cast<int>(i) * figure_width * dot + x, corner.y + y) = color;
+    }
+}
+
+// The scale in the rows from `top` on.
+void draw_strip(Image<Color8>& picture, int top, const HeatScale& scale) {
+    const int width = picture.size.x, dot = dot_side(width);
+    for (int y = top; y < picture.size.y; ++y)
+        for (int x = 0; x < width; ++x) picture.at(x, y) = heat_color((x + 0.5) / width);
+
+    const std::vector<Tick> ticks = ticks_of(scale);
+    size_t longest = 0;
+    for (const Tick& tick : ticks) longest = std::max(longest, tick.text.size());
+    const auto text_width = [&](size_t length) { return static_cast<int>(length) * figure_width * dot + dot; };
+    if (text_width(longest + 1) * static_cast<int>(ticks.size()) > width) return;
+    for (const Tick& tick : ticks) {
+        const int room = width - text_width(tick.text.size());
+        const int left = static_cast<int>(tick.position * width) - text_width(tick.text.size()) / 2;
+        draw_text(picture, {std::clamp(left, 0, room) + dot, top + dot}, dot, tick.text,
+                  Color8(tick.position < 0.6 ? 255 : 0));
+    }
+}
 }
 
 Color8 heat_color(double t) {
-    constexpr double start = 0.35, rotations = 0.75, saturation = 1.25;
+    constexpr double start = 0.1, rotations = 0.42, saturation = 1.3;
     t = std::clamp(t, 0.0, 1.0);
     const double angle = 2 * 3.14159265358979323846 * (start / 3 + 1 + rotations * t);
     const double amplitude = saturation * t * (1 - t) / 2, u = std::cos(angle), v = std::sin(angle);
@@ -19,17 +77,19 @@ Color8 heat_color(double t) {
     return color;
 }
 
-Image<Color8> heat_map(const Image<float>& values, double low, double high, bool log) {
+int heat_strip_height(int width) { return (figure_height + 2) * dot_side(width); }
+
+Image<Color8> heat_map(const Image<float>& values, const HeatScale& scale) {
     const int width = values.size.x, height = values.size.y;
     Image<Color8> picture({width, height + heat_strip_height(width)});
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const double v = values.at(x, y);
-            const double t = log ? std::log(std::max(v, low) / low) / std::log(high / low) : (v - low) / (high - low);
+            const double v = values.at(x, y), low = scale.low, high = scale.high;
+            const double t =
+                scale.logarithmic ? std::log(std::max(v, low) / low) / std::log(high / low) : (v - low) / (high - low);
             picture.at(x, y) = std::isnan(v) ? not_a_number : heat_color(t);
         }
-    for (int y = height; y < picture.size.y; ++y)
-        for (int x = 0; x < width; ++x) picture.at(x, y) = heat_color((x + 0.5) / width);
+    draw_strip(picture, height, scale);
     return picture;
 }
 

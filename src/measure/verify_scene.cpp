@@ -82,17 +82,17 @@ void check_scale(const Scene& scene, const SceneProof& proof, const VerifyContro
     }
 }
 
-// The scene as single scattering sees it: without light that modes treat differently.
+// The scene as single scattering of its lights: without light that modes treat differently, and without background.
 Scene only_lights(Scene scene) {
     scene.ambient = Keyed<vec3>(vec3(0));
+    scene.background = {};
     for (Material& material : scene.materials) material.emission = vec3(0);
     for (MediumSource& medium : scene.media) medium.emission = Keyed<vec3>(vec3(0));
     return scene;
 }
 
 void check_lights(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
-    Scene dark = only_lights(scene);
-    dark.background = {};
+    const Scene dark = only_lights(scene);
     Shot shot{proof, control, settings_for(Quality::preview)};
     shot.per_light = true;
     const Layers layers = render(shot, dark, moment(dark, proof));
@@ -109,7 +109,6 @@ void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyCont
     Scene fog = only_lights(scene);
     fog.instances.clear(), fog.lights.clear();
     fog.ambient = Keyed<vec3>(vec3(1));
-    fog.background = {};
     fog.background.color = Keyed<vec3>(vec3(1));
     for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1));
     Shot shot{proof, control, settings_for(Quality::preview)};

@@ -85,7 +85,7 @@ void check_radiance(Checks& checks) {
         add(checks, std::string("slab lit by the ") + row.name + ", from above",
             path_light(snapshot, {vec3(0, 3, 0), down}, 3072), row.above);
         add(checks, std::string("slab lit by the ") + row.name + ", from below",
-            path_light(snapshot, {vec3(0, -2, 0), vec3(0, 0.5f, down.z)}, 3072), row.below);
+            path_light(snapshot, {vec3(0, -2, 0), vec3(0, 0.5f, down.z)}, row.below < 0.1 ? 16384 : 4096), row.below);
     }
 }
 

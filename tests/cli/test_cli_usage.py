@@ -5,12 +5,14 @@ import unittest
 
 from program import TYNDALL, ProgramTest, run, scene
 
-COMMANDS = ["bake", "render", "info", "check", "modes"]
+COMMANDS = ["bake", "render", "info", "check", "modes", "compare"]
 OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
                "--exposure", "--light-units", "--missing", "--aov", "--png", "--resume", "--seed", "--isa",
                "--stats-json", "--orders", "--target-error", "--float"],
+    "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
+    "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
 }
 
 

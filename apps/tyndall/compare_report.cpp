@@ -1,0 +1,145 @@
+// Tables for people, and the same as JSON.
+#include "compare_report.h"
+
+#include "base/error.h"
+
+namespace tyndall {
+namespace {
+std::string percent(double error, double mean) { return formatted("%.4g %%", 100 * relative(error, mean)); }
+
+Json window_json(ivec2 size) { return json_array({json_of(size.x), json_of(size.y)}); }
+
+Json non_finite_json(const Errors& e) {
+    return json_object({{"test", json_of(e.non_finite_test)}, {"reference", json_of(e.non_finite_reference)}});
+}
+
+Json errors_json(const Errors& e) {
+    return json_object({{"rmse_rel", json_of(relative(e.rmse, e.mean_reference))},
+                        {"bias_rel", json_of(relative(e.bias, e.mean_reference))},
+                        {"rmse", json_of(e.rmse)},
+                        {"bias", json_of(e.bias)},
+                        {"max", json_of(e.most)},
+                        {"mean", json_of(e.mean_test)},
+                        {"mean_reference", json_of(e.mean_reference)},
+                        {"non_finite", non_finite_json(e)}});
+}
+
+Json layers_json(const Comparison& comparison) {
+    std::vector<std::pair<std::string, Json>> members;
+    for (const auto& [name, errors] : comparison.layers) members.emplace_back(name, errors_json(errors));
+    return json_object(std::move(members));
+}
+
+Json frame_json(const FrameResult& frame) {
+    const Comparison& c = frame.comparison;
+    Json json = errors_json(c.beauty);
+    json.members.insert(json.members.begin(), {"E", json_of(c.worst_rmse())});
+    json.members.insert(json.members.begin(), {"frame", json_of(frame.frame)});
+    json.members.emplace_back("rel_mse", json_of(c.beauty.rel_mse));
+    json.members.emplace_back("ssim", json_of(c.ssim));
+    json.members.emplace_back("flip", json_of(c.flip));
+    json.members.emplace_back("layers", layers_json(c));
+    return json;
+}
+
+Json metrics_json(const CompareResult& result) {
+    std::vector<std::pair<std::string, Json>> members;
+    for (const Metric& metric : metrics())
+        if (const auto value = metric.value(result)) members.emplace_back(metric.name, json_of(*value));
+    members.emplace_back("ssim", json_of(result.overall.ssim));
+    if (result.overall.mse) members.emplace_back("mse_unbiased_error", json_of(result.overall.mse->standard_error));
+    if (result.overall.bias_squared)
+        members.emplace_back("bias_squared_error", json_of(result.overall.bias_squared->standard_error));
+    return json_object(std::move(members));
+}
+
+std::string errors_table(const Errors& e) {
+    const std::pair<const char*, double> rows[] = {{"bias", e.bias}, {"rmse", e.rmse},   {"mae", e.mae},
+                                                   {"p95", e.p95},   {"p99_9", e.p99_9}, {"max", e.most}};
+    std::string text =
+        formatted("  %-16s %12s   share of the reference's mean (%.4g)\n", "", "difference", e.mean_reference);
+    for (const auto& [name, value] : rows)
+        text += formatted("  %-16s %12.4g   %s\n", name, value, percent(value, e.mean_reference).c_str());
+    return text;
+}
+
+std::string layers_table(const CompareResult& result) {
+    const Comparison& all = result.overall;
+    std::string text = formatted("\n  %-24s %12s %12s %12s\n", "layer", "rmse_rel", "bias_rel", "mean");
+    const auto row = [&](const std::string& name, const Errors& e) {
+        text += formatted("  %-24s %12s %12s %12.4g", printable(name, 60).c_str(),
+                          percent(e.rmse, e.mean_reference).c_str(), percent(e.bias, e.mean_reference).c_str(),
+                          e.mean_reference);
+        if (const uint64_t bad = e.non_finite_test + e.non_finite_reference)
+            text += "  " + count_text(bad, "pixel") + " left out, not finite";
+        text += "\n";
+    };
+    row("picture", all.beauty);
+    for (const auto& [name, errors] : all.layers) row(name, errors);
+    return text;
+}
+
+std::string frames_table(const CompareResult& result) {
+    std::string text = formatted("\n  %8s %12s %12s %10s %10s\n", "frame", "rmse_rel", "bias_rel", "SSIM", "FLIP");
+    for (const FrameResult& frame : result.frames) {
+        const Errors& e = frame.comparison.beauty;
+        text += formatted("  %8d %12s %12s %10.5f %10.5f\n", frame.frame, percent(e.rmse, e.mean_reference).c_str(),
+                          percent(e.bias, e.mean_reference).c_str(), frame.comparison.ssim, frame.comparison.flip);
+    }
+    return text;
+}
+}
+
+std::string compare_text(const CompareResult& result) {
+    const Comparison& all = result.overall;
+    std::string text = printable(result.test) + " against " + printable(result.reference) +
+                       formatted(": %d x %d pixels", result.size.x, result.size.y);
+    text += result.sequence ? ", " + count_text(result.frames.size(), "frame") + "\n" : std::string("\n");
+    text += errors_table(all.beauty);
+    text += formatted("\n  %-16s %12.4g   without the largest 0.1 %%: %.4g\n", "relMSE", all.beauty.rel_mse,
+                      all.beauty.rel_mse_trimmed);
+    text += formatted("  %-16s %12.6f   1 when equal\n", "SSIM", all.ssim);
+    text += formatted("  %-16s %12.6f   0 when equal; %g pixels per degree\n", "FLIP", all.flip,
+                      result.viewing.pixels_per_degree);
+    if (result.frames.size() > 1)
+        text += formatted("  %-16s %12.4g   of the reference's mean\n", "flicker", result.flicker);
+    if (all.mse)
+        text += formatted("  %-16s %12.4g   ± %.2g, free of the reference's noise\n", "MSE, unbiased", all.mse->value,
+                          all.mse->standard_error);
+    if (all.bias_squared)
+        text += formatted("  %-16s %12.4g   ± %.2g\n", "bias squared", all.bias_squared->value,
+                          all.bias_squared->standard_error);
+    text += formatted("  %-16s %12.4g   rmse_rel, the worse of the picture and its fog light\n", "E", all.worst_rmse());
+    text += layers_table(result);
+    if (result.sequence) text += frames_table(result);
+    return text;
+}
+
+std::string compare_json(const CompareResult& result, const std::vector<Exceeded>& exceeded) {
+    const Errors& e = result.overall.beauty;
+    std::vector<Json> frames, failures;
+    for (const FrameResult& frame : result.frames) frames.push_back(frame_json(frame));
+    for (const Exceeded& f : exceeded)
+        failures.push_back(json_object({{"metric", json_of(std::string_view(f.metric))},
+                                        {"value", json_of(f.value)},
+                                        {"limit", json_of(f.limit)}}));
+    const FlipExposures& exposures = result.viewing.exposures;
+    std::vector<std::pair<std::string, Json>> members{
+        {"test", json_of(std::string_view(result.test))},
+        {"reference", json_of(std::string_view(result.reference))},
+        {"size", window_json(result.size)},
+        {"pixels", json_of(e.pixels)},
+        {"non_finite", non_finite_json(e)},
+        {"mean", json_of(e.mean_test)},
+        {"mean_reference", json_of(e.mean_reference)},
+        {"metrics", metrics_json(result)},
+        {"layers", layers_json(result.overall)},
+        {"viewing", json_object({{"pixels_per_degree", json_of(result.viewing.pixels_per_degree)},
+                                 {"start_exposure", json_of(exposures.start)},
+                                 {"stop_exposure", json_of(exposures.stop)},
+                                 {"exposures", json_of(exposures.count)}})},
+        {"exceeded", json_array(std::move(failures))}};
+    if (result.sequence) members.emplace_back("frames", json_array(std::move(frames)));
+    return format_json(json_object(std::move(members))) + "\n";
+}
+}
