@@ -24,8 +24,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 REGIONS = 4  # rows and columns the picture is cut into
 TOLERANCE = 0.01
 MITSUBA_SAMPLES = 8  # for one of Cycles: they cost less and are noisier
-# Chance of a false alarm: 2 standard errors for a picture, 3 for each of its 16 regions, give about 1 in 20.
-ERRORS, REGION_ERRORS = 2, 3
+# Noise that counts for nothing, in standard errors: of a picture, and of one of 16 regions (with the errors known from
+# 8 runs only, Student's t with 7 degrees of freedom passes 4.5 once in 360 times: in one of 16 regions, once in 22).
+ERRORS, REGION_ERRORS = 2, 4.5
 
 
 def run_blender(job, folder):
@@ -60,9 +61,8 @@ def mitsuba_pictures(scene, orders, folder, args, voxels):
 def cycles_pictures(scene, orders, folder, args, voxels):
     output = folder / f"{scene.name}_cycles_"
     job = {"scene": dataclasses.asdict(scene), "orders": orders, "samples": args.samples, "output": str(output),
-           "seeds": list(range(args.runs)), "step_rate": args.cycles_step_rate}
-    if scene.fog.recipe:
-        job |= {"vdb": str(folder / f"{scene.name}.vdb"), "voxel_size": voxels[1]}
+           "seeds": list(range(args.runs)), "step_rate": args.cycles_step_rate,
+           "vdb": str(folder / f"{scene.name}.vdb") if voxels else None, "voxel_size": voxels[1] if voxels else None}
     run_blender(job, folder)
     return [np.load(f"{output}{seed}.npy") for seed in range(args.runs)]
 
@@ -89,30 +89,38 @@ def read_voxels(scene, folder):
         return file["first"], float(file["size"]), file["density"]
 
 
+def standard_error(runs):
+    return runs.std(0, ddof=1) / np.sqrt(len(runs))
+
+
 def statistics(pictures):
-    """Mean over channels and standard error: of the picture and of its regions, from the spread between the runs."""
-    stack = np.stack(pictures).mean(-1)
-    runs, height, width = stack.shape
-    cut = stack.reshape(runs, REGIONS, height // REGIONS, REGIONS, width // REGIONS)
-    regions, whole = cut.mean((2, 4)).reshape(runs, -1), stack.mean((1, 2))
-    error = lambda values: values.std(0, ddof=1) / np.sqrt(runs)
-    return {"mean": whole.mean(), "error": error(whole), "regions": regions.mean(0), "region_errors": error(regions)}
+    """Means and standard errors, from the spread between runs: of the picture over all channels, and of each channel of
+    each region."""
+    stack = np.stack(pictures)
+    runs, height, width, channels = stack.shape
+    cut = stack.reshape(runs, REGIONS, height // REGIONS, REGIONS, width // REGIONS, channels)
+    regions, whole = cut.mean((2, 4)).reshape(runs, -1), stack.mean((1, 2, 3))
+    return {"mean": whole.mean(), "error": standard_error(whole), "regions": regions.mean(0),
+            "region_errors": standard_error(regions)}
+
+
+def region_scale(own):
+    """What a region's difference is a share of: its mean, but at least a tenth of the picture's, as what is nearly
+    black decides nothing."""
+    return np.maximum(own["regions"], 0.1 * own["mean"])
 
 
 def differs(peer, own):
-    """(picture, number of regions) beyond the tolerance and the noise of both. The tolerance of a region is a share
-    of its own mean, but not of less than a tenth of the picture's: what is nearly black decides nothing."""
+    """(picture, number of regions and channels) beyond the tolerance and the noise of both."""
     gap = abs(peer["mean"] - own["mean"])
     picture = gap > TOLERANCE * own["mean"] + ERRORS * np.hypot(peer["error"], own["error"])
     gaps = abs(peer["regions"] - own["regions"])
-    scale = np.maximum(own["regions"], 0.1 * own["mean"])
     noise = np.hypot(peer["region_errors"], own["region_errors"])
-    return picture, int((gaps > TOLERANCE * scale + REGION_ERRORS * noise).sum())
+    return picture, int((gaps > TOLERANCE * region_scale(own) + REGION_ERRORS * noise).sum())
 
 
 def worst_region(peer, own):
-    scale = np.maximum(own["regions"], 0.1 * own["mean"])
-    return max((peer["regions"] - own["regions"]) / scale, key=abs)
+    return max((peer["regions"] - own["regions"]) / region_scale(own), key=abs)
 
 
 def compare(scene, orders, folder, args, renderers):
@@ -150,8 +158,9 @@ def parse():
     parser.add_argument("--scenes", default=",".join(names), help="of " + ",".join(names))
     parser.add_argument("--renderers", default=",".join(RENDERERS), help="the first is what the others must agree with")
     parser.add_argument("--orders", choices=["1", "all", "both"], default="1", help="of scattering (default: 1)")
-    parser.add_argument("--runs", type=int, default=8, help="pictures with seeds of their own; their spread is the error")
-    parser.add_argument("--samples", type=int, default=32, help=f"of Cycles per pixel and run; Mitsuba takes {MITSUBA_SAMPLES} times as many")
+    parser.add_argument("--runs", type=int, default=8, help="pictures per scene and renderer, each with its seed")
+    parser.add_argument("--samples", type=int, default=32,
+                        help=f"of Cycles per pixel and run; Mitsuba takes {MITSUBA_SAMPLES} times as many")
     parser.add_argument("--cycles-step-rate", type=float, default=0.5, help="voxels per step of Cycles in grids")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the mean pictures, as .npy")
     return parser.parse_args()
@@ -164,18 +173,21 @@ def renderers_there(wanted):
     for name in wanted:
         if name not in RENDERERS:
             sys.exit(f"compare.py: no renderer {name}; there are {', '.join(RENDERERS)}")
-        if missing.get(name):
-            print(f"compare.py: {name} is missing ({hints[name]}): left out", file=sys.stderr)
-    if all(missing.values()):
-        sys.exit("compare.py: neither mitsuba (pip install mitsuba) nor blender (apt-get install blender) is there")
-    return [name for name in wanted if not missing.get(name)]
+    absent = [f"{name} ({hints[name]})" for name in wanted if missing.get(name)]
+    there = [name for name in wanted if not missing.get(name)]
+    if all(missing.values()) or len(there) < 2:  # the quadrature alone is no independent renderer
+        what = ", ".join(absent) or "a renderer beside tyndall, mitsuba or blender"
+        sys.exit(f"compare.py: nothing to compare: missing {what}")
+    if absent:
+        print(f"compare.py: left out, as they are missing: {', '.join(absent)}", file=sys.stderr)
+    return there
 
 
 def main():
     args = parse()
     os.nice(5)
-    if args.runs < 2:
-        sys.exit("compare.py: --runs: at least 2, their spread is the error")
+    if args.runs < 8:
+        sys.exit("compare.py: --runs: at least 8, their spread is the error")
     if not shutil.which(args.tyndall):
         sys.exit(f"compare.py: {args.tyndall} is not there: build it, or name it with --tyndall")
     wanted = args.scenes.split(",")

@@ -1,14 +1,17 @@
 """Runs inside Blender: blender -b --factory-startup --python-exit-code 3 -P cycles_peer.py -- JOB.json
-A job renders a scene with Cycles ({scene, orders, samples, seeds, output}: output#.npy per seed) or turns EXR files
-into arrays ({exr: [paths]}: a .npy beside each)."""
+A job renders a scene with Cycles ({scene, vdb, voxel_size, orders, samples, step_rate, seeds, output}: the picture
+OUTPUT#.npy per seed) or turns EXR files into arrays ({exr: [paths]}: a .npy beside each)."""
 import json
 import math
 import pathlib
 import sys
 import types
 
-import bpy
-import mathutils
+try:
+    import bpy
+    import mathutils
+except ImportError:
+    sys.exit("cycles_peer.py: run it in Blender: blender -b --factory-startup -P cycles_peer.py -- JOB.json")
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
@@ -22,7 +25,7 @@ def z_up(v):
 def pixels(path):
     """[y, x, rgb], first row on top (Blender keeps the lowest first)."""
     image = bpy.data.images.load(str(path))
-    image.colorspace_settings.name = "Linear"
+    image.colorspace_settings.name = "Non-Color"  # the numbers as they are
     values = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(values)
     values = values.reshape(image.size[1], image.size[0], image.channels)[::-1, :, :3]
@@ -142,26 +145,28 @@ def set_up(orders, samples, step_rate):
 
 def render(job):
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    world = json.loads(json.dumps(job["scene"]), object_hook=lambda d: types.SimpleNamespace(**d))
+    world = job.scene
     for box in world.boxes:
         add_box(box.low, box.high, material("box", ("ShaderNodeBsdfDiffuse", {"Color": (*box.color, 1)}),
                                             socket="Surface"))
-    add_fog(world.fog, job.get("vdb"), job.get("voxel_size"))
+    add_fog(world.fog, job.vdb, job.voxel_size)
     add_light(world.light)
     add_camera(world.camera)
-    set_up(job["orders"], job["samples"], job["step_rate"])
-    for seed in job["seeds"]:
+    set_up(job.orders, job.samples, job.step_rate)
+    for seed in job.seeds:
         bpy.context.scene.cycles.seed = seed
-        bpy.context.scene.render.filepath = f"{job['output']}{seed}.exr"
+        bpy.context.scene.render.filepath = f"{job.output}{seed}.exr"
         bpy.ops.render.render(write_still=True)
-        np.save(f"{job['output']}{seed}.npy", pixels(bpy.context.scene.render.filepath))
+        np.save(f"{job.output}{seed}.npy", pixels(bpy.context.scene.render.filepath))
 
 
 def main():
-    job = json.loads(pathlib.Path(sys.argv[sys.argv.index("--") + 1]).read_text())
-    for path in job.get("exr", []):
-        np.save(pathlib.Path(path).with_suffix(".npy"), pixels(path))
-    if "scene" in job:
+    text = pathlib.Path(sys.argv[sys.argv.index("--") + 1]).read_text()
+    job = json.loads(text, object_hook=lambda fields: types.SimpleNamespace(**fields))
+    if hasattr(job, "exr"):
+        for path in job.exr:
+            np.save(pathlib.Path(path).with_suffix(".npy"), pixels(path))
+    else:
         render(job)
 
 

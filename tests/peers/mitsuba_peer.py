@@ -1,6 +1,11 @@
 """A scene for Mitsuba 3 and its pictures. The variant scalar_rgb runs everywhere; the faster llvm_ad_rgb needs a newer
 LLVM than Debian 12's 14 and 15 and ends the process without one."""
-import mitsuba as mi
+import sys
+
+try:
+    import mitsuba as mi
+except ImportError:
+    sys.exit("mitsuba_peer.py: mitsuba is missing (pip install mitsuba)")
 import numpy as np
 
 from scenes import ALL_ORDERS, HEIGHT, WIDTH

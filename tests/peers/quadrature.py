@@ -8,15 +8,19 @@ import math
 
 import numpy as np
 
-from scenes import HEIGHT, WIDTH, unit
+from scenes import HEIGHT, WIDTH
 
 STEPS, LIGHT_STEPS = 64, 24
 
 
+def unit(v):
+    return np.array(v) / np.linalg.norm(v)
+
+
 def camera_rays(camera, random):
     """One ray through a random point of every pixel."""
-    forward = np.array(unit(np.subtract(camera.target, camera.position)))
-    right = np.array(unit(np.cross(forward, (0, 1, 0))))
+    forward = unit(np.subtract(camera.target, camera.position))
+    right = unit(np.cross(forward, (0, 1, 0)))
     up = np.cross(right, forward)
     x, y = np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT))
     half = math.tan(math.radians(camera.vertical_fov) / 2)
@@ -50,7 +54,7 @@ def first_hit(boxes, origin, direction):
 def arriving(light, points):
     """Direction to the light, distance, irradiance on a plane that faces it, before anything in the way."""
     if light.kind == "sun":
-        return np.broadcast_to(-np.array(unit(light.place)), points.shape), np.inf, light.intensity
+        return np.broadcast_to(-unit(light.place), points.shape), np.inf, light.intensity
     offset = np.array(light.place) - points
     distance = np.linalg.norm(offset, axis=-1)
     return offset / distance[..., None], distance, light.intensity / distance ** 2

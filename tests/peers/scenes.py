@@ -1,6 +1,5 @@
 """The scenes every renderer is given, described once: Y up, metres, right-handed, candela and lux, linear colours."""
 import dataclasses
-import math
 
 WIDTH, HEIGHT = 160, 96
 ALL_ORDERS = 0  # as a number of orders: every one of them
@@ -47,7 +46,6 @@ class Scene:
     light: Light
     fog: Fog
     boxes: list = dataclasses.field(default_factory=list)
-    orders: tuple = (1, ALL_ORDERS)
 
 
 def room(color):
@@ -75,8 +73,3 @@ SCENES = [
     Scene("grid", Camera((1.2, 0.6, 4.2), (0, 0, 0), 33), Light("point", (1.6, 2.1, 1.2), 20),
           Fog((-1, -1, -1), (1, 1, 1), 3, (0.9, 0.9, 0.9), 0.3, RECIPE)),
 ]
-
-
-def unit(v):
-    length = math.sqrt(sum(c * c for c in v))
-    return tuple(c / length for c in v)

@@ -3,6 +3,7 @@ import json
 import pathlib
 import struct
 import subprocess
+import sys
 
 from scenes import HEIGHT, WIDTH
 
@@ -39,6 +40,11 @@ def write_glb(boxes, path):
     path.write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks)
 
 
+def run(command):
+    if subprocess.run(command, stdout=subprocess.DEVNULL).returncode:
+        sys.exit("compare.py: this failed: " + " ".join(command))
+
+
 def write_scene(scene, folder, program):
     """Writes NAME.json and what it names; returns its path."""
     folder = pathlib.Path(folder)
@@ -47,8 +53,7 @@ def write_scene(scene, folder, program):
     if fog.recipe:
         recipe = folder / f"{scene.name}_recipe.json"
         recipe.write_text(json.dumps(fog.recipe))
-        bake = [program, "bake", str(recipe), "-o", str(folder / f"{scene.name}.vdb"), "-q"]
-        subprocess.run(bake, check=True, stdout=subprocess.DEVNULL)
+        run([program, "bake", str(recipe), "-o", str(folder / f"{scene.name}.vdb"), "-q"])
         medium |= {"type": "vdb", "file": f"{scene.name}.vdb"}
     else:
         medium |= {"type": "homogeneous", "bounds": {"low": list(fog.low), "high": list(fog.high)}}
@@ -69,5 +74,5 @@ def render(scene_file, options, seed, path, program):
     """A box filter one pixel wide is the filter every renderer here has."""
     command = [program, "render", str(scene_file), "-o", str(path), "--frames", "1", "--aov", "none", "-q", "--seed",
                str(seed), "--set", "pixel.filter=box", "--set", "pixel.filter_radius=0.5", *options]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    run(command)
 
