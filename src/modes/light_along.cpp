@@ -40,6 +40,38 @@ Stretch reached(const Light& light, LightAlong& along, Stretch range) {
     return common(range, cone(light.outer_cone));
 }
 
+// The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
+// of a local light the cone around it.
+Stretch behind(const Box& box, const LightAlong& along) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    const dvec3 center = 0.5 * (dvec3(box.low) + dvec3(box.high));
+    const double radius = glm::length(dvec3(box.high) - center);
+    if (along.local()) {
+        const dvec3 apex(along.light->position), axis = center - apex;
+        const double away = glm::length(axis);
+        if (away <= radius * 1.0001) return {-endless, endless};
+        return inside_cone(apex, axis / away, std::asin(radius / away), along.origin, along.direction);
+    }
+    const dvec3 light = glm::normalize(dvec3(along.light->direction));
+    const auto across = [&](dvec3 v) { return v - glm::dot(v, light) * light; };
+    const dvec3 start = across(along.origin - center), way = across(along.direction);
+    const double a = glm::dot(way, way), b = glm::dot(start, way);
+    const double inside = b * b - a * (glm::dot(start, start) - radius * radius);
+    if (!(a > 0) || !(inside > 0)) return {};
+    return {(-b - std::sqrt(inside)) / a, (-b + std::sqrt(inside)) / a};
+}
+
+void find_veils(std::span<const Medium> media, LightAlong& along) {
+    for (const Medium& medium : media) {
+        if (medium.kind != DensityKind::bricks || medium.bricks->empty()) continue;
+        const Stretch stretch = behind(medium.bricks->bounds, along);
+        const vec3 voxel = medium.bricks->voxel_size;
+        if (stretch.empty()) continue;
+        along.veils.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
+        along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
+    }
+}
+
 // Cuts the lit stretches at the kinks and clips them to what the light reaches.
 void cut_lit(Stretch range, LightAlong& along) {
     std::sort(along.kinks.begin(), along.kinks.end());
@@ -56,8 +88,19 @@ void cut_lit(Stretch range, LightAlong& along) {
 }
 
 double LightAlong::distance_to(double low, double high) const {
+    if (!local()) return infinity;
     const double off = std::max({low - nearest, nearest - high, 0.0}) * glm::length(direction);
     return std::sqrt(off * off + distance * distance);
+}
+
+double LightAlong::veil_voxels(double low, double high) const {
+    double voxels = 0;
+    for (const Veil& veil : veils)
+        if (veil.stretch.low < high && veil.stretch.high > low) voxels = std::max(voxels, veil.voxels);
+    if (voxels == 0) return 0;
+    // Only movement across the light changes what stands before it.
+    if (local()) return voxels * std::min(distance / std::max(distance_to(low, high), 1e-12), 1.0);
+    return voxels * glm::length(glm::cross(direction, glm::normalize(dvec3(light->direction))));
 }
 
 ArrivingAt arriving_at(const LightAlong& along, double t) {
@@ -80,10 +123,10 @@ ArrivingAt arriving_at(const LightAlong& along, double t) {
 }
 
 void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,
-                LightAlong& along) {
+                std::span<const Medium> media, LightAlong& along) {
     along.light = &light, along.point = point;
     along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
-    along.kinks.clear(), along.lit.clear();
+    along.kinks.clear(), along.lit.clear(), along.veils.clear();
     Stretch range{0, ray.t_max};
     if (along.local()) {
         const dvec3 towards = dvec3(light.position) - along.origin;
@@ -92,6 +135,7 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
         range = reached(light, along, range);
     }
     if (range.empty()) return;
+    find_veils(media, along);
     if (slices && light.shadows) {
         const float end = std::nextafter(static_cast<float>(range.high), infinity);
         find_lit(*slices, {ray.origin, ray.direction, std::min(end, ray.t_max)}, point, along.lit);

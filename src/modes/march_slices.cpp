@@ -32,22 +32,23 @@ struct RayMarch {
     dvec3 at(double t) const { return dvec3(ray.origin) + t * dvec3(ray.direction); }
 };
 
-// Splits a stretch of one piece of fog until every part obeys the march's bounds. `distance(low, high)` is that to a
-// local light, infinite without one.
-template<class Distance, class Visit>
-void split(const RayMarch& on, size_t piece, double low, double high, const Distance& distance, const Visit& visit) {
+// Splits a stretch of one piece of fog until every part obeys the march's bounds; `along` is the light to be followed,
+// null for none.
+template<class Visit>
+void split(const RayMarch& on, size_t piece, double low, double high, const LightAlong* along, const Visit& visit) {
     const MarchSettings& settings = on.march.settings;
     const FogPieces& fog = on.scratch.fog;
     constexpr double closest = 1e-3; // metres: nearer to a light parts shrink no further
-    const double length = high - low, away = std::max(distance(low, high), closest);
+    const double length = high - low;
+    const double away = along ? std::max(along->distance_to(low, high), closest) : double(infinity);
     if (length > away && length > settings.near_light * away) {
-        split(on, piece, low, 0.5 * (low + high), distance, visit);
-        return split(on, piece, 0.5 * (low + high), high, distance, visit);
+        split(on, piece, low, 0.5 * (low + high), along, visit);
+        return split(on, piece, 0.5 * (low + high), high, along, visit);
     }
     const double depth = fog.depth_at(piece, high) - fog.depth_at(piece, low);
-    const double wanted =
-        std::max({depth / settings.step_depth, length * fog.pieces[piece].voxels / settings.step_voxels,
-                  length / on.longest, length / (settings.near_light * away)});
+    const double voxels = std::max(fog.pieces[piece].voxels, along ? along->veil_voxels(low, high) : 0.0);
+    const double wanted = std::max({depth / settings.step_depth, length * voxels / settings.step_voxels,
+                                    length / on.longest, length / (settings.near_light * away)});
     const double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));
     for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
 }
@@ -55,10 +56,9 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Dist
 // Emission and ambient light of all fog, lit or not.
 dvec3 glow(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
-    const auto nowhere = [](double, double) { return double(infinity); };
     dvec3 sum(0);
     for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
-        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nowhere, [&](double low, double high) {
+        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
             for (const Node node : gauss) {
                 const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
                 const double weight = 0.5 * (high - low) * node.weight * std::exp(-fog.depth_at(piece, t));
@@ -165,9 +165,6 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
         pending.position[i] = position, pending.light[i] = light;
         if (pending.count == 16) add_pending(on, light_index, pending, sum);
     };
-    const auto distance = [&](double low, double high) {
-        return along.local() ? along.distance_to(low, high) : double(infinity);
-    };
 
     size_t piece = 0;
     for (const Stretch& lit : along.lit) {
@@ -175,7 +172,7 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
         for (; piece < fog.pieces.size() && fog.pieces[piece].low < lit.high; ++piece) {
             const double low = std::max(fog.pieces[piece].low, lit.low);
             const double high = std::min(fog.pieces[piece].high, lit.high);
-            split(on, piece, low, high, distance, [&](double from, double to) {
+            split(on, piece, low, high, &along, [&](double from, double to) {
                 visit_nodes(along, from, to, [&](double t, double weight) { add(piece, t, weight); });
             });
             if (fog.pieces[piece].high >= lit.high) break;
@@ -215,7 +212,8 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
     dvec3 sum = glow(on);
     const std::vector<Light>& lights = march.snapshot.lights;
     for (size_t l = 0; l < lights.size(); ++l) {
-        find_light(lights[l], light_point(batch, ray_index, lights[l], l), ray, &march.slices, scratch.along);
+        find_light(lights[l], light_point(batch, ray_index, lights[l], l), ray, &march.slices, march.snapshot.media,
+                   scratch.along);
         const dvec3 light = light_along_ray(on, l);
         sum += light;
         if (!batch.per_light.empty()) batch.per_light[ray_index * lights.size() + l] += vec3(light);

@@ -22,7 +22,8 @@ Slice make_slice(const Ray& ray, const LightPoint& light) {
     slice.x = dvec3(ray.direction) / slice.per_metre;
     slice.x_max = std::min<double>(ray.t_max, farthest) * slice.per_metre;
     const dvec3 towards = light.far ? light.at : light.at - slice.origin;
-    const dvec3 across = towards - glm::dot(towards, slice.x) * slice.x;
+    dvec3 across = towards - glm::dot(towards, slice.x) * slice.x;
+    across -= glm::dot(across, slice.x) * slice.x; // what rounding left along the ray, felt when `across` is small
     const dvec3 size = glm::abs(slice.origin);
     const double hair = 1e-9 * glm::length(towards) + (light.far ? 0 : 1e-12 * std::max({size.x, size.y, size.z, 1.0}));
     slice.light_x = glm::dot(towards, slice.x), slice.light_y = glm::length(across);

@@ -251,6 +251,31 @@ TEST(MarchSlices, HalvingEveryBoundChangesNothing) {
     EXPECT_GT(more, 60); // it did halve
 }
 
+TEST(MarchSlices, ASmallDenseGridDrawsItsShadowInWideHaze) {
+    // Kilometres of haze under a striped grid of a metre: its shadow on the ray has to be found and resolved.
+    const auto stripes = [](vec3 p) { return 0.5f + 0.5f * std::sin(40 * p.x); };
+    std::vector<Medium> media{grid_fog(8, unit_grid(32, stripes)), even_fog(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
+    Light lamp = point_light({0.5f, 3, 0.5f}, 5);
+    for (const Light& light : {sun({0.2f, -1, 0}), lamp}) {
+        const Ray ray{{-850, -1, 0.5f}, {1, 0, 0}, 1700};
+        const Snapshot snapshot = scene_of(media, {light});
+        const auto integrand = [&](double t) {
+            const vec3 point(static_cast<float>(t - 850), -1, 0.5f);
+            const Arrival at = arrival(light, point);
+            return double(1e-3f) / four_pi * at.irradiance.x *
+                   std::exp(-double(1e-3f) * t - optical_depth(media, {point, at.to_light, at.distance}));
+        };
+        // What the grid takes away is what matters: it stands within two metres of the middle.
+        const std::vector<Medium> haze{media[1]};
+        const double with = integral(integrand, 0, 846, 2000) + integral(integrand, 846, 854, 4000) +
+                            integral(integrand, 854, 1700, 2000);
+        const double clear = marched(scene_of(haze, {light}), exact_settings(), ray).radiance.x;
+        const double found = marched(snapshot, exact_settings(), ray).radiance.x;
+        EXPECT_LT(with, clear * 0.9999);
+        EXPECT_NEAR((clear - found) / (clear - with), 1, 1e-2) << clear << ' ' << with << ' ' << found;
+    }
+}
+
 TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
     Mesh sheet = shade(50, 2);
     sheet.material = 0; // half transparent

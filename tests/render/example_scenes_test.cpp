@@ -64,6 +64,21 @@ TEST(ExampleScenes, MarchConvergesOnTheWindow) {
     EXPECT_LE(slope, -0.8);
 }
 
+TEST(ExampleScenes, HalvingTheBoundsOfTheReferenceChangesNothing) {
+    for (const char* name : {"window", "spotlight"}) {
+        const Scene scene = load_scene(source_dir / "scenes" / (std::string(name) + ".json"));
+        const Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
+        const Camera camera = camera_at(scene, scene.camera, 0);
+        Settings settings = settings_for(Quality::reference);
+        const auto reference = fog_light(snapshot, camera, settings);
+        settings.march.step_depth /= 2, settings.march.step_voxels /= 2, settings.march.step_share /= 2;
+        settings.march.near_light /= 2;
+        const auto halved = fog_light(snapshot, camera, settings);
+        EXPECT_LT(relative_error(reference, halved), 1e-4) << name;
+        EXPECT_GT(halved[0].steps, reference[0].steps) << name;
+    }
+}
+
 TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
     const Scratch scratch;
     FogRecipe recipe = read_recipe(source_dir / "volumes/lamp_dust.json");

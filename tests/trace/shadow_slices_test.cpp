@@ -101,6 +101,17 @@ TEST(ShadowSlices, LightOnTheLineOfTheRay) {
     expect_lit(stage.lit(level, lamp_at({-6, 1e-12f, 0})), {{0, 5}}, 1e-6);
 }
 
+TEST(ShadowSlices, LightAlmostOnTheLineOfTheRay) {
+    // A sill of height h across the ray at x = 1, seen under h/2 per metre: it shadows two metres.
+    for (const float h : {1e-2f, 1e-4f, 1e-6f, 1e-7f}) {
+        const Stage stage = stage_of({quad({1, -1, -1}, {0, 1, 0}, {0, 0, 2}), quad({1, 0, -1}, {0, h, 0}, {0, 0, 2})});
+        expect_lit(stage.lit(level, sun_from({1, h / 2, 0})), {{0, 3}, {5, 8}}, 1e-5);
+        expect_lit(stage.lit(level, sun_from({-1, h / 2, 0})), {{0, 5}, {7, 8}}, 1e-5);
+        // A lamp four metres on at height 2h looks over the sill as far as 4 metres before it.
+        expect_lit(stage.lit(level, lamp_at({5, 2 * h, 0})), {{0, 1}, {5, 8}}, 1e-5);
+    }
+}
+
 TEST(ShadowSlices, ASurfaceDoesNotShadowTheRayThatEndsOnIt) {
     const Stage stage = stage_of({quad({-10, 0, -10}, {20, 0, 0}, {0, 0, 20})});
     for (int i = 0; i < 1000; ++i) {
