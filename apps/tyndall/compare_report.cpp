@@ -101,6 +101,10 @@ std::string compare_text(const CompareResult& result) {
     text += formatted("  %-16s %12.6f   1 when equal\n", "SSIM", all.ssim);
     text += formatted("  %-16s %12.6f   0 when equal; %g pixels per degree\n", "FLIP", all.flip,
                       result.viewing.pixels_per_degree);
+    text += formatted("  %-16s %12.6f   as stored, clamped to 0..1\n", "LDR-FLIP", all.flip_ldr);
+    if (all.noise)
+        text += formatted("  %-16s %12.4g   %s: what of rmse is the picture's own noise\n", "standard error",
+                          *all.noise, percent(*all.noise, all.beauty.mean_reference).c_str());
     if (result.frames.size() > 1)
         text += formatted("  %-16s %12.4g   of the reference's mean\n", "flicker", result.flicker);
     if (all.mse)

@@ -10,8 +10,14 @@ const Errors* find_layer(const Comparison& comparison, const std::string& name) 
     return nullptr;
 }
 
-// The halves estimate the noise of the picture; they are no layers of their own.
-bool is_half(const std::string& name) { return name == "half_a" || name == "half_b"; }
+// Halves and variance estimate the noise of the picture; they are no layers of their own.
+bool is_statistic(const std::string& name) { return name == "half_a" || name == "half_b" || name == "Variance"; }
+
+double root_mean(const Image<vec3>& squares) {
+    double sum = 0;
+    for (const vec3 value : squares.pixels) sum += (static_cast<double>(value.x) + value.y + value.z) / 3;
+    return std::sqrt(sum / static_cast<double>(squares.pixels.size()));
+}
 
 void add_halves(const Picture& test, const Picture& reference, Comparison& result) {
     const Image<vec3>*r1 = reference.layer("half_a"), *r2 = reference.layer("half_b");
@@ -67,12 +73,14 @@ Comparison compare(const Picture& test, const Picture& reference, const Viewing&
     Comparison result;
     result.beauty = measure_errors(test.beauty, reference.beauty);
     for (const auto& [name, image] : reference.layers)
-        if (const Image<vec3>* own = test.layer(name); own && !is_half(name))
+        if (const Image<vec3>* own = test.layer(name); own && !is_statistic(name))
             result.layers.emplace_back(name, measure_errors(*own, image));
     result.ssim = ssim(test.beauty, reference.beauty, viewing.mean_luminance);
     Image<float> map = flip_hdr(test.beauty, reference.beauty, viewing.exposures, viewing.pixels_per_degree);
     result.flip = flip_mean(map);
     if (flip_map) *flip_map = std::move(map);
+    result.flip_ldr = flip_mean(flip_ldr(test.beauty, reference.beauty, viewing.pixels_per_degree));
+    if (const Image<vec3>* variance = test.layer("Variance")) result.noise = root_mean(*variance);
     add_halves(test, reference, result);
     return result;
 }
@@ -80,12 +88,17 @@ Comparison compare(const Picture& test, const Picture& reference, const Viewing&
 Comparison pooled(std::span<const Comparison> frames) {
     Comparison all;
     std::vector<Errors> errors;
+    double noise = 0;
+    const bool noisy = std::ranges::all_of(frames, [](const Comparison& frame) { return frame.noise.has_value(); });
     for (const Comparison& frame : frames) {
         errors.push_back(frame.beauty);
+        noise += std::pow(frame.noise.value_or(0), 2) / static_cast<double>(frames.size());
+        all.flip_ldr += frame.flip_ldr / static_cast<double>(frames.size());
         all.ssim += frame.ssim / static_cast<double>(frames.size());
         all.flip += frame.flip / static_cast<double>(frames.size());
     }
     all.beauty = pooled(errors);
+    if (noisy) all.noise = std::sqrt(noise);
     for (const auto& [name, first] : frames[0].layers) {
         errors.clear();
         for (const Comparison& frame : frames)

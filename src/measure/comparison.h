@@ -24,7 +24,9 @@ Viewing covering(std::span<const Viewing> frames);
 struct Comparison {
     Errors beauty;
     std::vector<std::pair<std::string, Errors>> layers; // those both files have, by name
-    double ssim = 0, flip = 0;
+    double ssim = 0, flip = 0, flip_ldr = 0; // flip: over all exposures; flip_ldr: as stored, clamped to 0..1
+    // Root mean square of the picture's own standard errors, when it has a layer Variance: what of rmse is noise.
+    std::optional<double> noise;
     // When the reference has the layers half_a and half_b: mean squared error without the reference's noise, and when
     // the picture has them too, the square of its bias. In squared units of the picture.
     std::optional<Estimate> mse, bias_squared;

@@ -5,27 +5,10 @@
 
 namespace tyndall {
 namespace {
-void cast_shadows(const Occluders* occluders, std::span<const Connection> connections, float* visibility) {
-    Occluders::ShadowRays rays{};
-    bool any = false;
-    for (size_t i = 0; i < connections.size(); ++i) {
-        const Connection& c = connections[i];
-        visibility[i] = 1;
-        rays.active[i] = c.shadows ? -1 : 0;
-        any |= c.shadows;
-        const float side = glm::dot(c.face_normal, c.shadow) < 0 ? -1.0f : 1.0f;
-        const vec3 origin = c.point + c.face_normal * (side * shadow_offset(c.point));
-        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
-        rays.dx[i] = c.shadow.x, rays.dy[i] = c.shadow.y, rays.dz[i] = c.shadow.z;
-        rays.t_max[i] = c.shadow_length;
-    }
-    if (any && occluders && !occluders->empty()) occluders->transmission(rays, visibility);
-}
-
 void connect_packet(const PathTracer& tracer, std::span<Connection> connections, const RayBatch& batch,
                     std::span<Scatter> results) {
-    alignas(64) float visibility[16];
-    cast_shadows(tracer.snapshot.occluders.get(), connections, visibility);
+    float visibility[16];
+    find_visibility(tracer, connections, visibility);
     const size_t lights = batch.per_light.empty() ? 0 : tracer.snapshot.lights.size();
     for (size_t i = 0; i < connections.size(); ++i) {
         Connection& c = connections[i];
@@ -39,6 +22,26 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
         if (lights && c.light_index >= 0) batch.per_light[c.lane * lights + c.light_index] += arriving;
     }
 }
+}
+
+void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility) {
+    const Occluders* occluders = tracer.snapshot.occluders.get();
+    alignas(64) float shares[16];
+    Occluders::ShadowRays rays{};
+    bool any = false;
+    for (size_t i = 0; i < connections.size(); ++i) {
+        const Connection& c = connections[i];
+        shares[i] = 1;
+        rays.active[i] = c.shadows && max_component(c.light) > 0 ? -1 : 0;
+        any |= rays.active[i] != 0;
+        const float side = glm::dot(c.face_normal, c.shadow) < 0 ? -1.0f : 1.0f;
+        const vec3 origin = c.point + c.face_normal * (side * shadow_offset(c.point));
+        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
+        rays.dx[i] = c.shadow.x, rays.dy[i] = c.shadow.y, rays.dz[i] = c.shadow.z;
+        rays.t_max[i] = c.shadow_length;
+    }
+    if (any && occluders && !occluders->empty()) occluders->transmission(rays, shares);
+    std::copy_n(shares, connections.size(), visibility);
 }
 
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, vec3 to_light, vec2 u) {

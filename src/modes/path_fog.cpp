@@ -12,9 +12,9 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
     }
 }
 
-// A guess at the chance per metre that delta tracking collides at the end of the stretch. Weights may be built from any
-// guess: they only have to be the same from both sides.
-float guessed_collision_density(const Snapshot& snapshot, const Line& line, float distance, const FogPoint& fog) {
+// A guess at the share of light that passes up to a distance. Weights may be built from any guess: they only have to
+// be the same from both sides.
+float guessed_transmittance(const Snapshot& snapshot, const Line& line, float distance) {
     Ray ray = line.rest;
     ray.t_max = distance;
     double depth = 0;
@@ -26,50 +26,101 @@ float guessed_collision_density(const Snapshot& snapshot, const Line& line, floa
         const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
         depth += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
     }
-    return fog.total * static_cast<float>(std::exp(-depth));
+    return static_cast<float>(std::exp(-depth));
 }
 
-// Light scattered at a distance picked for the lights. Returns the light that passes the stretch.
-float gather_on_the_way(const Walk& walk, Line& line) {
+// How many distances a line is asked at. The eye's lines are many times worth their shadow rays: beams are narrow.
+int candidate_count(const Walk& walk) { return walk.order == 0 ? 16 : 1; }
+
+// A distance along the stretch where a light may arrive.
+struct Candidate {
+    float distance = 0, brightness = 0; // brightness: of `scattered`, with a guess at what dims it; 0 = rejected
+    vec3 scattered{0};                  // over its chance, weighted against collisions; without what is in the way
+};
+
+// Spreads the candidates over lights and distances and asks for all shadows at once.
+void find_candidates(const Walk& walk, const Line& line, std::span<Candidate> candidates,
+                     std::span<Connection> connections) {
     const Snapshot& snapshot = walk.snapshot;
+    const std::vector<LineLight>& lights = walk.scratch.lights;
+    const vec2 u = line.numbers(use_distance), soft = line.numbers(use_soft);
+    const float count = static_cast<float>(candidates.size());
+    size_t light = 0;
+    float passed = 0; // chances of the lights before
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        const float wanted = (static_cast<float>(i) + u.x) / count;
+        while (light + 1 < lights.size() && passed + lights[light].chance <= wanted) passed += lights[light++].chance;
+        if (!(lights[light].chance > 0)) continue;
+        const auto turned = [&](float x) { // by the golden ratio from candidate to candidate
+            const float sum = x + static_cast<float>(i) * 0.618034f;
+            return sum - std::floor(sum);
+        };
+        candidates[i].distance = lights[light].distance(turned(u.y));
+        const vec3 point = line.rest.at(candidates[i].distance);
+        const Arrival arriving = arrival(snapshot.lights[light], point);
+        connections[i] = connection_to_light(walk.tracer, point, static_cast<int>(light), arriving.to_light,
+                                             {turned(soft.x), soft.y});
+        connections[i].light = arriving.irradiance * snapshot.lights[light].volume_scale;
+    }
+    float visibility[16];
+    find_visibility(walk.tracer, connections, visibility);
+    for (size_t i = 0; i < candidates.size(); ++i)
+        connections[i].light *= visibility[i], connections[i].shadows = false;
+}
+
+void weigh(const Walk& walk, const Line& line, const Connection& connection, Candidate& candidate, int& lookups) {
+    if (!(max_component(connection.light) > 0)) return;
+    const Snapshot& snapshot = walk.snapshot;
+    FogPoint& fog = walk.scratch.fog;
+    look_at_fog(snapshot, connection.point, fog, lookups);
+    if (!(fog.total > 0)) return;
+    const LineLight& along = walk.scratch.lights[connection.light_index];
+    const float guess = guessed_transmittance(snapshot, line, candidate.distance);
+    const float chance = static_cast<float>(candidate_count(walk)) * along.chance * along.density(candidate.distance),
+                other = fog.total * guess * pick_chance(snapshot, fog.position, connection.light_index);
+    if (!(chance > 0)) return;
+    const float cosine = glm::dot(connection.to_light, line.rest.direction);
+    candidate.scattered = fog.scattered(snapshot, cosine) * (fog.total / (chance + other)) * connection.light;
+    candidate.brightness = luminance(candidate.scattered) * guess;
+}
+
+// Light scattered at a distance picked for the lights: of several candidates one goes on, in proportion to what it
+// would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
+float gather_on_the_way(const Walk& walk, Line& line) {
     int& lookups = walk.results[line.walker.lane].steps;
     const auto passing = [&](Interval range) {
         float share = 1;
-        for (const Medium& medium : snapshot.media)
+        for (const Medium& medium : walk.snapshot.media)
             if (share > 0) share *= ratio_transmittance(medium, line.rest, range, line.random, lookups);
         return share;
     };
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     walk.scratch.lights.clear();
-    if (walk.turns) lights_on_line(snapshot, stretch, walk.scratch.lights);
-    const std::vector<LineLight>& lights = walk.scratch.lights;
+    if (walk.turns) lights_on_line(walk.snapshot, stretch, walk.scratch.lights);
+    if (walk.scratch.lights.empty() || !(line.through > 0)) return passing({0, line.end});
 
-    const vec2 u = line.numbers(use_distance);
-    size_t picked = 0;
-    for (float left = u.x; picked < lights.size() && (left -= lights[picked].chance) >= 0;) ++picked;
-    while (picked > 0 && (picked == lights.size() || !(lights[picked].chance > 0))) --picked;
-    if (lights.empty() || !(lights[picked].chance > 0) || !(line.through > 0)) return passing({0, line.end});
-
-    const LineLight& along = lights[picked];
-    const float t = along.distance(u.y), before = passing({0, t});
-    FogPoint& fog = walk.scratch.fog;
-    look_at_fog(snapshot, line.rest.at(t), fog, lookups);
-    if (before > 0 && fog.total > 0) {
-        const Light& light = snapshot.lights[picked];
-        const Arrival arriving = arrival(light, fog.position);
-        const float chance = along.chance * along.density(t),
-                    other = guessed_collision_density(snapshot, line, t, fog) *
-                            pick_chance(snapshot, fog.position, static_cast<int>(picked));
-        const float cosine = glm::dot(arriving.to_light, line.rest.direction);
-        const vec3 scattered = fog.scattered(snapshot, cosine) * fog.total * arriving.irradiance * light.volume_scale;
-        if (chance > 0)
-            queue(walk, line,
-                  connection_to_light(walk.tracer, fog.position, static_cast<int>(picked), arriving.to_light,
-                                      line.numbers(use_soft)),
-                  scattered * (line.through * before / (chance + other)), walk.order == 0 || line.walker.in_fog);
+    Candidate candidates[16];
+    Connection connections[16];
+    const size_t count = static_cast<size_t>(candidate_count(walk));
+    find_candidates(walk, line, {candidates, count}, {connections, count});
+    float total = 0;
+    for (size_t i = 0; i < count; ++i) {
+        weigh(walk, line, connections[i], candidates[i], lookups);
+        total += candidates[i].brightness;
     }
-    return before > 0 ? before * passing({t, line.end}) : 0;
+    if (!(total > 0)) return passing({0, line.end});
+    size_t picked = 0;
+    for (float left = line.random.next() * total; picked + 1 < count; ++picked)
+        if ((left -= candidates[picked].brightness) < 0) break;
+    while (!(candidates[picked].brightness > 0)) --picked;
+
+    const Candidate& candidate = candidates[picked];
+    const float before = passing({0, candidate.distance});
+    if (!(before > 0)) return 0;
+    queue(walk, line, connections[picked], candidate.scattered * (line.through * before * total / candidate.brightness),
+          walk.order == 0 || line.walker.in_fog);
+    return before * passing({candidate.distance, line.end});
 }
 
 // Light that reaches the point of a collision, straight from lights and glowing surfaces.
@@ -79,8 +130,8 @@ void gather_at_collision(const Walk& walk, Line& line, float distance, const Fog
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.chance > 0) {
         const LineLight& along = walk.scratch.lights[pick.light];
-        const float mine = guessed_collision_density(snapshot, line, distance, fog) * pick.chance,
-                    other = along.chance * along.density(distance);
+        const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.chance,
+                    other = static_cast<float>(candidate_count(walk)) * along.chance * along.density(distance);
         const vec3 scattered = fog.scattered(snapshot, glm::dot(pick.to_light, line.rest.direction)) * pick.irradiance;
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
         queue(walk, line,
