@@ -53,6 +53,18 @@ void settle_noise(RenderJob& job, const Globals& globals) {
         say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
 }
 
+// Settings of a technique that is not asked for. Surfaces that techniques share are lit as march says.
+void say_idle_settings(const std::vector<std::string>& settings, const RenderJob& job, const Globals& globals) {
+    if (globals.quiet) return;
+    for (const std::string& setting : settings) {
+        const std::string owner = setting.substr(0, setting.find('.'));
+        const bool shared = owner == "march" && find_mode(job.mode).surfaces == Surfaces::shared;
+        const auto owns = [&](const Mode& mode) { return mode.name == owner; };
+        if (owner != job.mode && !shared && std::ranges::any_of(modes(), owns))
+            say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
+    }
+}
+
 void say_summary(const RenderReport& report, const RenderJob& job) {
     int kept = 0;
     for (const FrameReport& frame : report.frames) kept += frame.kept;
@@ -85,6 +97,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     places.check(job.output, job.frames);
     find_camera(scene, job.camera);
     check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
+    say_idle_settings(texts.settings, job, globals);
     settle_noise(job, globals);
     const std::vector<Limit> limits = limits_of(scene, job);
     say_limits(scene, limits, globals);

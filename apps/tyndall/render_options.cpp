@@ -38,6 +38,9 @@ std::string chosen_isa(const std::string& text) {
     return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
 }
 
+// A mode whose only error is noise gets so many times the quality's samples.
+constexpr int noisy_factor = 16;
+
 // --orders, for modes that follow light further than once.
 void read_orders(const std::string& text, RenderJob& job) {
     const int orders = static_cast<int>(integer_option("--orders", text, 1, all_orders));
@@ -80,7 +83,10 @@ void add_how(CLI::App& command, RenderOptions& texts) {
         command.add_option(name, text, help)->type_name(type)->group("Quality");
     };
     option("--quality", texts.quality, "draft, preview (default), final or reference", "NAME");
-    option("--samples", texts.samples, "camera rays per pixel, instead of the quality's", "N");
+    option("--samples", texts.samples,
+           "camera rays per pixel, instead of the quality's 1, 4, 16 or 64 (16 times\n"
+           "as many for path)",
+           "N");
     option("--target-error", texts.target_error,
            "go on until noise is below this share of the picture's mean, 0.01 for\n"
            "instance; for modes with no other error (path); exit code 1 when 65536\n"
@@ -142,6 +148,7 @@ RenderJob make_job(const RenderOptions& texts) {
     job.mode = find_mode(texts.mode).name;
     job.quality = quality_named(texts.quality);
     job.settings = settings_for(job.quality);
+    if (error_is_noise(find_mode(job.mode)) && texts.target_error.empty()) job.settings.pixel.samples *= noisy_factor;
     if (!texts.samples.empty())
         job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
     for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);

@@ -19,6 +19,8 @@ std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyCo
     for (const CheckGroup& group : groups) {
         if (control.cancel && *control.cancel) fail(ExitCode::internal, "verify", "cancelled");
         checks.topic = group.topic;
+        if (control.progress)
+            checks.progress = [&, done](double part) { control.progress((done + part * group.share) / total); };
         group.run(checks);
         if (control.progress) control.progress((done += group.share) / total);
     }

@@ -8,6 +8,7 @@ namespace tyndall {
 struct Checks {
     std::vector<Check> list;
     std::string topic;
+    std::function<void(double)> progress; // 0..1 of the current group; may be empty
 
     void add(std::string name, double measured, double expected, double tolerance, std::string basis);
 };
@@ -21,7 +22,7 @@ std::vector<CheckGroup> closed_form_checks();
 std::vector<CheckGroup> transport_checks();
 std::vector<CheckGroup> invariance_checks();
 
-// Runs groups one after the other with progress from `start` to 1.
+// Runs groups one after the other.
 std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyControl& control);
 
 // --- scenes ------------------------------------------------------------------------------------------------------

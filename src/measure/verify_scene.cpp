@@ -22,6 +22,7 @@ struct Shot {
     int batches = 1;
     ivec2 crop_low{0}, crop_high{0};
     std::string mode = "march";
+    std::function<void(double)> progress{};
 };
 
 Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
@@ -34,6 +35,7 @@ Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
     view.seed = shot.proof.seed, view.frame = shot.proof.frame;
     FrameOptions options;
     options.per_light = shot.per_light, options.cancel = shot.control.cancel;
+    options.progress = shot.progress;
     FrameStats stats;
     return render_frame(find_mode(shot.mode), view, snapshot, shot.settings, options, stats);
 }
@@ -132,10 +134,16 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     // Soft lights are asked for one point a sample: what is left of their penumbrae's noise is measured too.
     const bool soft = std::ranges::any_of(snapshot.lights, is_soft);
     exact.settings.pixel.samples = soft ? 16 : 1, exact.batches = soft ? 4 : 1;
+    const auto part = [&](double from, double to) {
+        return [&checks, from, to](double done) {
+            if (checks.progress) checks.progress(from + (to - from) * done);
+        };
+    };
+    exact.progress = part(0, 0.4);
     const Layers reference = render(exact, lit, snapshot);
 
     Shot noisy = exact;
-    noisy.mode = "path", noisy.settings.path.orders = 1;
+    noisy.mode = "path", noisy.settings.path.orders = 1, noisy.progress = part(0.4, 1);
     noisy.settings.pixel.samples = proof.samples, noisy.batches = 64;
     Layers layers = render(noisy, lit, snapshot);
     for (size_t i = 0; i < reference.variance.pixels.size(); ++i)

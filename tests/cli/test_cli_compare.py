@@ -9,7 +9,7 @@ from program import ProgramTest, run, scene
 
 NAN, INF = math.nan, math.inf
 METRICS = ["E", "rmse_rel", "bias_rel", "mae_rel", "p95_rel", "p99_9_rel", "max_rel", "rmse", "bias", "mae", "p95",
-           "p99_9", "max", "rel_mse", "rel_mse_trimmed", "ssim_loss", "flip", "ssim"]
+           "p99_9", "max", "rel_mse", "rel_mse_trimmed", "ssim_loss", "flip", "flip_ldr", "ssim"]
 
 
 def exr(width, height, channels, display=None, low=(0, 0)):

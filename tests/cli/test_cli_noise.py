@@ -52,6 +52,18 @@ class Layers(ProgramTest):
         self.assertNotIn("tyndall:samples", self.report()[1])
         self.assertEqual(self.render("--aov", "variance", "-q").stderr, "")
 
+    def test_path_takes_more_samples_by_itself(self):
+        self.render("--mode", "path", "--quality", "draft", "--aov", "none")
+        self.assertIn("pixel.samples=16", self.report()[1]["tyndall:settings"])
+        self.render("--mode", "path", "--quality", "draft", "--aov", "none", "--samples", "2")
+        self.assertIn("pixel.samples=2", self.report()[1]["tyndall:settings"])
+
+    def test_settings_of_another_mode_are_said_to_be_idle(self):
+        self.assertIn("path.orders=3 changes nothing", self.render("--set", "path.orders=3", "--samples", "1").stderr)
+        self.assertIn("march.light=off changes nothing",
+                      self.render("--mode", "path", "--samples", "1", "--set", "march.light=off").stderr)
+        self.assertNotIn("changes nothing", self.render("--set", "march.light=off", "--samples", "1").stderr)
+
     def test_full_floats(self):
         self.render("--aov", "none", "--samples", "1")
         half = self.report()[0]["R"]["maximum"]

@@ -71,6 +71,27 @@ TEST(Comparison, HalvesOfTheReferenceAndOfBoth) {
     EXPECT_TRUE(c.layers.empty());
 }
 
+TEST(Comparison, NoiseOfThePictureFromItsVariance) {
+    const Picture reference = picture(constant(vec3(2), size));
+    Picture test = picture(constant(vec3(5), size));
+    const Viewing viewing = viewing_of(reference.beauty);
+    EXPECT_FALSE(compare(test, reference, viewing).noise);
+    test.layers["Variance"] = constant(vec3(4, 9, 14), size);
+    const Comparison c = compare(test, reference, viewing);
+    EXPECT_DOUBLE_EQ(*c.noise, 3);
+    EXPECT_TRUE(c.layers.empty());
+    test.layers["Variance"] = constant(vec3(0), size);
+    const Comparison frames[] = {c, compare(test, reference, viewing)};
+    EXPECT_DOUBLE_EQ(*pooled(frames).noise, std::sqrt(4.5));
+}
+
+TEST(Comparison, LdrFlipClampsAsADisplayDoes) {
+    const Picture reference = picture(constant(vec3(2), size)), test = picture(constant(vec3(5), size));
+    EXPECT_EQ(compare(test, reference, viewing_of(reference.beauty)).flip_ldr, 0);
+    const Picture dark = picture(constant(vec3(0.2f), size));
+    EXPECT_GT(compare(dark, reference, viewing_of(reference.beauty)).flip_ldr, 0.1);
+}
+
 TEST(Comparison, SequenceIsLookedAtInOneWay) {
     const Image<vec3> dark = shaft(size, 0, 0), bright = scaled(dark, 8), black(size, vec3(0));
     const Viewing frames[] = {viewing_of(dark), viewing_of(black), viewing_of(bright)};

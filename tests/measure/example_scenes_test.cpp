@@ -1,0 +1,28 @@
+// The proof of a scene, on the scenes that come with the program.
+#include "measure/verify.h"
+
+#include "scene/scene.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+void expect_proof(const std::string& name, const SceneProof& proof) {
+    const Scene scene = load_scene(std::string(TYNDALL_SOURCE_DIR) + "/scenes/" + name + ".json");
+    for (const Check& check : verify_scene(scene, proof, {}))
+        EXPECT_TRUE(check.holds()) << name << ", " << check.topic << ": " << check.name << " is " << check.measured;
+}
+
+class ExampleScene : public testing::TestWithParam<const char*> {};
+TEST_P(ExampleScene, HoldsUnderProof) {
+    SceneProof proof;
+    proof.size = {48, 27}, proof.samples = 64;
+    expect_proof(GetParam(), proof);
+}
+INSTANTIATE_TEST_SUITE_P(Verify, ExampleScene, testing::Values("window", "spotlight", "cloud"));
+
+class EveryScene : public testing::TestWithParam<const char*> {};
+TEST_P(EveryScene, NightlyHoldsUnderProof) { expect_proof(GetParam(), {}); }
+INSTANTIATE_TEST_SUITE_P(Verify, EveryScene, testing::Values("window", "spotlight", "pillars", "lantern", "cloud"));
+}
+}
