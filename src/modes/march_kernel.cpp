@@ -134,7 +134,21 @@ Arriving arriving(const Light& light, const ConeFalloff& cone, const Points& poi
     return result;
 }
 
-// Share of the light that surfaces let through, by one packet of shadow rays; soft lights get a random point each.
+// Turns the shadow rays to random points of a soft light, another set for each `k`.
+void aim_at_points(const Light& light, const RayBatch& batch, size_t step, size_t light_index, uint32_t k,
+                   Occluders::ShadowRays& rays) {
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!rays.active[lane]) continue;
+        uint32_t key = hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
+        if (k > 0) key = hash(key, k);
+        const vec2 u(to_unit(hash(key, 0u)), to_unit(hash(key, 1u)));
+        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
+        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
+        rays.t_max[lane] = ray.t_max;
+    }
+}
+
+// Share of the light that surfaces let through, by packets of shadow rays: one, or one for each point of a soft light.
 Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
                      const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
     const Occluders* occluders = march.snapshot.occluders.get();
@@ -145,20 +159,22 @@ Floats visible_share(const March& march, const Light& light, const Points& point
     store(light_at.distance * 0.9999f, rays.t_max);
     alignas(64) float is_wanted[16], share[16];
     store(select(wanted, 1.0f, 0.0f), is_wanted);
-    const bool soft = is_soft(light);
     for (size_t lane = 0; lane < 16; ++lane) {
         rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
         rays.t_min[lane] = 0;
         share[lane] = 0;
-        if (!soft || !rays.active[lane]) continue;
-        const uint32_t key = hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
-        const vec2 u(to_unit(hash(key, 0u)), to_unit(hash(key, 1u)));
-        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
-        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
-        rays.t_max[lane] = ray.t_max;
     }
-    occluders->transmission(rays, share);
-    return load(share);
+    if (!is_soft(light)) {
+        occluders->transmission(rays, share);
+        return load(share);
+    }
+    Floats total = 0.0f;
+    for (int k = 0; k < march.settings.light_points; ++k) {
+        aim_at_points(light, batch, step, light_index, static_cast<uint32_t>(k), rays);
+        occluders->transmission(rays, share);
+        total = total + load(share);
+    }
+    return total * (1 / static_cast<float>(march.settings.light_points));
 }
 
 // Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.

@@ -16,10 +16,24 @@ struct Node {
 };
 constexpr std::array<Node, 2> gauss{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
 
+// A stretch from which a share of a light's points is seen.
+struct LitPart {
+    Stretch stretch;
+    double share = 1;
+};
+
+// Where one more or one less of them is seen.
+struct LitEnd {
+    double t = 0;
+    int change = 0;
+};
+
 // Memory that a thread keeps from ray to ray.
 struct Scratch {
     FogPieces fog;
     LightAlong along;
+    std::vector<LitPart> lit; // by the current light
+    std::vector<LitEnd> ends;
 };
 
 struct RayMarch {
@@ -167,13 +181,14 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     };
 
     size_t piece = 0;
-    for (const Stretch& lit : along.lit) {
+    for (const auto& [lit, share] : on.scratch.lit) {
         while (piece < fog.pieces.size() && fog.pieces[piece].high <= lit.low) ++piece;
         for (; piece < fog.pieces.size() && fog.pieces[piece].low < lit.high; ++piece) {
             const double low = std::max(fog.pieces[piece].low, lit.low);
             const double high = std::min(fog.pieces[piece].high, lit.high);
             split(on, piece, low, high, &along, [&](double from, double to) {
-                visit_nodes(along, from, to, [&](double t, double weight) { add(piece, t, weight); });
+                visit_nodes(along, from, to,
+                            [&, part = share](double t, double weight) { add(piece, t, part * weight); });
             });
             if (fog.pieces[piece].high >= lit.high) break;
         }
@@ -182,20 +197,57 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     return sum * dvec3(along.light->intensity * along.light->volume_scale);
 }
 
-// The point of a light that casts the shadows of one ray.
-LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index) {
+// Point k of `count` points of a light that cast the shadows of one ray.
+LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index, uint32_t k,
+                       uint32_t count) {
     if (!is_soft(light)) return center_of(light);
     const uint32_t index = static_cast<uint32_t>(light_index);
     Sample2 u, v;
     if (batch.places.empty()) {
-        const uint32_t key = hash(batch.ids[ray], use_light_point, index);
+        const uint32_t key =
+            k ? hash(batch.ids[ray], use_light_point, index, k) : hash(batch.ids[ray], use_light_point, index);
         u = {to_unit(hash(key, 0u)), to_unit(hash(key, 1u))}, v = {to_unit(hash(key, 2u)), 0};
     } else {
         const SamplePlace place = batch.places[ray];
-        u = sample2(place.index, hash(place.sequence, use_light_point, index, 0u));
-        v = sample2(place.index, hash(place.sequence, use_light_point, index, 1u));
+        u = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 0u));
+        v = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 1u));
     }
     return point_on(light, batch.rays[ray], {u.x, u.y, v.x});
+}
+
+// Light of one light along the ray: each point's lit stretches, taken together where shares of them can be. Shadow rays
+// through surfaces with alpha need a point each.
+dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
+    const March& march = on.march;
+    const Light& light = march.snapshot.lights[light_index];
+    const Occluders* occluders = march.snapshot.occluders.get();
+    const bool apart = light.shadows && occluders && occluders->has_alpha();
+    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(march.settings.light_points) : 1;
+    std::vector<LitPart>& lit = on.scratch.lit;
+    std::vector<LitEnd>& ends = on.scratch.ends;
+    dvec3 sum(0);
+    ends.clear();
+    for (uint32_t k = 0; k < count; ++k) {
+        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &march.slices,
+                   march.snapshot.media, on.scratch.along);
+        lit.clear();
+        for (const Stretch& stretch : on.scratch.along.lit) {
+            lit.push_back({stretch, 1.0 / count});
+            ends.push_back({stretch.low, 1}), ends.push_back({stretch.high, -1});
+        }
+        if (apart || count == 1) sum += light_along_ray(on, light_index);
+    }
+    if (apart || count == 1) return sum;
+
+    std::sort(ends.begin(), ends.end(), [](const LitEnd& a, const LitEnd& b) { return a.t < b.t; });
+    lit.clear();
+    int seen = 0;
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        seen += ends[i].change;
+        if (seen > 0 && ends[i].t < ends[i + 1].t)
+            lit.push_back({{ends[i].t, ends[i + 1].t}, static_cast<double>(seen) / count});
+    }
+    return light_along_ray(on, light_index);
 }
 
 void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scatter& result) {
@@ -212,9 +264,7 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
     dvec3 sum = glow(on);
     const std::vector<Light>& lights = march.snapshot.lights;
     for (size_t l = 0; l < lights.size(); ++l) {
-        find_light(lights[l], light_point(batch, ray_index, lights[l], l), ray, &march.slices, march.snapshot.media,
-                   scratch.along);
-        const dvec3 light = light_along_ray(on, l);
+        const dvec3 light = light_from(on, batch, ray_index, l);
         sum += light;
         if (!batch.per_light.empty()) batch.per_light[ray_index * lights.size() + l] += vec3(light);
     }

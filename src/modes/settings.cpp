@@ -90,6 +90,10 @@ std::vector<SettingRow> make_rows() {
                    FIELD(march.light)),
         number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",
                    FIELD(march.light_resolution)),
+        number_row("march.light_points", "", 1, 256,
+                   "points of a soft light that shadows are asked for, by each ray (slices) or step (rays) and by each "
+                   "sample of a surface",
+                   FIELD(march.light_points)),
         choice_row("march.phase", switches, "directional scattering; off = the same in all directions",
                    FIELD(march.phase)),
         choice_row("march.heterogeneity", switches, "density detail; off = every grid at its mean density",

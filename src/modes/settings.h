@@ -31,6 +31,7 @@ struct MarchSettings {
     Visibility visibility = Visibility::rays;
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids
+    int light_points = 1;      // of a soft light, asked for shadows at once
     bool phase = true;         // off: isotropic
     bool heterogeneity = true; // off: bricks at their mean density
     bool emission = true;

@@ -114,7 +114,8 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
     ScatterFunction scatter = mode.prepare(view, snapshot, settings, nullptr);
-    FrameTask task{{view, snapshot, std::move(scatter), mode.surfaces, {}}, {}, std::move(layers)};
+    FrameTask task{
+        {view, snapshot, std::move(scatter), mode.surfaces, settings.march.light_points, {}}, {}, std::move(layers)};
     if (mode.surfaces == Surfaces::shared && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(

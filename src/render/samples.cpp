@@ -41,16 +41,20 @@ void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<Pixel
 void add_surfaces(const FrameTracer& tracer, int layer, const Stretches& s, const SurfacesMet& met,
                   std::span<PixelSample> samples, std::span<vec3> per_light) {
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
-    vec2 u[16] = {};
+    const size_t points = static_cast<size_t>(tracer.light_points);
+    std::vector<vec2> u(met.count * points);
     vec3 radiance[16];
     const bool soft = std::ranges::any_of(tracer.snapshot.lights, is_soft);
     for (size_t k = 0; soft && k < met.count; ++k) {
         const Path& path = s.path[met.which[k]];
-        const Sample2 random = sample2(path.place.index, hash(path.seed, layer, use_soft_light));
-        u[k] = {random.x, random.y};
+        for (size_t p = 0; p < points; ++p) {
+            const uint32_t index = path.place.index * static_cast<uint32_t>(points) + static_cast<uint32_t>(p);
+            const Sample2 random = sample2(index, hash(path.seed, layer, use_soft_light));
+            u[k * points + p] = {random.x, random.y};
+        }
     }
     std::vector<vec3> light_parts(lights * met.count, vec3(0));
-    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, {u, met.count}, {radiance, met.count},
+    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, u, {radiance, met.count},
                    lights ? &light_parts : nullptr);
 
     for (size_t k = 0; k < met.count; ++k) {

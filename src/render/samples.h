@@ -24,6 +24,7 @@ struct FrameTracer {
     const Snapshot& snapshot;
     ScatterFunction scatter;
     Surfaces surfaces;                    // shared or own: who shades them
+    int light_points;                     // of a soft light, for shared surfaces
     std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
 };
 

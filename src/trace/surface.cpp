@@ -28,13 +28,14 @@ bool gather_light(const Light& light, std::span<const SurfacePoint> points, Pack
     return any;
 }
 
-void cast_shadows(const Occluders& occluders, const Light& light, std::span<const SurfacePoint> points,
-                  std::span<const vec2> u, Packet& packet) {
+// Share of the light's point that each surface point sees; `u` picks the point, one pair of numbers each.
+void see_light(const Occluders& occluders, const Light& light, std::span<const SurfacePoint> points, const vec2* u,
+               const Packet& packet, float* visibility) {
     Occluders::ShadowRays rays{};
     for (size_t i = 0; i < points.size(); ++i) {
         // The ray starts off the surface, on the side that the light comes from.
         const SurfacePoint& point = points[i];
-        const Ray ray = ray_to_light(light, point.position, is_soft(light) ? u[i] : vec2(0));
+        const Ray ray = ray_to_light(light, point.position, u[i]);
         const float side = dot(point.face_normal, ray.direction) < 0 ? -1.0f : 1.0f;
         const vec3 origin = point.position + point.face_normal * (side * shadow_offset(point.position));
         rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
@@ -42,9 +43,22 @@ void cast_shadows(const Occluders& occluders, const Light& light, std::span<cons
         rays.t_min[i] = 0, rays.t_max[i] = ray.t_max;
         rays.active[i] = packet.active[i];
     }
-    alignas(64) float visibility[16] = {};
     occluders.transmission(rays, visibility);
-    for (size_t i = 0; i < points.size(); ++i) packet.irradiance[i] *= visibility[i];
+}
+
+void cast_shadows(const Occluders& occluders, const Light& light, std::span<const SurfacePoint> points,
+                  std::span<const vec2> u, Packet& packet) {
+    const size_t count = is_soft(light) ? u.size() / points.size() : 1;
+    float total[16] = {};
+    for (size_t k = 0; k < count; ++k) {
+        vec2 picked[16] = {};
+        alignas(64) float visibility[16] = {};
+        if (is_soft(light))
+            for (size_t i = 0; i < points.size(); ++i) picked[i] = u[i * count + k];
+        see_light(occluders, light, points, picked, packet, visibility);
+        for (size_t i = 0; i < points.size(); ++i) total[i] += visibility[i];
+    }
+    for (size_t i = 0; i < points.size(); ++i) packet.irradiance[i] *= total[i] / static_cast<float>(count);
 }
 
 void dim(const LightDepth& depth, Packet& packet) {

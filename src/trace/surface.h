@@ -6,8 +6,9 @@
 #include <vector>
 
 namespace tyndall {
-// Radiance leaving each point towards the viewer. Up to 16 points; `u` (two numbers in [0,1) per point) picks the point
-// on soft lights. per_light (optional) receives points × lights radiances.
+// Radiance leaving each point towards the viewer. Up to 16 points; `u`, points × n pairs of numbers in [0,1), picks n
+// points on each soft light: n for the first point, then n for the next. per_light (optional) receives points × lights
+// radiances.
 void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths, std::span<const SurfacePoint> points,
                     std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light = nullptr);
 }
