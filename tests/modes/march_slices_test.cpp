@@ -368,6 +368,25 @@ TEST(MarchSlices, SoftLampAgreesWithShadowRaysToItsBall) {
     EXPECT_GT(std::abs(marched(hard.snapshot, exact_settings(), ray).radiance.x / sliced - 1), 1e-4);
 }
 
+TEST(MarchSlices, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
+    // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
+    Light light = point_light({0.4f, 2, 0.5f}, 3);
+    light.radius = 0.2f;
+    const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
+    const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
+    Settings many = exact_settings();
+    many.march.light_points = 8;
+    const double together = mean_over_samples(stage.snapshot, many, ray, 16).x;
+    const double apart = mean_over_samples(stage.snapshot, exact_settings(), ray, 128).x;
+    EXPECT_NEAR(together / apart, 1, 1e-6);
+    EXPECT_GT(std::abs(mean_over_samples(stage.snapshot, exact_settings(), ray, 16).x / apart - 1), 1e-5);
+
+    // Shadow rays to many points in each step: the same light with less noise.
+    Settings rays = exact_settings();
+    rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256, rays.march.light_points = 64;
+    EXPECT_NEAR(mean_over_samples(stage.snapshot, rays, ray, 16).x / apart, 1, 0.01);
+}
+
 TEST(MarchSlices, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     const Stage stage = busy_stage();
     const std::vector<Ray> rays = busy_rays(64);

@@ -123,6 +123,24 @@ TEST(Surface, SoftLightsHavePenumbras) {
         for (const vec3 r : radiance) mean += r.x / 1024;
     }
     EXPECT_NEAR(mean, 0.5f, 0.01f);
+
+    // Several points of the light at once, for two surface points.
+    vec2 many[64];
+    for (uint32_t i = 0; i < 64; ++i) {
+        const Sample2 random = sample2(i, 2);
+        many[i] = {random.x, random.y};
+    }
+    shade_surfaces(snapshot, {}, {points, 2}, many, radiance);
+    for (size_t point = 0; point < 2; ++point) {
+        float expected = 0;
+        for (size_t i = 0; i < 32; ++i) {
+            vec3 one;
+            shade_surfaces(snapshot, {}, {points, 1}, {&many[32 * point + i], 1}, {&one, 1});
+            expected += one.x / 32;
+        }
+        EXPECT_NEAR(radiance[point].x, expected, 1e-5f);
+        EXPECT_NEAR(radiance[point].x, 0.5f, 0.1f);
+    }
 }
 
 TEST(Surface, LightIsDimmedByTheFogItCrosses) {
