@@ -142,7 +142,9 @@ std::vector<Exceeded> find_exceeded(const CompareResult& result, const std::vect
     for (const Bound& bound : bounds) {
         const auto value = bound.metric->value(result);
         if (!value) fail(ExitCode::usage, "--fail-above", bound.metric->name + " is not there: " + bound.metric->doc);
-        if (!(std::abs(*value) <= bound.limit)) exceeded.push_back({bound.metric->name, *value, bound.limit});
+        const double size =
+            bound.metric->name.starts_with("bias_rel") || bound.metric->name == "bias" ? std::abs(*value) : *value;
+        if (!(size <= bound.limit)) exceeded.push_back({bound.metric->name, *value, bound.limit});
     }
     return exceeded;
 }

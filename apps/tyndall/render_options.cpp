@@ -151,8 +151,8 @@ RenderJob make_job(const RenderOptions& texts) {
     if (error_is_noise(find_mode(job.mode)) && texts.target_error.empty()) job.settings.pixel.samples *= noisy_factor;
     if (!texts.samples.empty())
         job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
-    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
     if (!texts.orders.empty()) read_orders(texts.orders, job);
+    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
     if (!texts.target_error.empty()) {
         job.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
         check_target(find_mode(job.mode));

@@ -45,9 +45,10 @@ struct Box {
 
 inline constexpr Box everywhere() { return {vec3(-infinity), vec3(infinity)}; }
 
-// The part of origin + t·direction, low <= t <= high, inside the box. The direction may have any length, zeros
-// included.
+// The part of origin + t·direction, low <= t <= high, inside the box; nothing of an empty box. The direction may have
+// any length, zeros included.
 inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range) {
+    if (box.empty()) return {};
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) {
             if (origin[axis] < box.low[axis] || origin[axis] > box.high[axis]) return {};

@@ -9,6 +9,7 @@ struct Checks {
     std::vector<Check> list;
     std::string topic;
     std::function<void(double)> progress; // 0..1 of the current group; may be empty
+    uint64_t non_finite = 0;              // samples of pictures rendered so far
 
     void add(std::string name, double measured, double expected, double tolerance, std::string basis);
 };

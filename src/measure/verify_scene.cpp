@@ -17,6 +17,7 @@ namespace {
 struct Shot {
     const SceneProof& proof;
     const VerifyControl& control;
+    Checks& checks;
     Settings settings;
     bool per_light = false;
     int batches = 1;
@@ -37,7 +38,9 @@ Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
     options.per_light = shot.per_light, options.cancel = shot.control.cancel;
     options.progress = shot.progress;
     FrameStats stats;
-    return render_frame(find_mode(shot.mode), view, snapshot, shot.settings, options, stats);
+    Layers layers = render_frame(find_mode(shot.mode), view, snapshot, shot.settings, options, stats);
+    shot.checks.non_finite += stats.non_finite;
+    return layers;
 }
 
 Snapshot moment(const Scene& scene, const SceneProof& proof) {
@@ -59,7 +62,7 @@ int different_pixels(const Layers& part, const Layers& whole, ivec2 offset) {
 
 void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     const Snapshot snapshot = moment(scene, proof);
-    Shot shot{proof, control, settings_for(Quality::preview)};
+    Shot shot{proof, control, checks, settings_for(Quality::preview)};
     const Layers whole = render(shot, scene, snapshot);
     const int threads = thread_count();
     set_thread_count(1);
@@ -73,7 +76,7 @@ void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl
 }
 
 void check_scale(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
-    const Shot shot{proof, control, settings_for(Quality::preview)};
+    const Shot shot{proof, control, checks, settings_for(Quality::preview)};
     const Layers usual = render(shot, scene, moment(scene, proof));
     for (const float factor : {0.5f, 64.0f}) {
         const Scene other = scaled(scene, factor);
@@ -95,7 +98,7 @@ Scene only_lights(Scene scene) {
 
 void check_lights(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     const Scene dark = only_lights(scene);
-    Shot shot{proof, control, settings_for(Quality::preview)};
+    Shot shot{proof, control, checks, settings_for(Quality::preview)};
     shot.per_light = true;
     const Layers layers = render(shot, dark, moment(dark, proof));
     Image<vec3> sum(layers.size, vec3(0));
@@ -106,16 +109,22 @@ void check_lights(const Scene& scene, const SceneProof& proof, const VerifyContr
                "rounding");
 }
 
-// The scene's fog, made white, alone in even surroundings of radiance 1. Light never leaves white fog without bounds.
+// The scene's fog, made white and thinned where it is too thick for light to find its way out, alone in even
+// surroundings of radiance 1. Light never leaves white fog without bounds.
 void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     Scene fog = only_lights(scene);
     fog.instances.clear(), fog.lights.clear();
     fog.ambient = Keyed<vec3>(vec3(1));
     fog.background.color = Keyed<vec3>(vec3(1));
     for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1));
-    const Snapshot white = moment(fog, proof);
+    constexpr float thick = 20; // optical depths across
+    Snapshot white = moment(fog, proof);
     if (!std::ranges::all_of(white.media, [](const Medium& m) { return is_finite(m.world_bounds.size()); })) return;
-    Shot shot{proof, control, settings_for(Quality::preview)};
+    for (Medium& medium : white.media) {
+        const float across = medium.majorant() * glm::length(medium.world_bounds.size());
+        medium.optics.extinction *= std::min(1.0f, thick / (across * static_cast<float>(white.media.size())));
+    }
+    Shot shot{proof, control, checks, settings_for(Quality::preview)};
     shot.mode = "path", shot.settings.pixel.samples = shot.batches = 64;
     const Layers layers = render(shot, fog, white);
     double mean = 0, variance = 0;
@@ -129,7 +138,7 @@ void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyCont
 void check_march(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     const Scene lit = only_lights(scene);
     const Snapshot snapshot = moment(lit, proof);
-    Shot exact{proof, control, settings_for(Quality::reference)};
+    Shot exact{proof, control, checks, settings_for(Quality::reference)};
     exact.settings.pixel.filter = PixelFilter::center;
     exact.settings.pixel.samples = 1, exact.settings.march.light_points = 64;
     const auto part = [&](double from, double to) {
@@ -145,12 +154,14 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     noisy.settings.pixel.samples = proof.samples, noisy.batches = 64;
     const Layers layers = render(noisy, lit, snapshot);
     const TileScores scores = tile_scores(layers.color, layers.variance, reference.color);
-    if (scores.tiles == 0) return checks.add("lit tiles", 0, 0, 0, "nothing is lit: nothing to compare");
+    checks.add("score of all dark tiles together", scores.dark, 0, 4, "4 standard errors");
+    if (scores.scores == 0) return checks.add("lit tiles", 0, 0, 0, "nothing is lit: nothing to compare");
 
-    // The mean of n scores varies by 1/√n, their deviation by 1/√(2n), and 0.27 % of them lie beyond 3.
-    const double n = scores.tiles;
-    checks.add("mean score of " + std::to_string(scores.tiles) + " lit tiles, path against march", scores.mean, 0,
-               std::max(0.1, 4 / std::sqrt(n)), "0.1, or 4/sqrt(tiles)");
+    // The mean of n scores varies by 1/√n, their deviation by 1/√(2n), and 0.27 % of them lie beyond 3. The channels of
+    // a tile share their random numbers: together they count as one.
+    const double n = (scores.scores + 2) / 3;
+    checks.add("mean score of " + std::to_string((scores.scores + 2) / 3) + " lit tiles, path against march",
+               scores.mean, 0, std::max(0.1, 4 / std::sqrt(n)), "0.1, or 4/sqrt(tiles)");
     checks.add("standard deviation of the scores", scores.deviation, 1, std::max(0.2, 4 / std::sqrt(2 * n)),
                "0.2, or 4/sqrt(2 tiles)");
     checks.add("share of scores within 3", scores.within_3, 1, std::max(0.005, 0.0027 + 4 * std::sqrt(0.0027 / n)),
@@ -171,6 +182,11 @@ std::vector<CheckGroup> scene_checks(const Scene& scene, const SceneProof& proof
 
 std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control) {
     assert(!scene.media.empty());
-    return run_checks(scene_checks(scene, proof, control), control);
+    std::vector<CheckGroup> groups = scene_checks(scene, proof, control);
+    groups.push_back({"finite", 0, [](Checks& checks) {
+                          checks.add("samples of all these pictures that were not finite numbers",
+                                     static_cast<double>(checks.non_finite), 0, 0, "none");
+                      }});
+    return run_checks(groups, control);
 }
 }

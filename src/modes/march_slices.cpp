@@ -98,7 +98,7 @@ struct Pending {
 
 // Shadow rays to the light's point, through surfaces with alpha.
 void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& pending, float* share) {
-    Occluders::ShadowRays rays;
+    Occluders::ShadowRays rays{};
     for (int i = 0; i < 16; ++i) {
         rays.active[i] = pending.active[i];
         if (!rays.active[i]) continue;

@@ -13,20 +13,21 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
 }
 
 // A guess at the share of light that passes up to a distance. Weights may be built from any guess: they only have to
-// be the same from both sides.
+// be the same from both sides. Grids count with their mean; a ray may find gaps in them, so that is not taken too far.
 float guessed_transmittance(const Snapshot& snapshot, const Line& line, float distance) {
     Ray ray = line.rest;
     ray.t_max = distance;
-    double depth = 0;
+    constexpr double most_in_grids = 3;
+    double depth = 0, in_grids = 0;
     for (const Medium& medium : snapshot.media) {
         if (medium.kind != DensityKind::bricks) {
             depth += optical_depth(medium, ray);
             continue;
         }
         const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
-        depth += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
+        in_grids += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
     }
-    return static_cast<float>(std::exp(-depth));
+    return static_cast<float>(std::exp(-depth - std::min(in_grids, most_in_grids)));
 }
 
 // How many distances a line is asked at. The eye's lines are many times worth their shadow rays: beams are narrow.

@@ -25,9 +25,10 @@ Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
 // The part inside the ball of a light's range.
 Interval within_range(const LineLight& along, float range, Interval stretch) {
     if (std::isinf(range)) return stretch;
-    const float half = std::sqrt(std::max(0.0f, (range - along.height) * (range + along.height)));
     if (along.height >= range) return {};
-    return {std::max(stretch.low, along.closest - half), std::min(stretch.high, along.closest + half)};
+    const double half = std::sqrt((range - along.height) * (range + along.height));
+    return {static_cast<float>(std::max<double>(stretch.low, along.closest - half)),
+            static_cast<float>(std::min<double>(stretch.high, along.closest + half))};
 }
 
 Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
@@ -45,16 +46,16 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
         along.chance = volume_brightness(light) * along.reach.length();
         return along;
     }
-    const vec3 offset = light.position - line.origin;
-    along.closest = glm::dot(offset, line.direction);
-    const float nearest = std::max(light.radius, smallest_radius);
-    along.height = std::max(glm::length(offset - along.closest * line.direction), nearest);
+    const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
+    along.closest = glm::dot(offset, direction);
+    const double nearest = std::max(light.radius, smallest_radius);
+    along.height = std::max(glm::length(offset - along.closest * direction), nearest);
     along.reach = within_cone(light, line, within_range(along, light.range, stretch));
     if (along.reach.empty()) return along;
     along.low_angle = std::atan((along.reach.low - along.closest) / along.height);
     along.high_angle = std::atan((along.reach.high - along.closest) / along.height);
     if (!(along.high_angle > along.low_angle)) return along;
-    along.chance = volume_brightness(light) * (along.high_angle - along.low_angle) / along.height;
+    along.chance = static_cast<float>(volume_brightness(light) * (along.high_angle - along.low_angle) / along.height);
     return along;
 }
 
@@ -77,15 +78,15 @@ template<class Irradiance> LightPick pick(size_t count, float u, const Irradianc
 
 float LineLight::distance(float u) const {
     if (height == 0) return reach.low + u * reach.length();
-    const float t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
-    return std::clamp(t, reach.low, reach.high);
+    const double t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
+    return std::clamp(static_cast<float>(t), reach.low, reach.high);
 }
 
 float LineLight::density(float t) const {
     if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
     if (height == 0) return 1 / reach.length();
-    const float off = t - closest;
-    return height / ((high_angle - low_angle) * (height * height + off * off));
+    const double off = t - closest;
+    return static_cast<float>(height / ((high_angle - low_angle) * (height * height + off * off)));
 }
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {

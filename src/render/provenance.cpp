@@ -166,6 +166,7 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
         const auto found = attributes.find(name);
         return found == attributes.end() ? -1 : std::strtod(found->second.c_str(), nullptr);
     };
+    stats.non_finite = static_cast<uint64_t>(std::clamp(value("tyndall:nonFinite"), 0.0, 1e18));
     const Noise noise{value("tyndall:achievedError"), value("tyndall:errorBound")};
     if (noise.error < 0 || noise.bound < 0) return;
     stats.noise = noise;

@@ -22,6 +22,6 @@ std::string frame_hash(const Scene& scene, const RenderJob& job, const View& vie
 Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
                          const FrameStats& stats);
 
-// Takes samples and noise back from the attributes of a picture.
+// Takes samples, noise and what was not finite back from the attributes of a picture.
 void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats);
 }

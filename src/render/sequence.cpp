@@ -109,6 +109,7 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             work.hash = frame_hash(pipeline.scene, pipeline.job, work.view, pipeline.files);
             if (pipeline.job.resume && keep(pipeline, work)) {
                 work.report.load_seconds = seconds_since(start);
+                pipeline.report.non_finite += work.report.stats.non_finite;
                 pipeline.report.frames.push_back(work.report);
                 continue;
             }

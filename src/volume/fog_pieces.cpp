@@ -160,6 +160,6 @@ void find_fog(const Ray& ray, std::span<const Medium> media, double least_transm
         fog.densities[m].clear();
         if (media[m].optics.extinction > 0) append_density(ray, media[m], t_end, fog.densities[m]);
     }
-    merge_media(-std::log(least_transmittance), fog);
+    merge_media(std::min(opaque_depth, -std::log(least_transmittance)), fog);
 }
 }

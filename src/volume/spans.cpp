@@ -4,8 +4,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double farthest = 1e7;    // metres; fog without end is cut here
-constexpr double opaque_depth = 64; // transmittance 2e-28
+constexpr double farthest = 1e7; // metres; fog without end is cut here
 constexpr double ln2 = 0.69314718055994530942;
 constexpr int highest_band = 24; // density 2^-24 of the ground's; above it height fog is left out
 constexpr double closest = 1e-3; // metres: nearer to a light steps shrink no further

@@ -12,7 +12,9 @@ struct Span {
     double rate = 0;          // steps per metre for other reasons, at least
 };
 
-// Where fog in closed form alone has taken all light (optical depth 64), or where the ray ends.
+inline constexpr double opaque_depth = 64; // transmittance 2e-28
+
+// Where fog in closed form alone is opaque, or where the ray ends.
 double horizon(const Ray& ray, std::span<const Medium> media);
 
 // Appends the spans of one medium on 0..t_end, ascending and disjoint.

@@ -99,7 +99,7 @@ float ratio_transmittance(const Medium& medium, const Ray& ray, Interval range, 
     double share = 1, left = free_depth(random.next());
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
         const double majorant = static_cast<double>(medium.optics.extinction) * fog.majorant;
-        if (fog.even) return (share *= std::exp(-majorant * (fog.high - fog.low))) > 0;
+        if (fog.even) return majorant == 0 || (share *= std::exp(-majorant * (fog.high - fog.low))) > 0;
         for (double t = fog.low; majorant > 0;) {
             const double step = left / majorant;
             if (t + step >= fog.high) {

@@ -35,7 +35,8 @@ NoisyPicture noisy_picture(float gain, float said_variance = 1) {
 TEST(TileScores, AreStandardForAnUnbiasedPicture) {
     const NoisyPicture p = noisy_picture(1);
     const TileScores scores = tile_scores(p.noisy, p.variance, p.reference);
-    ASSERT_EQ(scores.tiles, 80 * 40);
+    ASSERT_EQ(scores.scores, 3 * 80 * 40);
+    EXPECT_EQ(scores.dark, 0);
     EXPECT_NEAR(scores.mean, 0, 4.5 / std::sqrt(3200));
     EXPECT_NEAR(scores.deviation, 1, 4.5 / std::sqrt(6400));
     EXPECT_NEAR(scores.within_3, 0.9973, 4.5 * std::sqrt(0.0027 / 3200));
@@ -57,9 +58,11 @@ TEST(TileScores, LeaveOutWhatIsDark) {
     NoisyPicture p = noisy_picture(1);
     for (int y = 0; y < 8; ++y)
         for (int x = 0; x < 16; ++x) p.reference.at(x, y) = vec3(0);
-    EXPECT_EQ(tile_scores(p.noisy, p.variance, p.reference).tiles, 80 * 40 - 2);
+    const TileScores scores = tile_scores(p.noisy, p.variance, p.reference);
+    EXPECT_EQ(scores.scores, 3 * (80 * 40 - 2));
+    EXPECT_GT(scores.dark, 100); // 0.2 where there should be nothing, known to 5 %
     const Image<vec3> black(ivec2(16), vec3(0));
-    EXPECT_EQ(tile_scores(black, black, black).tiles, 0);
+    EXPECT_EQ(tile_scores(black, black, black).scores, 0);
 }
 
 TEST(ScaledScene, ScalesEveryLengthAndWhatIsPerLength) {

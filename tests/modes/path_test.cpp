@@ -260,6 +260,48 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
     }
 }
 
+TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
+    // Level ray in height fog under a sun overhead: even along the ray. Light path above y: s e^-y.
+    Medium fog = even_fog(0.2f);
+    fog.kind = DensityKind::height, fog.height_falloff = 1;
+    Snapshot snapshot = scene_of({fog}, {sun({0, -1, 0}, 3)});
+    snapshot.bounds = Box{};
+    const double density = 0.2 * std::exp(-0.5);
+    const double expected = 3 / (4 * M_PI) * std::exp(-density) * (1 - std::exp(-4 * density));
+    expect_close(traced(snapshot, {{0, 0.5f, 0}, {0, 0, -1}, 4}, 256, 1), expected, 0.01);
+    const double endless = 3 / (4 * M_PI) * std::exp(-density);
+    expect_close(traced(snapshot, {{0, 0.5f, 0}, {0, 0, -1}}, 1024, 1), endless, 0.01);
+}
+
+TEST(Path, MistFarBelowALevelSunTakesNothing) {
+    Medium mist = even_fog(0.2f);
+    mist.kind = DensityKind::height, mist.height_falloff = 1;
+    const Box high{vec3(-1, 199, -1), vec3(1, 201, 1)};
+    const Snapshot snapshot = scene_of({mist, even_fog(0.5f, high)}, {sun({1, 0, 0}, 3)});
+    const double expected = 3 / (4 * M_PI) * std::exp(-0.5) * (1 - std::exp(-1.0));
+    expect_close(traced(snapshot, {{0, 200, 4}, {0, 0, -1}}, 256, 1), expected, 0.01);
+}
+
+TEST(Path, ThickPlumesWithGapsHideNothingBehindThem) {
+    // Two opaque halves with a gap between them; behind the gap thin haze is lit.
+    const SparseVolume walls = unit_grid(32, [](vec3 p) { return p.x > 0.4f && p.x < 0.6f ? 0.0f : 1.0f; });
+    Medium plume = with_albedo(grid_fog(4000, walls), vec3(0));
+    const Box behind{vec3(-1, -1, -3), vec3(2, 2, -1)};
+    const Snapshot snapshot = scene_of({plume, even_fog(0.2f, behind)}, {sun({0, -1, 0}, 3)});
+    const double expected = 3 / (4 * M_PI) * std::exp(-0.2 * 1.5) * (1 - std::exp(-0.4));
+    expect_close(traced(snapshot, {{0.5f, 0.5f, 4}, {0, 0, -1}}, 1024, 1), expected, 0.02);
+}
+
+TEST(Path, LampVeryFarAwayIsASun) {
+    Light lamp = point_light({0, 2e7f, 0}, 4e14f);
+    Medium fog = noise_grid(3, forward(0.4f));
+    const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}};
+    const Estimate far = traced(scene_of({fog}, {lamp}), ray, 512, 1),
+                   near = traced(scene_of({fog}, {sun({0, -1, 0})}), ray, 512, 1);
+    EXPECT_NEAR(far.value.x, near.value.x, sigmas * std::hypot(far.error.x, near.error.x));
+    EXPECT_LT(far.error.x, 0.02 * far.value.x);
+}
+
 TEST(Path, LightsArePartsOfTheWhole) {
     const Snapshot snapshot =
         scene_of({noise_grid(3, forward(0.4f))}, {sun({0.3f, -1, -0.2f}), point_light({0.5f, 2, 0.5f})});
