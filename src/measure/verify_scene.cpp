@@ -140,7 +140,7 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     const Snapshot snapshot = moment(lit, proof);
     Shot exact{proof, control, checks, settings_for(Quality::reference)};
     exact.settings.pixel.filter = PixelFilter::center;
-    exact.settings.pixel.samples = 1, exact.settings.march.light_points = 64;
+    exact.settings.pixel.samples = 1, exact.settings.march.light_points = 128;
     const auto part = [&](double from, double to) {
         return [&checks, from, to](double done) {
             if (checks.progress) checks.progress(from + (to - from) * done);
