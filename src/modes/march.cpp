@@ -2,28 +2,14 @@
 // the fog it crosses.
 #include "modes/march_kernel.h"
 #include "modes/march_slices.h"
+#include "modes/style.h"
 #include "modes/techniques.h"
 
 #include <cstdio>
 
 namespace tyndall {
 namespace {
-// A grid as even fog of the same mean density in its bounds.
-Medium at_mean_density(const Medium& medium) {
-    if (medium.kind != DensityKind::bricks) return medium;
-    Medium even = medium;
-    even.kind = DensityKind::homogeneous;
-    even.bounds = medium.bricks->bounds;
-    even.world_to_local = mat4(1);
-    even.world_bounds = medium.bricks->bounds;
-    even.optics.extinction *= medium.bricks->mean;
-    even.optics.emission *= medium.bricks->mean;
-    even.bricks = nullptr;
-    return even;
-}
-
 void simplify(Medium& medium, const MarchSettings& settings) {
-    if (!settings.heterogeneity) medium = at_mean_density(medium);
     if (!settings.phase) medium.optics.phase.kind = PhaseKind::isotropic;
     if (!settings.emission) medium.optics.emission = vec3(0);
 }
@@ -78,8 +64,9 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
 
 ScatterFunction prepare_march(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
     auto march = std::make_shared<March>();
-    march->snapshot = snapshot;
-    march->settings = settings.march;
+    march->snapshot = stylised(snapshot, settings.style);
+    march->settings = settings.march, march->style = settings.style;
+    if (!settings.march.heterogeneity) march->snapshot.media = even_media(march->snapshot.media);
     for (Medium& medium : march->snapshot.media) simplify(medium, settings.march);
     if (!settings.march.ambient) march->snapshot.ambient = vec3(0);
     for (const Light& light : march->snapshot.lights) {

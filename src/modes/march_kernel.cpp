@@ -240,8 +240,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
 
     alignas(64) float jitter[16];
     for (size_t lane = 0; lane < 16; ++lane) {
-        const bool given = lane < batch.jitter.size() && march.settings.jitter == Jitter::interleaved;
-        jitter[lane] = given ? batch.jitter[lane] : 0.5f;
+        jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
     }
 
     Totals totals{splat(vec3(0)), 0.0f, 1.0f};

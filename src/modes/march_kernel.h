@@ -11,6 +11,7 @@ namespace tyndall {
 struct March {
     Snapshot snapshot; // media as the settings see them
     MarchSettings settings;
+    StyleSettings style;
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     std::vector<vec3> near_points;  // positions of the local lights

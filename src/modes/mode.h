@@ -1,6 +1,6 @@
 // The techniques: what each promises, where it fails, and how it turns a scene into light along camera rays.
 #pragma once
-#include "modes/settings.h"
+#include "modes/history.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 
@@ -28,6 +28,7 @@ struct RayBatch {
     std::span<const float> jitter;         // per ray in [0,1), stratified over the samples of a pixel; empty = ½
     std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
     std::span<const float> near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
+    std::span<const vec2> positions{}; // of the rays in the picture, in pixels from the upper left; empty = unknown
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 
@@ -42,14 +43,27 @@ struct Limit {
     std::string where, why;
 };
 
-struct History;
+// A picture without fog, and what a mode with Surfaces::post adds to it. All images cover the full picture.
+struct PlainPicture {
+    const Image<vec3>& color; // linear Rec.709
+    const Image<float>& alpha;
+    const Image<float>& depth; // planar z, infinite where there is no surface
+};
+struct Addition {
+    Image<vec3> radiance;
+    Image<float> validity;
+    std::vector<Image<vec3>> per_light; // parts of radiance, one for each light of the snapshot
+};
+using PostFunction = std::function<Addition(const PlainPicture&)>;
 
 struct Mode {
     std::string_view name, summary;
     Accuracy accuracy;
     Surfaces surfaces;
     std::vector<Limit> (*limits)(const View&, const Snapshot&, const Settings&);
+    // History may be null. null for Surfaces::post.
     ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
+    PostFunction (*prepare_post)(const View&, const Snapshot&, const Settings&) = nullptr; // for Surfaces::post only
 };
 
 std::span<const Mode> modes();

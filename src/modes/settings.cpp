@@ -1,4 +1,4 @@
-#include "modes/settings.h"
+#include "modes/settings_rows.h"
 
 #include "base/error.h"
 #include "base/text.h"
@@ -7,7 +7,6 @@
 #include <cstdio>
 
 namespace tyndall {
-namespace {
 std::string short_number(double value) {
     char text[32];
     const auto end = std::to_chars(text, text + sizeof text, static_cast<float>(value)).ptr;
@@ -25,93 +24,32 @@ double parsed_number(std::string_view row, std::string_view text, double low, do
     return value;
 }
 
-// A row for a number: `field` finds it in the settings.
-template<class Field>
-SettingRow number_row(std::string name, std::string unit, double low, double high, std::string doc, Field field) {
-    using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
-    SettingRow row{name, unit, doc, {}, low, high, std::is_integral_v<T>, {}, {}};
-    row.get = [field](const Settings& settings) { return short_number(field(const_cast<Settings&>(settings))); };
-    row.set = [field, name, low, high](Settings& settings, std::string_view text) {
-        field(settings) = static_cast<T>(parsed_number(name, text, low, high, std::is_integral_v<T>));
+vec3 parsed_color(std::string_view row, std::string_view text, double low, double high) {
+    const size_t first = text.find(','), second = first == text.npos ? first : text.find(',', first + 1);
+    if (second == text.npos)
+        fail(ExitCode::usage, row, "expected three numbers as R,G,B; got '" + printable(text, 40) + "'");
+    const auto part = [&](std::string_view number) {
+        return static_cast<float>(parsed_number(row, number, low, high, false));
     };
-    return row;
+    return {part(text.substr(0, first)), part(text.substr(first + 1, second - first - 1)),
+            part(text.substr(second + 1))};
 }
 
-// A row for an enumeration whose values are the positions of `choices`; a bool is {"off", "on"}.
-template<class Field>
-SettingRow choice_row(std::string name, std::vector<std::string> choices, std::string doc, Field field) {
-    using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
-    SettingRow row{name, "", doc, choices, 0, 0, false, {}, {}};
-    row.get = [field, choices](const Settings& settings) {
-        return choices[static_cast<size_t>(field(const_cast<Settings&>(settings)))];
-    };
-    row.set = [field, name, choices](Settings& settings, std::string_view text) {
-        for (size_t i = 0; i < choices.size(); ++i)
-            if (choices[i] == text) return void(field(settings) = static_cast<T>(i));
-        fail(ExitCode::usage, name, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
-    };
-    return row;
-}
-
-#define FIELD(member)                                                                                                  \
-    [](Settings & settings) -> auto& { return settings.member; }
-const std::vector<std::string> switches{"off", "on"};
-
-std::vector<SettingRow> make_rows() {
-    return {
-        number_row("pixel.samples", "", 1, 4096, "camera rays per pixel", FIELD(pixel.samples)),
-        choice_row("pixel.filter", {"box", "tent", "gaussian", "blackman_harris", "center"},
-                   "pixel reconstruction filter; center = every sample at the pixel's centre", FIELD(pixel.filter)),
-        number_row("pixel.filter_radius", "pixels", 0.25, 4, "how far a sample may lie from the pixel's centre",
-                   FIELD(pixel.filter_radius)),
-        number_row("march.step_depth", "", 1e-4, 10, "most optical depth one step may cross", FIELD(march.step_depth)),
-        number_row("march.step_voxels", "voxels", 0.05, 64, "most voxels one step may cross", FIELD(march.step_voxels)),
-        number_row("march.step_length", "m", 1e-5, 1e6, "longest step; shadow detail along the ray needs short ones",
-                   FIELD(march.step_length)),
-        number_row("march.step_share", "", 1e-5, 1, "longest step as a share of the ray's stretch through fog",
-                   FIELD(march.step_share)),
-        number_row("march.near_light", "", 0.005, 10, "a step is at most this share of the distance to a local light",
-                   FIELD(march.near_light)),
-        number_row("march.max_steps", "", 1, 1e6,
-                   "most steps per ray; they get longer beyond (slices take all they need)", FIELD(march.max_steps)),
-        number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
-                   FIELD(march.min_transmittance)),
-        choice_row(
-            "march.jitter", {"none", "interleaved"},
-            "where in its steps a ray looks: the middle, or shifted from pixel to pixel and sample to sample (slices "
-            "need none)",
-            FIELD(march.jitter)),
-        choice_row(
-            "march.visibility", {"off", "rays", "slices"},
-            "shadows of surfaces in the fog; rays = sampled at each step, slices = exact: only lit stretches are "
-            "integrated, as exactly as the fog allows",
-            FIELD(march.visibility)),
-        choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
-                   FIELD(march.light)),
-        number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",
-                   FIELD(march.light_resolution)),
-        number_row("march.light_points", "", 1, 256,
-                   "points of a soft light that shadows are asked for, by each ray (slices) or step (rays) and by each "
-                   "sample of a surface",
-                   FIELD(march.light_points)),
-        choice_row("march.phase", switches, "directional scattering; off = the same in all directions",
-                   FIELD(march.phase)),
-        choice_row("march.heterogeneity", switches, "density detail; off = every grid at its mean density",
-                   FIELD(march.heterogeneity)),
-        choice_row("march.emission", switches, "light the fog itself gives off", FIELD(march.emission)),
-        choice_row("march.ambient", switches, "the scene's ambient light in the fog", FIELD(march.ambient)),
-        number_row("path.orders", "", 1, all_orders, "most times light scatters, in fog or on surfaces; 1 = once",
-                   FIELD(path.orders)),
-        choice_row("path.emission", switches, "light that fog and surfaces give off", FIELD(path.emission)),
-        choice_row("path.ambient", switches, "the scene's ambient light, as even surroundings far away",
-                   FIELD(path.ambient)),
-    };
-}
-#undef FIELD
+size_t parsed_choice(std::string_view row, std::string_view text, const std::vector<std::string>& choices) {
+    for (size_t i = 0; i < choices.size(); ++i)
+        if (choices[i] == text) return i;
+    fail(ExitCode::usage, row, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
 }
 
 const std::vector<SettingRow>& setting_rows() {
-    static const std::vector<SettingRow> rows = make_rows();
+    static const std::vector<SettingRow> rows = [] {
+        std::vector<SettingRow> all;
+        append_pixel_rows(all);
+        append_style_rows(all);
+        append_march_rows(all);
+        append_path_rows(all);
+        return all;
+    }();
     return rows;
 }
 

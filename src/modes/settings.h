@@ -11,12 +11,15 @@
 
 namespace tyndall {
 enum class Visibility { off, rays, slices };
-enum class Jitter { none, interleaved };
+
+// How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
+enum class PictureShare { full, half, third, quarter };
 
 struct PixelSettings {
     int samples = 4; // camera rays per pixel
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1; // pixels
+    Jitter jitter = Jitter::interleaved;
 };
 
 struct MarchSettings {
@@ -27,7 +30,6 @@ struct MarchSettings {
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     int max_steps = 1024;            // per ray
     float min_transmittance = 1e-3f; // the march stops where less than this passes
-    Jitter jitter = Jitter::interleaved;
     Visibility visibility = Visibility::rays;
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids
@@ -36,6 +38,15 @@ struct MarchSettings {
     bool heterogeneity = true; // off: bricks at their mean density
     bool emission = true;
     bool ambient = true;
+};
+
+// Departures from physics that artists ask for. Pictures made with any of them are stylised.
+struct StyleSettings {
+    float light_depth = 1; // factor on the optical depth between light and fog: below 1 shafts reach further
+    float view_depth = 1;  // factor on the optical depth between fog and eye, for the light of the fog only
+    float density = 1;     // factor on every medium's extinction
+    float range = 1e6f;    // metres from the eye at which the fog's light has faded out
+    vec3 tint{1};          // factor on the light of the fog
 };
 
 inline constexpr int all_orders = 65536; // ends paths that nothing else ends
@@ -48,6 +59,7 @@ struct PathSettings {
 
 struct Settings {
     PixelSettings pixel;
+    StyleSettings style;
     MarchSettings march;
     PathSettings path;
 };
@@ -63,6 +75,7 @@ struct SettingRow {
     bool integer = false;
     std::function<std::string(const Settings&)> get;
     std::function<void(Settings&, std::string_view)> set; // throws Error (usage)
+    int parts = 1;                                        // numbers of a value; 3 = a colour
 };
 const std::vector<SettingRow>& setting_rows();
 

@@ -31,7 +31,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     path.ray = camera_ray(view.camera, view.size, position);
     const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
     path.skip = view.camera.near / along;
-    path.screen = position / vec2(view.size);
+    path.screen = position / vec2(view.size), path.position = position;
     path.lane = lane;
 
     // Each batch has random numbers of its own.
@@ -110,8 +110,9 @@ RayNumbers ray_numbers(const View& view, int layer, const Stretches& s) {
         const uint32_t id = hash(path.seed, path.place.index, layer, use_id);
         const uint32_t within = hash(id, use_jitter) / (2 * batch_size(view));
         numbers.ids[i] = id;
-        numbers.jitter[i] =
-            stratified(path.place.index, path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within);
+        const uint32_t shift = path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within;
+        numbers.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);
+        numbers.positions[i] = path.position;
         numbers.places[i] = path.place;
     }
     return numbers;

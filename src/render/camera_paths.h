@@ -17,6 +17,7 @@ struct Path {
     uint32_t shift = 0; // of its jitter
     SamplePlace place;  // in the batch
     vec2 screen{0};     // position in the picture, 0..1
+    vec2 position{0};   // the same in pixels
     int lane = 0;
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
@@ -46,6 +47,7 @@ struct RayNumbers {
     uint32_t ids[16];
     float jitter[16];
     SamplePlace places[16];
+    vec2 positions[16];
 };
 
 // Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are.

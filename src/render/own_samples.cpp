@@ -16,7 +16,8 @@ void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> s
                     per_light,
                     {numbers.jitter, count},
                     {numbers.places, count},
-                    {near, count}},
+                    {near, count},
+                    {numbers.positions, count}},
                    {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {

@@ -38,6 +38,7 @@ struct LightDepth {
     std::vector<const Medium*> analytic; // homogeneous and height media
     std::vector<const Medium*> marched;  // brick media, when marched
     float average = 0;                   // optical depth used for every point, when average
+    float scale = 1;                     // factor on all depths
 };
 
 // `resolution`: cells across the longer side of the fog as the light sees it. Built in parallel.

@@ -151,7 +151,7 @@ HWY_INLINE Floats marched_depth16(const LightDepth& depth, const Vec3s& point, c
 // Optical depth between 16 points and a light; 0 where not active.
 HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, const Mask16& active) {
     if (depth.method == LightTransmittance::off) return 0.0f;
-    if (depth.method == LightTransmittance::average) return zero_unless(active, depth.average);
+    if (depth.method == LightTransmittance::average) return zero_unless(active, depth.average * depth.scale);
     Floats sum = 0.0f;
     if (!depth.analytic.empty()) {
         const LightPaths paths = light_paths(depth.light, point);
@@ -159,7 +159,7 @@ HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, con
     }
     if (!depth.grid.empty()) sum = sum + grid_depth16(depth.grid, point);
     if (!depth.marched.empty()) sum = sum + marched_depth16(depth, point, active);
-    return zero_unless(active, sum);
+    return zero_unless(active, sum * depth.scale);
 }
 }
 HWY_AFTER_NAMESPACE();

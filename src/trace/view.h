@@ -5,6 +5,9 @@
 #include <cstdint>
 
 namespace tyndall {
+// Where in its steps a sample looks: the middle of all, or shifted from pixel to pixel.
+enum class Jitter { none, interleaved };
+
 enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
 
 struct View {
@@ -15,6 +18,7 @@ struct View {
     int batches = 1; // independent groups of equally many samples, each with random numbers of its own
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
+    Jitter jitter = Jitter::interleaved;
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 };

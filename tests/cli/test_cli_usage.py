@@ -74,7 +74,7 @@ class CommandLine(ProgramTest):
             "--quality": ["good", "FINAL"],
             "--mode": ["rasterize", ""],
             "--set": ["march.step_depth", "march.step_depth=", "march.step_depth=nan", "march.step_depth=1e30",
-                      "pixel.samples=1.5", "march.jitter=blue", "=1"],
+                      "pixel.samples=1.5", "pixel.jitter=red", "=1"],
             "--exposure": ["bright", "nan", "1000"],
             "--light-units": ["watts"],
             "--missing": ["ignore"],

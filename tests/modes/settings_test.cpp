@@ -27,6 +27,7 @@ TEST(Settings, EveryRowReadsBackWhatWasSet) {
         EXPECT_FALSE(row.doc.empty()) << row.name;
         std::vector<std::string> values = row.choices;
         if (values.empty()) values = {row.integer ? std::to_string(static_cast<int>(row.low)) : "0.25"};
+        if (row.parts == 3) values = {"0.25,0.5,1"};
         for (const std::string& value : values) {
             Settings settings;
             apply_setting(settings, row.name + "=" + value);

@@ -85,7 +85,7 @@ inline Scatter marched(const Snapshot& snapshot, const Settings& settings, const
 inline Settings exact_settings() { return settings_for(Quality::reference); }
 inline Settings sampled_settings() {
     Settings settings = exact_settings();
-    settings.march.visibility = Visibility::rays, settings.march.jitter = Jitter::none;
+    settings.march.visibility = Visibility::rays;
     settings.march.step_depth = 0.02f, settings.march.step_voxels = 0.5f, settings.march.step_share = 1.0f / 512;
     settings.march.near_light = 0.1f;
     return settings;

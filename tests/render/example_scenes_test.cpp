@@ -49,7 +49,7 @@ TEST(ExampleScenes, MarchConvergesOnTheWindow) {
     const Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
     const Camera camera = camera_at(scene, scene.camera, 0);
     Settings settings = settings_for(Quality::final);
-    settings.march.jitter = Jitter::none, settings.march.step_voxels = 64, settings.march.step_depth = 10;
+    settings.march.step_voxels = 64, settings.march.step_depth = 10;
     const auto run = [&](int steps) {
         settings.march.step_share = 1.0f / static_cast<float>(steps);
         return fog_light(snapshot, camera, settings);

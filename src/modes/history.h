@@ -1,0 +1,26 @@
+// What a mode keeps from one frame to the next.
+#pragma once
+#include "modes/settings.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+#include <memory>
+
+namespace tyndall {
+struct FroxelMemory; // of modes/froxel_memory.h
+struct FogPicture;   // of modes/fog_picture.h
+
+// Handed to prepare() frame after frame, empty before the first. A mode that keeps something calls follow() first.
+struct History {
+    int frames = 0; // since it was empty
+    View view;      // of the last frame
+    Settings settings;
+    const Scene* scene = nullptr;
+    std::shared_ptr<const FroxelMemory> froxels;
+    std::shared_ptr<const FogPicture> picture;
+};
+
+// Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another
+// scene, picture size, lens or settings, or a cut. Returns the number of frames it reaches back.
+int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings);
+}

@@ -1,0 +1,20 @@
+// Artist's controls applied to a snapshot, and what kernels need besides.
+#pragma once
+#include "modes/settings.h"
+#include "trace/snapshot.h"
+
+namespace tyndall {
+bool is_stylised(const Settings& settings);
+
+// The snapshot with style.density on its media and style.tint on its lights, ambient light and emission in fog. What a
+// march through it still has to do: style_fade() and view_depth; LightDepth::scale carries light_depth.
+Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style);
+
+// Share of the fog's light that style.range leaves at a distance from the eye.
+inline float style_fade(const StyleSettings& style, float distance) {
+    return std::clamp((style.range - distance) / (0.2f * style.range), 0.0f, 1.0f);
+}
+
+// Every grid as even fog of its mean density in its bounds: media left are homogeneous or height fog only.
+std::vector<Medium> even_media(std::span<const Medium> media);
+}
