@@ -62,16 +62,17 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
     return limits;
 }
 
-ScatterFunction prepare_march(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
+ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto march = std::make_shared<March>();
     march->snapshot = stylised(snapshot, settings.style);
-    march->settings = settings.march, march->style = settings.style;
+    march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
     if (!settings.march.heterogeneity) march->snapshot.media = even_media(march->snapshot.media);
     for (Medium& medium : march->snapshot.media) simplify(medium, settings.march);
     if (!settings.march.ambient) march->snapshot.ambient = vec3(0);
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(
             make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution));
+        march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
         if (light.kind != LightKind::sun) march->near_points.push_back(light.position);
     }

@@ -6,6 +6,7 @@
 
 #include "base/random.h"
 #include "base/simd.h"
+#include "modes/style_simd.h"
 #include "trace/light_depth_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
@@ -243,6 +244,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
         jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
     }
 
+    const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
     Totals totals{splat(vec3(0)), 0.0f, 1.0f};
     alignas(64) float steps_taken[16] = {};
     Floats taken = 0.0f;
@@ -260,7 +262,12 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
 
         // What a source of 1 per metre in this step adds to the eye.
         const Floats depth = extinction * points.length;
-        const Floats weight = totals.transmittance * points.length * mean_transmittance(depth);
+        Floats weight = totals.transmittance * points.length * mean_transmittance(depth);
+        if (styled) {
+            const Floats seen = exp(-totals.depth * march.style.view_depth);
+            weight = seen * points.length * mean_transmittance(depth * march.style.view_depth) *
+                     style_fade(march.style, march.camera, points.position);
+        }
         totals.radiance = totals.radiance + glow_at(march, packet) * weight;
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;

@@ -12,6 +12,7 @@ struct March {
     Snapshot snapshot; // media as the settings see them
     MarchSettings settings;
     StyleSettings style;
+    Camera camera;                  // for style.range
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     std::vector<vec3> near_points;  // positions of the local lights

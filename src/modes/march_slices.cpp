@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "modes/light_along.h"
+#include "modes/style.h"
 #include "volume/fog_pieces.h"
 
 #include <array>
@@ -67,6 +68,14 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Ligh
     for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
 }
 
+// Share of the light scattered at a point of the ray that reaches the eye.
+double seen(const RayMarch& on, size_t piece, double t) {
+    const StyleSettings& style = on.march.style;
+    const double share = std::exp(-style.view_depth * on.scratch.fog.depth_at(piece, t));
+    if (style.range >= StyleSettings{}.range) return share;
+    return share * style_fade(style, eye_distance(on.march.camera, on.ray.at(static_cast<float>(t))));
+}
+
 // Emission and ambient light of all fog, lit or not.
 dvec3 glow(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
@@ -75,7 +84,7 @@ dvec3 glow(RayMarch& on) {
         split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
             for (const Node node : gauss) {
                 const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
-                const double weight = 0.5 * (high - low) * node.weight * std::exp(-fog.depth_at(piece, t));
+                const double weight = 0.5 * (high - low) * node.weight * seen(on, piece, t);
                 for (size_t m = 0; m < fog.media; ++m) {
                     const Optics& optics = on.march.snapshot.media[m].optics;
                     const dvec3 per_density =
@@ -144,7 +153,7 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
         const Optics& optics = on.march.snapshot.media[m].optics;
         scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
     }
-    return scattering * (weight * light_at.amount * std::exp(-fog.depth_at(piece, t)));
+    return scattering * (weight * light_at.amount * seen(on, piece, t));
 }
 
 // Nodes of one part: for the sun in t; for a local light in θ with t = nearest + scale·tan θ, so that

@@ -13,6 +13,8 @@ std::span<const Mode> modes() {
              Surfaces::shared, march_limits, prepare_march},
         Mode{"path", "unbiased path tracing of all scattered light: the truth, with noise",
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
+        Mode{"radial-blur", "brightness smeared away from the lights in the finished picture", Accuracy::look,
+             Surfaces::post, radial_blur_limits, prepare_radial_blur, post_radial_blur},
     };
     return table;
 }
@@ -25,6 +27,8 @@ const Mode& find_mode(std::string_view name) {
     }
     fail(ExitCode::usage, "--mode", "no mode '" + printable(name, 40) + "'; there is " + joined(names, ", "));
 }
+
+bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }
 
 bool error_is_noise(const Mode& mode) {
     return mode.surfaces == Surfaces::own && mode.accuracy == Accuracy::multiple_scattering;

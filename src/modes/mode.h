@@ -61,13 +61,16 @@ struct Mode {
     Accuracy accuracy;
     Surfaces surfaces;
     std::vector<Limit> (*limits)(const View&, const Snapshot&, const Settings&);
-    // History may be null. null for Surfaces::post.
+    // History may be null. Of Surfaces::post: the fog of the picture it works on.
     ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
     PostFunction (*prepare_post)(const View&, const Snapshot&, const Settings&) = nullptr; // for Surfaces::post only
 };
 
 std::span<const Mode> modes();
 const Mode& find_mode(std::string_view name); // throws Error (usage) listing the names
+
+// Whether style.* changes its pictures: the truth has none.
+bool honours_style(const Mode& mode);
 
 // Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
 bool error_is_noise(const Mode& mode);

@@ -15,6 +15,12 @@ inline float style_fade(const StyleSettings& style, float distance) {
     return std::clamp((style.range - distance) / (0.2f * style.range), 0.0f, 1.0f);
 }
 
+// What style.range counts: metres from the eye, or in front of an orthographic camera.
+inline float eye_distance(const Camera& camera, vec3 point) {
+    const vec3 offset = point - camera.position;
+    return camera.ortho_height > 0 ? glm::dot(offset, camera.forward) : glm::length(offset);
+}
+
 // Every grid as even fog of its mean density in its bounds: media left are homogeneous or height fog only.
 std::vector<Medium> even_media(std::span<const Medium> media);
 }

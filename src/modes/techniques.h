@@ -8,4 +8,8 @@ ScatterFunction prepare_march(const View&, const Snapshot&, const Settings&, His
 
 std::vector<Limit> path_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_path(const View&, const Snapshot&, const Settings&, History*);
+
+std::vector<Limit> radial_blur_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_radial_blur(const View&, const Snapshot&, const Settings&, History*);
+PostFunction post_radial_blur(const View&, const Snapshot&, const Settings&);
 }

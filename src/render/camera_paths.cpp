@@ -8,14 +8,6 @@ namespace {
 // Steps off a surface: beyond the rounding error of the point, below anything visible.
 float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
 
-// Interleaved gradient noise (Jimenez 2014), in 32 bits: neighbouring pixels get numbers far apart, so that what is
-// left of the step pattern is fine grain instead of clumps. Moves by the golden ratio from frame to frame.
-uint32_t interleaved(ivec2 pixel, int frame) {
-    const double inner = 0.06711056 * pixel.x + 0.00583715 * pixel.y;
-    const double value = 52.9829189 * (inner - std::floor(inner));
-    return static_cast<uint32_t>((value - std::floor(value)) * 0x1p32) + static_cast<uint32_t>(frame) * 0x9e3779b9u;
-}
-
 // Sample `sample` of a shifted van der Corput sequence: the samples of a batch are spread evenly over [0,1). Moved at
 // random within half its stratum, so that regular steps do not beat with regular shadows.
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
@@ -38,7 +30,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     const uint32_t index =
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
-    path.shift = interleaved(pixel, view.frame) + hash(view.seed, use_jitter);
+    path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
     path.place = sample_place(view, pixel, sample);
     if (const uint32_t batch = static_cast<uint32_t>(sample) / batch_size(view)) {
         path.seed = hash(path.seed, batch);

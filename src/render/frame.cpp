@@ -12,12 +12,15 @@
 
 namespace tyndall {
 namespace {
+using Clock = std::chrono::steady_clock;
 constexpr int tile_side = 4;   // a tile's 16 rays are traced together
 constexpr int block_side = 32; // a task's pixels
 
 // What all blocks of a frame share.
 struct FrameTask {
     FrameTracer tracer;
+    double mode_seconds = 0;                                // its preparation
+    std::shared_ptr<std::atomic<int64_t>> mode_nanoseconds; // then, of all threads
     std::vector<size_t> light_layers; // the layer each light of the snapshot adds to; empty unless asked for
     Layers layers;
 };
@@ -109,14 +112,34 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
     }
 }
 
+// Counts the time of every call.
+ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<int64_t>> nanoseconds) {
+    return [scatter = std::move(scatter), nanoseconds](const RayBatch& batch, std::span<Scatter> results) {
+        const auto start = Clock::now();
+        scatter(batch, results);
+        nanoseconds->fetch_add(std::chrono::nanoseconds(Clock::now() - start).count(), std::memory_order_relaxed);
+    };
+}
+
+double seconds_between(Clock::time_point a, Clock::time_point b) {
+    return std::chrono::duration<double>(b - a).count();
+}
+
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options) {
     // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
-    ScatterFunction scatter = mode.prepare(view, snapshot, settings, nullptr);
+    const auto start = Clock::now();
+    ScatterFunction scatter = mode.prepare(view, snapshot, settings, options.history);
+    const double mode_seconds = seconds_between(start, Clock::now());
+    auto nanoseconds = std::make_shared<std::atomic<int64_t>>(0);
     FrameTask task{
-        {view, snapshot, std::move(scatter), mode.surfaces, settings.march.light_points, {}}, {}, std::move(layers)};
-    if (mode.surfaces == Surfaces::shared && snapshot.occluders && !snapshot.occluders->empty())
+        {view, snapshot, timed(std::move(scatter), nanoseconds), mode.surfaces, settings.march.light_points, {}},
+        mode_seconds,
+        nanoseconds,
+        {},
+        std::move(layers)};
+    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(
                 make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
@@ -124,26 +147,24 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     return task;
 }
 
-double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
-    return std::chrono::duration<double>(b - a).count();
-}
 }
 
 void FrameStats::add(const FrameStats& other) {
     prepare_seconds += other.prepare_seconds, render_seconds += other.render_seconds;
+    fog_seconds += other.fog_seconds;
     camera_rays += other.camera_rays, steps += other.steps;
     const ivec2 a = other.first_non_finite, b = first_non_finite;
     if (other.non_finite && (non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x))) first_non_finite = a;
     non_finite += other.non_finite, samples += other.samples;
 }
 
-Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                    const FrameOptions& options, FrameStats& stats) {
-    assert(mode.surfaces != Surfaces::post && view.pixel_samples > 0);
-    assert(view.batches > 0 && view.pixel_samples % view.batches == 0);
-    const auto start = std::chrono::steady_clock::now();
+namespace {
+Layers render_pixels(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                     const FrameOptions& options, FrameStats& stats) {
+    assert(view.pixel_samples > 0 && view.batches > 0 && view.pixel_samples % view.batches == 0);
+    const auto start = Clock::now();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
-    const auto prepared = std::chrono::steady_clock::now();
+    const auto prepared = Clock::now();
 
     // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
     Layers& layers = task.layers;
@@ -164,10 +185,62 @@ Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot
 
     stats = {};
     stats.prepare_seconds = seconds_between(start, prepared);
-    stats.render_seconds = seconds_between(prepared, std::chrono::steady_clock::now());
+    stats.render_seconds = seconds_between(prepared, Clock::now());
     stats.samples = view.pixel_samples;
+    stats.fog_seconds = task.mode_seconds + 1e-9 * static_cast<double>(*task.mode_nanoseconds) / thread_count();
     for (const FrameStats& block : block_stats) stats.add(block);
     if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
     return std::move(task.layers);
+}
+
+// The part of an image a crop window shows.
+template<class T> void crop(Image<T>& image, ivec2 low, ivec2 size) {
+    if (image.empty()) return;
+    Image<T> part(size);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) part.at(x, y) = image.at(low.x + x, low.y + y);
+    image = std::move(part);
+}
+
+void crop(Layers& layers, ivec2 low, ivec2 high) {
+    const ivec2 size = high - low;
+    for (Image<vec3>* image : {&layers.color, &layers.inscatter}) crop(*image, low, size);
+    for (Image<float>* image : {&layers.alpha, &layers.depth, &layers.transmittance, &layers.validity})
+        crop(*image, low, size);
+    for (auto& [name, image] : layers.lights) crop(image, low, size);
+    layers.low = low, layers.size = size;
+}
+
+void add(const Image<vec3>& part, Image<vec3>& sum) {
+    for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += part.pixels[i];
+}
+
+// The whole picture without fog light first: what the mode adds to a pixel depends on others.
+Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                   const FrameOptions& options, FrameStats& stats) {
+    View whole = view;
+    whole.crop_low = whole.crop_high = ivec2(0);
+    Layers layers = render_pixels(mode, whole, snapshot, settings, options, stats);
+
+    const auto start = Clock::now();
+    const Addition addition = mode.prepare_post(view, snapshot, settings)({layers.color, layers.alpha, layers.depth});
+    add(addition.radiance, layers.color), add(addition.radiance, layers.inscatter);
+    for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
+        layers.validity.pixels[i] = std::min(layers.validity.pixels[i], addition.validity.pixels[i]);
+    if (options.per_light) {
+        const std::vector<size_t> places = make_light_layers(snapshot, layers);
+        for (size_t l = 0; l < places.size(); ++l) add(addition.per_light[l], layers.lights[places[l]].second);
+    }
+    const double seconds = seconds_between(start, Clock::now());
+    stats.render_seconds += seconds, stats.fog_seconds += seconds;
+    if (view.crop_low != view.crop_high) crop(layers, view.crop_low, view.crop_high);
+    return layers;
+}
+}
+
+Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                    const FrameOptions& options, FrameStats& stats) {
+    const bool post = mode.surfaces == Surfaces::post;
+    return (post ? render_post : render_pixels)(mode, view, snapshot, settings, options, stats);
 }
 }

@@ -6,6 +6,8 @@
 // left, at most 1e9 m. A stretch may have length 0. A picture and any crop of it hold the same bits, at any thread
 // count.
 //
+// A mode with Surfaces::post gets the full picture, also for a crop, and adds to it.
+//
 // A mode with Surfaces::own is asked once per sample, for the whole ray from the eye to the far plane; the renderer
 // finds the surfaces for depth and alpha only.
 #pragma once
@@ -43,6 +45,7 @@ struct Layers {
 
 struct FrameStats {
     double prepare_seconds = 0, render_seconds = 0;
+    double fog_seconds = 0; // of both, what the mode took: its preparation, and its share of every thread's time
     uint64_t camera_rays = 0, steps = 0;
     uint64_t non_finite = 0; // samples dropped: they count as black and not valid
     ivec2 first_non_finite{-1};
@@ -55,6 +58,7 @@ struct FrameStats {
 struct FrameOptions {
     bool per_light = false;
     bool halves = false;                  // of the batches
+    History* history = nullptr;           // of the frames before; null = none is kept
     std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)
     std::function<void(double)> progress; // 0..1, from any thread
 };

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "modes/style.h"
 #include "render/to_target.h"
 
 #include <algorithm>
@@ -90,6 +91,7 @@ std::string command_text(const RenderJob& job, const View& view) {
                        std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
     if (job.exr.full_float) text += " --float";
     if (job.target_error > 0) text += " --target-error " + number(job.target_error);
+    if (job.history > 0) text += " --history " + std::to_string(job.history);
     if (!job.isa.empty()) text += " --isa " + job.isa;
     if (!job.camera.empty()) text += " --camera \"" + job.camera + "\"";
     if (view.crop_low != view.crop_high)
@@ -150,6 +152,7 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
     attributes["tyndall:hash"] = hash;
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
+    if (is_stylised(job.settings) && honours_style(find_mode(job.mode))) attributes["stylised"] = "1";
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);
         attributes["tyndall:achievedError"] = number(stats.noise->error);

@@ -126,13 +126,31 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
     return {};
 }
 
+// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before the
+// scene's first frame time stands still.
+void warm_up(const Pipeline& pipeline, const Work& work, History& history) {
+    const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
+    Snapshot previous;
+    for (int back = pipeline.job.history; back > 0 && !pipeline.cancel; --back) {
+        const int earlier = std::max(frame - back, first);
+        Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier),
+                                          previous.scene ? &previous : nullptr, pipeline.job.missing);
+        View view = view_of(pipeline.scene, pipeline.job, earlier);
+        view.frame = frame - back;
+        pipeline.mode.prepare(view, snapshot, pipeline.job.settings, &history);
+        previous = std::move(snapshot);
+    }
+}
+
 void render(const Pipeline& pipeline, Work& work) {
     const RenderJob& job = pipeline.job;
     const auto start = Clock::now();
-    FrameOptions options{wants(job, "lights"), wants(job, "halves"), &pipeline.cancel, {}};
+    FrameOptions options{wants(job, "lights"), wants(job, "halves"), nullptr, &pipeline.cancel, {}};
     options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
     FrameStats& stats = work.report.stats;
     try {
+        History history;
+        if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
         work.layers = job.target_error > 0
                           ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, job.target_error,
                                              options, stats)

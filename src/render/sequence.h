@@ -25,6 +25,7 @@ struct RenderJob {
     float exposure = 0;                        // added to the scene's, for PNGs
     ExrOptions exr;
     double target_error = 0; // render until the noise is below this share of the picture's mean; 0 = settings decide
+    int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
 };

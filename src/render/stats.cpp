@@ -45,6 +45,7 @@ Json json_of(const FrameReport& frame) {
                         {"load_seconds", json_of(frame.load_seconds)},
                         {"prepare_seconds", json_of(frame.stats.prepare_seconds)},
                         {"render_seconds", json_of(frame.stats.render_seconds)},
+                        {"fog_seconds", json_of(frame.stats.fog_seconds)},
                         {"write_seconds", json_of(frame.write_seconds)},
                         {"camera_rays", json_of(frame.stats.camera_rays)},
                         {"steps", json_of(frame.stats.steps)},
@@ -66,6 +67,7 @@ Json totals(const RenderReport& report) {
         sum.load_seconds += frame.load_seconds, sum.write_seconds += frame.write_seconds;
         sum.stats.prepare_seconds += frame.stats.prepare_seconds;
         sum.stats.render_seconds += frame.stats.render_seconds;
+        sum.stats.fog_seconds += frame.stats.fog_seconds;
         sum.stats.camera_rays += frame.stats.camera_rays, sum.stats.steps += frame.stats.steps;
     }
     return object({{"seconds", json_of(report.seconds)},
@@ -74,6 +76,7 @@ Json totals(const RenderReport& report) {
                    {"load_seconds", json_of(sum.load_seconds)},
                    {"prepare_seconds", json_of(sum.stats.prepare_seconds)},
                    {"render_seconds", json_of(sum.stats.render_seconds)},
+                   {"fog_seconds", json_of(sum.stats.fog_seconds)},
                    {"write_seconds", json_of(sum.write_seconds)},
                    {"camera_rays", json_of(sum.stats.camera_rays)},
                    {"steps", json_of(sum.stats.steps)},

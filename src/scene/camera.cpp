@@ -33,4 +33,18 @@ Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel) {
     const float length = glm::length(direction);
     return {camera.position, direction / length, camera.far * length};
 }
+
+std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point) {
+    const vec2 extent(size);
+    const vec3 offset = point - camera.position;
+    vec2 screen(glm::dot(offset, camera.right), glm::dot(offset, camera.up));
+    if (camera.ortho_height > 0) {
+        screen *= 2 / camera.ortho_height;
+    } else {
+        const float depth = glm::dot(offset, camera.forward);
+        if (!(depth > 0)) return {};
+        screen /= depth * std::tan(0.5f * camera.vertical_fov);
+    }
+    return 0.5f * extent * vec2(screen.x * extent.y / extent.x + 1, 1 - screen.y);
+}
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/math.h"
 
+#include <optional>
 #include <string>
 
 namespace tyndall {
@@ -19,6 +20,9 @@ Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov);
 
 // The ray through a point of the picture in pixels, (0,0) the upper left corner of the upper left pixel.
 Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel);
+
+// Where a point appears in the picture, in pixels from the upper left; may lie outside. Nothing behind the camera.
+std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point);
 
 // Distance along the viewing direction (planar z) of a point on a ray of this camera.
 inline float planar_depth(const Camera& camera, const Ray& ray, float t) {

@@ -1,13 +1,11 @@
 // What is rendered: a camera, a picture size and how its pixels are sampled.
 #pragma once
 #include "scene/camera.h"
+#include "trace/jitter.h"
 
 #include <cstdint>
 
 namespace tyndall {
-// Where in its steps a sample looks: the middle of all, or shifted from pixel to pixel.
-enum class Jitter { none, interleaved };
-
 enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
 
 struct View {

@@ -1,0 +1,283 @@
+// Radial blur: bright places smeared away from the light's place in the picture (Mitchell 2007, GPU Gems 3, chapter
+// 13).
+#include "modes/radial_blur.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "modes/even_fog.h"
+#include "modes/style.h"
+#include "modes/techniques.h"
+#include "scene/light.h"
+
+namespace tyndall {
+namespace {
+constexpr float far_away = 1e6f; // metres: a sun's place in the picture is where this point of it would be
+constexpr int published_samples = 32;
+
+float smooth(float x) {
+    const float t = std::clamp(x, 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+float luminance_above(vec3 color, float threshold) {
+    const float bright = luminance(color);
+    return bright > threshold ? (bright - threshold) / bright : 0;
+}
+
+// Even fog's answer to the light along the line of sight straight at it: irradiance at the eye times
+// Σ albedo p (1 - e^-depth), p for light that travels to the eye, or along a spot's axis. Only a scale: the blur itself
+// knows no units.
+vec3 brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float distance) {
+    const bool spot = light.kind == LightKind::spot;
+    const float cosine = spot ? glm::dot(light.direction, -towards.direction) : 1;
+    const float squared = std::max(distance * distance, 1e-6f);
+    const vec3 irradiance = light.kind == LightKind::sun ? light.intensity : light.intensity / squared;
+    vec3 sum(0);
+    for (const Medium& medium : even_media(snapshot.media)) {
+        Ray ray = towards;
+        ray.t_max = std::min(distance, far_away);
+        const float depth = static_cast<float>(optical_depth(medium, ray));
+        sum += medium.optics.albedo * (phase_value(medium.optics.phase, cosine) * -std::expm1(-depth));
+    }
+    return sum * irradiance * light.volume_scale;
+}
+
+float squared_length(vec2 v) { return glm::dot(v, v); }
+
+// Bilinear value; what lies outside is black.
+template<class T> T sampled(const Image<T>& image, vec2 position) {
+    const vec2 p = position - 0.5f, low = glm::floor(p), share = p - low;
+    const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
+    const auto at = [&](int i, int j) {
+        return i >= 0 && j >= 0 && i < image.size.x && j < image.size.y ? image.at(i, j) : T(0);
+    };
+    if (x < -1 || y < -1 || x >= image.size.x || y >= image.size.y) return T(0);
+    const T upper = at(x, y) * (1 - share.x) + at(x + 1, y) * share.x;
+    const T lower = at(x, y + 1) * (1 - share.x) + at(x + 1, y + 1) * share.x;
+    return upper * (1 - share.y) + lower * share.y;
+}
+
+// The published sum, Σ decay^i · weight · sample_i / 32 with i from 0 to 31 along `density` of the line. Other numbers
+// of samples have their decay stretched over the same line and the same sum of weights; each lies in the middle of its
+// part of the line, so that more of them change nothing but smoothness.
+struct Line {
+    float density;
+    std::vector<float> weights;
+};
+Line make_line(const RadialBlurSettings& settings) {
+    Line line{settings.density, {}};
+    double published = 0, sum = 0;
+    for (int i = 0; i < published_samples; ++i) published += std::pow(double(settings.decay), i);
+    for (int i = 0; i < settings.samples; ++i) {
+        const double at = (i + 0.5) * published_samples / settings.samples;
+        line.weights.push_back(static_cast<float>(std::pow(double(settings.decay), at)));
+        sum += line.weights.back();
+    }
+    const double scale = settings.exposure * settings.weight * published / (published_samples * std::max(sum, 1e-30));
+    for (float& weight : line.weights) weight = static_cast<float>(weight * scale);
+    return line;
+}
+
+struct RadialBlur {
+    View view;
+    Snapshot snapshot;
+    RadialBlurSettings settings;
+    std::vector<BlurLight> lights;
+    Line line;
+};
+
+// `radius`: how far from the centre the source is not black.
+template<class T> Image<T> blurred(const RadialBlur& blur, const Image<T>& source, vec2 center, float radius) {
+    const Line& line = blur.line;
+    Image<T> result(source.size);
+    const float count = static_cast<float>(line.weights.size());
+    parallel_for(source.size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < source.size.x; ++x) {
+            const vec2 position = vec2(x, y) + 0.5f, step = (center - position) * (line.density / count);
+            const float shift = to_unit(jitter_bits(blur.view.jitter, {x, y}, blur.view.frame, blur.view.seed));
+            const float away = glm::length(center - position);
+            const float before = away > radius ? count / line.density * (1 - radius / away) - 1 : 0;
+            T sum(0);
+            for (size_t i = before > 0 ? static_cast<size_t>(before) : 0; i < line.weights.size(); ++i)
+                sum += line.weights[i] * sampled(source, position + (static_cast<float>(i) + shift) * step);
+            result.at(x, y) = sum;
+        }
+    });
+    return result;
+}
+
+// Mean of the pixels that each pixel of a smaller picture covers.
+Image<vec3> shrunk(const Image<vec3>& image, ivec2 size, float threshold) {
+    Image<vec3> result(size);
+    parallel_for(size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < size.x; ++x) {
+            const ivec2 low = ivec2(x, y) * image.size / size;
+            const ivec2 high = glm::max((ivec2(x, y) + 1) * image.size / size, low + 1);
+            vec3 sum(0);
+            for (int j = low.y; j < high.y; ++j)
+                for (int i = low.x; i < high.x; ++i) sum += image.at(i, j) * luminance_above(image.at(i, j), threshold);
+            result.at(x, y) = sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
+        }
+    });
+    return result;
+}
+
+// Bright sky around the light where nothing stands before it; BLEND surfaces let their share through.
+Image<float> occlusion_buffer(const RadialBlur& blur, const BlurLight& light, ivec2 size) {
+    Image<float> mask(size);
+    const Occluders* occluders = blur.snapshot.occluders.get();
+    const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(blur.view.size.y);
+    const vec2 center = light.position * vec2(size) / vec2(blur.view.size);
+    parallel_for(size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x0 = 0; x0 < size.x; x0 += 16) {
+            Occluders::ShadowRays rays;
+            alignas(64) float share[16], falloff[16];
+            bool any = false;
+            for (int i = 0; i < 16; ++i) {
+                const vec2 position = vec2(std::min(x0 + i, size.x - 1), y) + 0.5f;
+                const float off = 1 - squared_length(position - center) / (radius * radius);
+                falloff[i] = share[i] = off > 0 ? off * off : 0;
+                const Ray ray = camera_ray(blur.view.camera, size, position);
+                rays.ox[i] = ray.origin.x, rays.oy[i] = ray.origin.y, rays.oz[i] = ray.origin.z;
+                rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
+                const float along = std::max(glm::dot(ray.direction, blur.view.camera.forward), 1e-6f);
+                rays.t_min[i] = blur.view.camera.near / along, rays.t_max[i] = light.depth / along;
+                rays.active[i] = falloff[i] > 0 ? -1 : 0;
+                any |= falloff[i] > 0;
+            }
+            if (any && occluders && !occluders->empty()) {
+                occluders->transmission(rays, share);
+                for (int i = 0; i < 16; ++i) share[i] *= falloff[i];
+            }
+            for (int i = 0; i < 16 && x0 + i < size.x; ++i) mask.at(x0 + i, y) = rays.active[i] ? share[i] : 0;
+        }
+    });
+    return mask;
+}
+
+void add_light(const RadialBlur& blur, size_t index, const Image<vec3>& smeared, Addition& addition) {
+    const ivec2 size = blur.view.size;
+    const vec2 scale = vec2(smeared.size) / vec2(size);
+    Image<vec3>& part = addition.per_light[index];
+    parallel_for(size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < size.x; ++x) {
+            // Held at the border, where the blurred picture ends half a pixel early.
+            const vec2 position = glm::clamp((vec2(x, y) + 0.5f) * scale, vec2(0.5f), vec2(smeared.size) - 0.5f);
+            const vec3 light = sampled(smeared, position);
+            part.at(x, y) += light;
+            addition.radiance.at(x, y) += light;
+        }
+    });
+}
+
+Image<vec3> times(const Image<float>& image, vec3 color) {
+    Image<vec3> result(image.size);
+    for (size_t i = 0; i < image.pixels.size(); ++i) result.pixels[i] = image.pixels[i] * color;
+    return result;
+}
+
+Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
+    const ivec2 full = blur.view.size, size = shared_size(full, blur.settings.picture);
+    Addition addition{Image<vec3>(full), Image<float>(full, 1.0f), {}};
+    addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(full));
+    if (blur.lights.empty()) return addition;
+
+    Image<vec3> highlights;
+    if (blur.settings.source == BlurSource::highlights)
+        highlights = shrunk(picture.color, size, blur.settings.threshold);
+    for (const BlurLight& light : blur.lights) {
+        const vec2 center = light.position * vec2(size) / vec2(full);
+        if (blur.settings.source == BlurSource::occlusion) {
+            const Image<float> rays = blurred(blur, occlusion_buffer(blur, light, size), center,
+                                              light.radius * static_cast<float>(size.y) / static_cast<float>(full.y));
+            add_light(blur, light.index, times(rays, light.color * light.fade), addition);
+        } else {
+            Image<vec3> rays = blurred(blur, highlights, center, infinity);
+            for (vec3& pixel : rays.pixels) pixel *= light.share * light.fade;
+            add_light(blur, light.index, rays, addition);
+        }
+    }
+    for (size_t i = 0; i < addition.validity.pixels.size(); ++i)
+        if (max_component(addition.radiance.pixels[i]) > 0) addition.validity.pixels[i] = 0;
+    return addition;
+}
+}
+
+ivec2 shared_size(ivec2 size, PictureShare share) {
+    const int divisor = static_cast<int>(share) + 1;
+    return (size + divisor - 1) / divisor;
+}
+
+float blur_fade(vec2 position, ivec2 size, float fade) {
+    const vec2 off = glm::abs(position / vec2(size) * 2.0f - 1.0f);
+    return 1 - smooth((std::max(off.x, off.y) - 1) / fade);
+}
+
+namespace {
+float pixels_per_metre(const View& view, float depth) {
+    const bool flat = view.camera.ortho_height > 0;
+    const float height = flat ? view.camera.ortho_height : 2 * depth * std::tan(0.5f * view.camera.vertical_fov);
+    return static_cast<float>(view.size.y) / height;
+}
+}
+
+std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, const RadialBlurSettings& settings) {
+    std::vector<BlurLight> lights;
+    float total = 0;
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const Light& light = snapshot.lights[i];
+        const bool sun = light.kind == LightKind::sun;
+        if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the picture
+        const vec3 at = sun ? view.camera.position - far_away * light.direction : light.position;
+        const std::optional<vec2> position = pixel_of(view.camera, view.size, at);
+        const float depth = glm::dot(at - view.camera.position, view.camera.forward);
+        if (!position || !(depth > view.camera.near)) continue;
+        const float fade = blur_fade(*position, view.size, settings.fade);
+        if (!(fade > 0)) continue;
+        const vec3 towards = at - view.camera.position;
+        const float distance = glm::length(towards);
+        BlurLight blur{i, *position, sun ? infinity : depth, 0, fade, vec3(0), 0};
+        blur.radius = settings.size * static_cast<float>(view.size.y);
+        if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
+        blur.color = brightness(snapshot, light, {view.camera.position, towards / distance}, sun ? infinity : distance);
+        blur.share = luminance(blur.color);
+        total += blur.share;
+        lights.push_back(blur);
+    }
+    for (BlurLight& light : lights) light.share = total > 0 ? light.share / total : 0;
+    return lights;
+}
+
+std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits{
+        {Severity::degraded, "picture",
+         "rays are smeared brightness, not light: fog, distance and what is off screen play no part"}};
+    const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.radial_blur);
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const auto found = std::ranges::find(seen, i, &BlurLight::index);
+        const std::string where = "light " + snapshot.lights[i].name;
+        if (found == seen.end())
+            limits.push_back({Severity::wrong, where, "behind the camera or far off screen: it makes no rays"});
+        else if (found->fade < 1)
+            limits.push_back({Severity::degraded, where, "off screen: its rays are fading out"});
+    }
+    return limits;
+}
+
+ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
+    return dimming_only(settings.radial_blur.fog ? even_media(snapshot.media) : std::vector<Medium>{});
+}
+
+PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    auto blur = std::make_shared<RadialBlur>();
+    blur->view = view, blur->settings = settings.radial_blur;
+    blur->snapshot = stylised(snapshot, settings.style);
+    blur->lights = blur_lights(view, blur->snapshot, settings.radial_blur);
+    blur->line = make_line(settings.radial_blur);
+    return [blur](const PlainPicture& picture) { return added_rays(*blur, picture); };
+}
+}
