@@ -33,9 +33,10 @@ Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
     view.crop_low = shot.crop_low, view.crop_high = shot.crop_high;
     view.pixel_samples = shot.settings.pixel.samples, view.batches = shot.batches;
     view.filter = shot.settings.pixel.filter, view.filter_radius = shot.settings.pixel.filter_radius;
+    view.per_light = shot.per_light;
     view.seed = shot.proof.seed, view.frame = shot.proof.frame;
     FrameOptions options;
-    options.per_light = shot.per_light, options.cancel = shot.control.cancel;
+    options.cancel = shot.control.cancel;
     options.progress = shot.progress;
     FrameStats stats;
     Layers layers = render_frame(find_mode(shot.mode), view, snapshot, shot.settings, options, stats);

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "modes/even_fog.h"
+#include "modes/fog_picture.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 #include "scene/light.h"
@@ -205,11 +206,6 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
         if (max_component(addition.radiance.pixels[i]) > 0) addition.validity.pixels[i] = 0;
     return addition;
 }
-}
-
-ivec2 shared_size(ivec2 size, PictureShare share) {
-    const int divisor = static_cast<int>(share) + 1;
-    return (size + divisor - 1) / divisor;
 }
 
 float blur_fade(vec2 position, ivec2 size, float fade) {

@@ -18,7 +18,4 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
 
 // 1 for a light in the picture; falls smoothly to 0 at `fade` half pictures outside it.
 float blur_fade(vec2 position, ivec2 size, float fade);
-
-// A share of a picture size, rounded up.
-ivec2 shared_size(ivec2 size, PictureShare share);
 }

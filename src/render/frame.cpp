@@ -143,7 +143,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(
                 make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
-    if (options.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
+    if (view.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
     return task;
 }
 
@@ -227,7 +227,7 @@ Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot,
     add(addition.radiance, layers.color), add(addition.radiance, layers.inscatter);
     for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
         layers.validity.pixels[i] = std::min(layers.validity.pixels[i], addition.validity.pixels[i]);
-    if (options.per_light) {
+    if (view.per_light) {
         const std::vector<size_t> places = make_light_layers(snapshot, layers);
         for (size_t l = 0; l < places.size(); ++l) add(addition.per_light[l], layers.lights[places[l]].second);
     }

@@ -56,7 +56,6 @@ struct FrameStats {
 };
 
 struct FrameOptions {
-    bool per_light = false;
     bool halves = false;                  // of the batches
     History* history = nullptr;           // of the frames before; null = none is kept
     std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)

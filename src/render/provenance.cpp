@@ -110,9 +110,10 @@ std::string command_text(const RenderJob& job, const View& view) {
 }
 
 bool measures_noise(const RenderJob& job) {
-    const auto wants = [&](std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; };
-    return job.target_error > 0 || wants("variance") || wants("halves");
+    return job.target_error > 0 || wants_layer(job, "variance") || wants_layer(job, "halves");
 }
+
+bool wants_layer(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
 
 View view_of(const Scene& scene, const RenderJob& job, int frame) {
     View view;
@@ -121,7 +122,7 @@ View view_of(const Scene& scene, const RenderJob& job, int frame) {
     view.crop_low = job.crop_low, view.crop_high = job.crop_high;
     view.pixel_samples = job.settings.pixel.samples;
     view.filter = job.settings.pixel.filter, view.filter_radius = job.settings.pixel.filter_radius;
-    view.jitter = job.settings.pixel.jitter;
+    view.jitter = job.settings.pixel.jitter, view.per_light = wants_layer(job, "lights");
     view.seed = job.seed, view.frame = frame;
     if (measures_noise(job)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;

@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "render/camera_paths.h"
-#include "render/fog_reach.h"
+#include "volume/fog_reach.h"
 
 namespace tyndall {
 namespace {

@@ -46,8 +46,6 @@ struct Pipeline {
     size_t next = 0; // index of the first frame not yet looked at
 };
 
-bool wants(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
-
 float png_exposure(const Pipeline& pipeline, int frame) {
     return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
 }
@@ -126,8 +124,8 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
     return {};
 }
 
-// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before the
-// scene's first frame time stands still.
+// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
+// the scene's first frame time stands still.
 void warm_up(const Pipeline& pipeline, const Work& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
     Snapshot previous;
@@ -145,7 +143,7 @@ void warm_up(const Pipeline& pipeline, const Work& work, History& history) {
 void render(const Pipeline& pipeline, Work& work) {
     const RenderJob& job = pipeline.job;
     const auto start = Clock::now();
-    FrameOptions options{wants(job, "lights"), wants(job, "halves"), nullptr, &pipeline.cancel, {}};
+    FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}};
     options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
     FrameStats& stats = work.report.stats;
     try {

@@ -34,6 +34,8 @@ struct RenderJob {
 // takes noise_batches batches, and as many samples as they divide.
 bool measures_noise(const RenderJob& job);
 
+bool wants_layer(const RenderJob& job, std::string_view layer);
+
 struct FrameReport {
     int frame = 0;
     std::string file;

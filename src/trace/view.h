@@ -17,6 +17,7 @@ struct View {
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;
+    bool per_light = false; // whether the parts of single lights are wanted
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 };

@@ -9,9 +9,9 @@ namespace tyndall::test {
 namespace {
 Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot, FrameStats& stats,
                 bool per_light = false) {
-    FrameOptions options;
-    options.per_light = per_light;
-    return render_frame(mode, view, snapshot, Settings{}, options, stats);
+    View asked = view;
+    asked.per_light = per_light;
+    return render_frame(mode, asked, snapshot, Settings{}, FrameOptions{}, stats);
 }
 Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot) {
     FrameStats stats;

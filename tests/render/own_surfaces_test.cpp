@@ -1,6 +1,6 @@
 #include "base/parallel.h"
 #include "noise_fixtures.h"
-#include "render/fog_reach.h"
+#include "volume/fog_reach.h"
 
 #include <mutex>
 
@@ -177,9 +177,9 @@ TEST(OwnSurfaces, SplitTheLightByName) {
         light.name = name, light.kind = LightKind::sun;
         snapshot.lights.push_back(light);
     }
-    FrameOptions options;
-    options.per_light = true;
-    const Layers layers = rendered(own_mode(prepare_follow), plain_view({9, 9}, 2, 2.0f), snapshot, options);
+    View view = plain_view({9, 9}, 2, 2.0f);
+    view.per_light = true;
+    const Layers layers = rendered(own_mode(prepare_follow), view, snapshot, FrameOptions{});
     ASSERT_EQ(layers.lights.size(), 2u);
     for (size_t i = 0; i < layers.color.pixels.size(); ++i)
         for (int l = 0; l < 2; ++l) {

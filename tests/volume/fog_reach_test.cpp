@@ -1,8 +1,16 @@
-#include "fixtures.h"
-#include "render/fog_reach.h"
+#include "volume/fog_reach.h"
+
+#include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {
+Medium even_medium(float extinction, Box box = everywhere()) {
+    Medium medium;
+    medium.optics.extinction = extinction;
+    medium.bounds = medium.world_bounds = box;
+    return medium;
+}
+
 const Ray forward{vec3(0), vec3(0, 0, -1), infinity};
 
 Medium height_medium(float extinction, float base, float falloff) {

@@ -1,5 +1,5 @@
 // The end of unbounded fog, found by doubling on its closed-form optical depth.
-#include "render/fog_reach.h"
+#include "volume/fog_reach.h"
 
 namespace tyndall {
 namespace {

@@ -1,0 +1,37 @@
+#include "modes/history.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall {
+namespace {
+TEST(History, GoesOnWhileThePictureDoes) {
+    Scene scene;
+    Snapshot snapshot;
+    snapshot.scene = &scene, snapshot.bounds = {vec3(-10), vec3(10)};
+    View view;
+    Settings settings;
+    History history;
+    const auto next = [&] { return follow(history, view, snapshot, settings); };
+    EXPECT_EQ(next(), 0);
+    EXPECT_EQ(next(), 1);
+    view.camera.position.x += 0.5f;
+    view.frame = 17;
+    EXPECT_EQ(next(), 2);
+
+    history.froxels = std::shared_ptr<const FroxelMemory>(std::shared_ptr<int>(), nullptr);
+    const auto resets = [&](const auto& change) {
+        next(), next();
+        change();
+        return next() == 0;
+    };
+    EXPECT_TRUE(resets([&] { view.camera.position.x += 5; })) << "jump";
+    EXPECT_TRUE(resets([&] { view.camera.forward = vec3(1, 0, 0); })) << "turn";
+    EXPECT_TRUE(resets([&] { view.camera.vertical_fov *= 1.1f; })) << "lens";
+    EXPECT_TRUE(resets([&] { view.camera.name = "other"; })) << "camera";
+    EXPECT_TRUE(resets([&] { view.size.x += 1; })) << "size";
+    EXPECT_TRUE(resets([&] { settings.march.step_depth *= 0.5f; })) << "settings";
+    Scene other;
+    EXPECT_TRUE(resets([&] { snapshot.scene = &other; })) << "scene";
+}
+}
+}
