@@ -4,9 +4,11 @@
 #include "base/frames.h"
 #include "common.h"
 #include "output.h"
+#include "render/contact_sheet.h"
 #include "render/to_target.h"
 #include "render_options.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace tyndall {
@@ -80,47 +82,132 @@ void say_summary(const RenderReport& report, const RenderJob& job) {
         say("look: add --png for pictures any program shows; the .exr opens in tev, Blender, Nuke and others");
 }
 
-int run_render(const RenderOptions& texts, const Globals& globals) {
-    RenderJob job = make_job(texts);
-    const LoadOptions options = load_options(texts);
-    job.light_units = options.light_units;
-    OutputPlaces places;
-    if (!job.frames.empty())
-        places.check(job.output, job.frames);
-    else
-        places.check(std::filesystem::path(frame_name(job.output, 1)));
-    if (!texts.stats.empty()) places.check(std::filesystem::path(texts.stats));
+// What a job needs before its frames, and what is known of it afterwards.
+struct Rendered {
+    RenderJob job;
+    RenderReport report;
+};
 
-    const Scene scene = load_scene(job.scene_file, options);
-    stop_if_cancelled();
-    choose_frames(scene, job);
-    places.check(job.output, job.frames);
-    find_camera(scene, job.camera);
-    check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
+void say_before(const Scene& scene, const std::vector<Limit>& limits, const RenderOptions& texts, const RenderJob& job,
+                const Globals& globals) {
     say_idle_settings(texts.settings, job, globals);
+    if (job.history > 0 && !find_mode(job.mode).remembers && !globals.quiet)
+        say("note: --history changes nothing: " + job.mode + " has no memory");
+    say_limits(scene, limits, globals);
+}
+
+// Renders a job's frames and reports on them; json is the statistics file's name, empty for none.
+Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& texts, const std::string& json,
+                    const std::string& label, const Globals& globals) {
     settle_noise(job, globals);
     const std::vector<Limit> limits = limits_of(scene, job);
-    say_limits(scene, limits, globals);
+    say_before(scene, limits, texts, job, globals);
 
-    Progress progress(globals.progress, "render", static_cast<double>(job.frames.size()), globals.json);
-    const RenderReport report = render_sequence(scene, job, progress, cancel_flag());
+    Progress progress(globals.progress, label, static_cast<double>(job.frames.size()), globals.json);
+    RenderReport report = render_sequence(scene, job, progress, cancel_flag());
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
     for (const Limit& limit : limits) job.limits_said.push_back(limit_line(limit));
-    if (!texts.stats.empty()) write_file_atomically(texts.stats, stats_json(report, job));
-    if (globals.json) print_report(stats_json(report, job) + "\n");
+    if (!json.empty()) write_file_atomically(json, stats_json(report, job));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
         say_summary(report, job);
     }
-    if (report.non_finite == 0 && report.missed)
-        fail(ExitCode::differs, job.scene_file.string(),
-             formatted("all frames were written, but %d of them %s noisier than %g after %d camera rays per pixel",
-                       report.missed, report.missed == 1 ? "is" : "are", job.target_error, most_target_samples));
-    if (report.non_finite == 0) return 0;
-    fail(ExitCode::non_finite, job.scene_file.string(),
-         "all frames were written, but " + count_text(report.non_finite, "sample") +
+    return {std::move(job), std::move(report)};
+}
+
+int outcome(const std::vector<Rendered>& all, const std::string& scene) {
+    uint64_t non_finite = 0;
+    for (const Rendered& one : all) non_finite += one.report.non_finite;
+    for (const Rendered& one : all)
+        if (non_finite == 0 && one.report.missed)
+            fail(ExitCode::differs, scene,
+                 formatted("all frames were written, but %d of them %s noisier than %g after %d camera rays per pixel",
+                           one.report.missed, one.report.missed == 1 ? "is" : "are", one.job.target_error,
+                           most_target_samples));
+    if (non_finite == 0) return 0;
+    fail(ExitCode::non_finite, scene,
+         "all frames were written, but " + count_text(non_finite, "sample") +
              " were not finite numbers and were left out");
+}
+
+std::string sheet_name(const RenderOptions& texts, int frame) {
+    return std::filesystem::path(frame_name(with_word(texts.output, "modes"), frame))
+        .replace_extension(".png")
+        .string();
+}
+
+// One PNG per frame with the pictures of all modes and the time each took.
+void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& texts,
+                  const Globals& globals) {
+    for (const int frame : all[0].job.frames) {
+        std::vector<SheetPicture> pictures;
+        for (const Rendered& one : all) {
+            const auto found = std::ranges::find(one.report.frames, frame, &FrameReport::frame);
+            if (found == one.report.frames.end()) return; // cancelled
+            std::string label = one.job.mode;
+            if (!found->kept)
+                label += formatted("  %.3g s, fog %.3g s", found->stats.prepare_seconds + found->stats.render_seconds,
+                                   found->stats.fog_seconds);
+            pictures.push_back({color_of(read_exr(found->file)), label});
+        }
+        const float exposure = all[0].job.exposure + scene.exposure.at(moment_of(scene, frame).seconds);
+        write_contact_sheet(sheet_name(texts, frame), pictures, exposure);
+    }
+    if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].job.frames[0])));
+}
+
+// The jobs of all modes asked for, each with files of its own when there are several.
+std::vector<RenderJob> make_jobs(const RenderOptions& texts) {
+    std::vector<RenderJob> jobs;
+    const std::vector<const Mode*> asked = asked_modes(texts.mode);
+    for (const Mode* mode : asked) {
+        jobs.push_back(make_job(texts, *mode));
+        if (asked.size() > 1) jobs.back().output = with_word(texts.output, mode->name);
+    }
+    return jobs;
+}
+
+std::string stats_name(const RenderOptions& texts, const RenderJob& job, bool several) {
+    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, job.mode);
+}
+
+int run_render(const RenderOptions& texts, const Globals& globals) {
+    std::vector<RenderJob> jobs = make_jobs(texts);
+    const bool several = jobs.size() > 1;
+    const LoadOptions options = load_options(texts);
+    OutputPlaces places;
+    for (RenderJob& job : jobs) {
+        job.light_units = options.light_units;
+        if (!job.frames.empty())
+            places.check(job.output, job.frames);
+        else
+            places.check(std::filesystem::path(frame_name(job.output, 1)));
+        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, job, several)));
+    }
+
+    const Scene scene = load_scene(jobs[0].scene_file, options);
+    stop_if_cancelled();
+    for (RenderJob& job : jobs) {
+        choose_frames(scene, job);
+        places.check(job.output, job.frames);
+        find_camera(scene, job.camera);
+        check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
+    }
+    if (several)
+        for (const int frame : jobs[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
+
+    std::vector<Rendered> all;
+    std::string reports;
+    for (const RenderJob& job : jobs) {
+        all.push_back(
+            render_job(scene, job, texts, stats_name(texts, job, several), several ? job.mode : "render", globals));
+        reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().job);
+        stop_if_cancelled();
+    }
+    if (several) write_sheets(scene, all, texts, globals);
+    if (globals.json) print_report((several ? "[" + reports + "]" : reports) + "\n");
+    return outcome(all, jobs[0].scene_file.string());
 }
 }
 

@@ -96,7 +96,15 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "how many times light scatters, in fog or on surfaces (default: as often\n"
            "as the mode can)",
            "N");
-    option("--mode", texts.mode, "rendering technique (default: march); tyndall modes lists them", "NAME");
+    option("--mode", texts.mode,
+           "rendering technique (default: march), several (a,b,c) or all: each then\n"
+           "writes files of its own, out.MODE.####.exr, and a PNG shows them side by\n"
+           "side; tyndall modes lists them",
+           "NAMES");
+    option("--history", texts.history,
+           "frames before each that modes with a memory (tyndall modes) look at first,\n"
+           "to smooth their noise (default: 0)",
+           "N");
     command
         .add_option("--set", texts.settings,
                     "one setting, for instance march.step_depth=0.1; may be repeated;\n"
@@ -139,24 +147,40 @@ void check_crop(const RenderJob& job, ivec2 picture) {
         fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
 }
 
-RenderJob make_job(const RenderOptions& texts) {
+std::vector<const Mode*> asked_modes(const std::string& text) {
+    std::vector<const Mode*> result;
+    if (text == "all") {
+        for (const Mode& mode : modes()) result.push_back(&mode);
+        return result;
+    }
+    for (const std::string& name : comma_list(text)) {
+        const Mode& mode = find_mode(name);
+        if (std::ranges::count(result, &mode)) fail(ExitCode::usage, "--mode", name + " is named twice");
+        result.push_back(&mode);
+    }
+    if (result.empty()) find_mode("");
+    return result;
+}
+
+RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     RenderJob job;
     job.scene_file = texts.scene;
     job.output = texts.output;
     if (!texts.frames.empty()) job.frames = parse_frames(texts.frames);
     check_pattern(texts.output, ".exr", job.frames.size() > 1);
-    job.mode = find_mode(texts.mode).name;
+    job.mode = mode.name;
     job.quality = quality_named(texts.quality);
     job.settings = settings_for(job.quality);
-    if (error_is_noise(find_mode(job.mode)) && texts.target_error.empty()) job.settings.pixel.samples *= noisy_factor;
+    if (error_is_noise(mode) && texts.target_error.empty()) job.settings.pixel.samples *= noisy_factor;
     if (!texts.samples.empty())
         job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
     if (!texts.orders.empty()) read_orders(texts.orders, job);
     for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
     if (!texts.target_error.empty()) {
         job.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
-        check_target(find_mode(job.mode));
+        check_target(mode);
     }
+    if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     job.camera = texts.camera;
     if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);
     if (!texts.crop.empty()) read_crop(texts.crop, job);

@@ -7,15 +7,18 @@ namespace tyndall {
 struct RenderOptions {
     std::string scene, output, frames, mode = "march", quality = "preview", camera, resolution, crop, samples;
     std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
-    std::string orders, target_error;
+    std::string orders, target_error, history;
     std::vector<std::string> settings;
     bool png = false, resume = false, full_float = false;
 };
 
 void add_render_options(CLI::App& command, RenderOptions& texts);
 
+// The modes of --mode: a name, several with commas between, or all. Throws Error (usage).
+std::vector<const Mode*> asked_modes(const std::string& text);
+
 // Everything the command line alone decides; throws Error (usage) before any file is touched.
-RenderJob make_job(const RenderOptions& texts);
+RenderJob make_job(const RenderOptions& texts, const Mode& mode);
 LoadOptions load_options(const RenderOptions& texts);
 void check_crop(const RenderJob& job, ivec2 picture);
 }

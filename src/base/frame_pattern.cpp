@@ -85,4 +85,20 @@ std::string frame_name(std::string_view pattern, int frame) {
     return std::string(pattern.substr(0, token->start)) + number +
            std::string(pattern.substr(token->start + token->length));
 }
+
+std::string with_word(std::string_view pattern, std::string_view word) {
+    const std::optional<Token> token = find_token(pattern);
+    const size_t name = pattern.find_last_of('/') + 1, dot = pattern.find_last_of('.');
+    const bool extension = dot != std::string_view::npos && dot > name;
+    size_t place = pattern.size();
+    if (token)
+        place = token->start;
+    else if (extension)
+        place = dot + 1;
+    std::string result(pattern.substr(0, place));
+    if (!token && !extension) result += '.';
+    result += word;
+    if (token || extension) result += '.';
+    return result + std::string(pattern.substr(place));
+}
 }

@@ -13,6 +13,9 @@ std::string format_frames(const std::vector<int>& frames);
 
 bool has_frame_token(std::string_view pattern);
 
+// The pattern with a word and a dot before its token, or before its extension: out.####.exr -> out.march.####.exr.
+std::string with_word(std::string_view pattern, std::string_view word);
+
 // The pattern with its token replaced: name.####.exr, 12 -> name.0012.exr. Negative frames keep their sign: -0003.
 std::string frame_name(std::string_view pattern, int frame);
 }

@@ -1,6 +1,7 @@
 #include "measure/heatmap.h"
 
 #include "measure/metrics.h"
+#include "render/lettering.h"
 
 #include <cstdio>
 #include <string>
@@ -9,12 +10,7 @@ namespace tyndall {
 namespace {
 constexpr Color8 not_a_number(0, 255, 0);
 
-// Figures of 3 × 5 dots: a row is an octal digit, its bits the dots from left to right.
-constexpr const char* figures[] = {"75557", "26227", "71747", "71717", "55711", "74717",
-                                   "74757", "71222", "75757", "75717", "00002"};
-constexpr int figure_width = 4, figure_height = 5; // with a gap
-
-int dot_side(int width) { return std::max(1, width / 400); }
+int dot_side(int width) { return std::max(1, width / 800); }
 
 struct Tick {
     double position; // 0 to 1
@@ -35,16 +31,6 @@ std::vector<Tick> ticks_of(const HeatScale& scale) {
     return ticks;
 }
 
-void draw_text(Image<Color8>& picture, ivec2 corner, int dot, const std::string& text, Color8 color) {
-    for (size_t i = 0; i < text.size(); ++i) {
-        const char* rows = figures[text[i] == '.' ? 10 : text[i] - '0'];
-        for (int y = 0; y < figure_height * dot; ++y)
-            for (int x = 0; x < 3 * dot; ++x)
-                if ((rows[y / dot] - '0') & (4 >> (x / dot)))
-                    picture.at(corner.x + static_cast<int>(i) * figure_width * dot + x, corner.y + y) = color;
-    }
-}
-
 // The scale in the rows from `top` on.
 void draw_strip(Image<Color8>& picture, int top, const HeatScale& scale) {
     const int width = picture.size.x, dot = dot_side(width);
@@ -52,14 +38,13 @@ void draw_strip(Image<Color8>& picture, int top, const HeatScale& scale) {
         for (int x = 0; x < width; ++x) picture.at(x, y) = heat_color((x + 0.5) / width);
 
     const std::vector<Tick> ticks = ticks_of(scale);
-    size_t longest = 0;
-    for (const Tick& tick : ticks) longest = std::max(longest, tick.text.size());
-    const auto text_width = [&](size_t length) { return static_cast<int>(length) * figure_width * dot + dot; };
-    if (text_width(longest + 1) * static_cast<int>(ticks.size()) > width) return;
+    int longest = 0;
+    for (const Tick& tick : ticks) longest = std::max(longest, text_width(tick.text, dot));
+    if ((longest + 8 * dot) * static_cast<int>(ticks.size()) > width) return;
     for (const Tick& tick : ticks) {
-        const int room = width - text_width(tick.text.size());
-        const int left = static_cast<int>(tick.position * width) - text_width(tick.text.size()) / 2;
-        draw_text(picture, {std::clamp(left, 0, room) + dot, top + dot}, dot, tick.text,
+        const int room = width - text_width(tick.text, dot) - 2 * dot;
+        const int left = static_cast<int>(tick.position * width) - text_width(tick.text, dot) / 2;
+        draw_text(picture, {std::clamp(left, 2 * dot, std::max(room, 2 * dot)), top + dot}, dot, tick.text,
                   Color8(tick.position < 0.6 ? 255 : 0));
     }
 }
@@ -77,7 +62,7 @@ Color8 heat_color(double t) {
     return color;
 }
 
-int heat_strip_height(int width) { return (figure_height + 2) * dot_side(width); }
+int heat_strip_height(int width) { return (letter_height + 2) * dot_side(width); }
 
 Image<Color8> heat_map(const Image<float>& values, const HeatScale& scale) {
     const int width = values.size.x, height = values.size.y;

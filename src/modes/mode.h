@@ -64,6 +64,7 @@ struct Mode {
     // History may be null. Of Surfaces::post: the fog of the picture it works on.
     ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
     PostFunction (*prepare_post)(const View&, const Snapshot&, const Settings&) = nullptr; // for Surfaces::post only
+    bool remembers = false; // whether a History changes anything
 };
 
 std::span<const Mode> modes();

@@ -55,6 +55,9 @@ struct ExrFile {
     const Image<float>* channel(std::string_view name) const;
 };
 
+// R, G and B; black where the file lacks them.
+Image<vec3> color_of(const ExrFile& exr);
+
 // Every pixel is decoded. Throws Error (unreadable, refused): flat, single part, NONE/RLE/ZIPS/ZIP only; limits apply.
 ExrFile read_exr(const std::filesystem::path& file);
 }

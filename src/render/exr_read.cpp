@@ -78,4 +78,13 @@ ExrFile read_exr(const std::filesystem::path& file) {
         refuse(name, std::string("damaged: ") + error.what());
     }
 }
+
+Image<vec3> color_of(const ExrFile& exr) {
+    Image<vec3> color(exr.size);
+    constexpr std::string_view names[] = {"R", "G", "B"};
+    for (int c = 0; c < 3; ++c)
+        if (const Image<float>* channel = exr.channel(names[c]))
+            for (size_t i = 0; i < color.pixels.size(); ++i) color.pixels[i][c] = channel->pixels[i];
+    return color;
+}
 }

@@ -37,13 +37,17 @@ void append(void* context, void* data, int size) {
 }
 }
 
-void write_png(const std::filesystem::path& file, const Image<vec3>& linear, float exposure) {
+Image<glm::u8vec3> display_codes(const Image<vec3>& linear, float exposure) {
     const float gain = std::exp2(exposure);
     Image<glm::u8vec3> codes(linear.size);
     for (int y = 0; y < linear.size.y; ++y)
         for (int x = 0; x < linear.size.x; ++x)
             for (int c = 0; c < 3; ++c) codes.at(x, y)[c] = code(gain * linear.at(x, y)[c], x, y, c);
-    write_png(file, codes);
+    return codes;
+}
+
+void write_png(const std::filesystem::path& file, const Image<vec3>& linear, float exposure) {
+    write_png(file, display_codes(linear, exposure));
 }
 
 void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb) {

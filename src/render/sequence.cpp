@@ -70,14 +70,6 @@ WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
             pipeline.channels, work.hash};
 }
 
-Image<vec3> color_of(const ExrFile& exr) {
-    Image<vec3> color(exr.size);
-    const Image<float>*red = exr.channel("R"), *green = exr.channel("G"), *blue = exr.channel("B");
-    for (size_t i = 0; i < color.pixels.size(); ++i)
-        color.pixels[i] = {red->pixels[i], green->pixels[i], blue->pixels[i]};
-    return color;
-}
-
 // Keeps a frame that is already there and right; its PNG is made anew, since that carries no hash.
 bool keep(Pipeline& pipeline, Work& work) {
     std::string why;

@@ -1,0 +1,56 @@
+#include "render/contact_sheet.h"
+
+#include "render/lettering.h"
+#include "render/png.h"
+
+namespace tyndall {
+namespace {
+constexpr int widest_tile = 640, gap = 4;
+
+// Mean of the linear pixels that each pixel of the smaller picture covers.
+Image<vec3> shrunk(const Image<vec3>& image, ivec2 size) {
+    if (size == image.size) return image;
+    Image<vec3> result(size);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const ivec2 low = ivec2(x, y) * image.size / size;
+            const ivec2 high = glm::max((ivec2(x, y) + 1) * image.size / size, low + 1);
+            vec3 sum(0);
+            for (int j = low.y; j < high.y; ++j)
+                for (int i = low.x; i < high.x; ++i) sum += image.at(i, j);
+            result.at(x, y) = sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
+        }
+    return result;
+}
+
+void put(const Image<glm::u8vec3>& tile, ivec2 corner, Image<glm::u8vec3>& sheet) {
+    for (int y = 0; y < tile.size.y; ++y)
+        for (int x = 0; x < tile.size.x; ++x) sheet.at(corner.x + x, corner.y + y) = tile.at(x, y);
+}
+}
+
+Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, float exposure) {
+    if (pictures.empty()) return {};
+    const ivec2 whole = pictures[0].color.size;
+    const int width = std::min(whole.x, widest_tile);
+    const ivec2 tile(width, std::max(1, whole.y * width / whole.x));
+    const int scale = width >= 320 ? 2 : 1, strip = (letter_height + 4) * scale;
+    const int count = static_cast<int>(pictures.size());
+    const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
+    const int rows = (count + columns - 1) / columns;
+
+    Image<glm::u8vec3> sheet({columns * (tile.x + gap) + gap, rows * (tile.y + strip + gap) + gap}, glm::u8vec3(24));
+    for (int i = 0; i < count; ++i) {
+        const ivec2 corner = ivec2(i % columns, i / columns) * (tile + ivec2(gap, strip + gap)) + gap;
+        put(display_codes(shrunk(pictures[i].color, tile), exposure), corner, sheet);
+        std::string label = pictures[i].label;
+        while (!label.empty() && text_width(label, scale) > tile.x) label.pop_back();
+        draw_text(sheet, corner + ivec2(2 * scale, tile.y + 4 * scale), scale, label, glm::u8vec3(230));
+    }
+    return sheet;
+}
+
+void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures, float exposure) {
+    write_png(file, contact_sheet(pictures, exposure));
+}
+}

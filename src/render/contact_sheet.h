@@ -1,0 +1,18 @@
+// Several pictures of one view side by side, with a line of text under each.
+#pragma once
+#include "base/image.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct SheetPicture {
+    Image<vec3> color; // linear Rec.709, all of one size
+    std::string label;
+};
+
+// Tiles of at most 640 pixels across, in about as many rows as columns.
+Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, float exposure);
+void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures, float exposure);
+}
