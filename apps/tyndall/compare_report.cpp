@@ -95,6 +95,7 @@ std::string compare_text(const CompareResult& result) {
     std::string text = printable(result.test) + " against " + printable(result.reference) +
                        formatted(": %d x %d pixels", result.size.x, result.size.y);
     text += result.sequence ? ", " + count_text(result.frames.size(), "frame") + "\n" : std::string("\n");
+    if (all.stylised) text += "stylised: made with artist's controls, so these are differences of looks, not errors\n";
     text += errors_table(all.beauty);
     text += formatted("\n  %-16s %12.4g   without the largest 0.1 %%: %.4g\n", "relMSE", all.beauty.rel_mse,
                       all.beauty.rel_mse_trimmed);
@@ -133,6 +134,7 @@ std::string compare_json(const CompareResult& result, const std::vector<Exceeded
         {"reference", json_of(std::string_view(result.reference))},
         {"size", window_json(result.size)},
         {"pixels", json_of(e.pixels)},
+        {"stylised", json_of(result.overall.stylised)},
         {"non_finite", non_finite_json(e)},
         {"mean", json_of(e.mean_test)},
         {"mean_reference", json_of(e.mean_reference)},

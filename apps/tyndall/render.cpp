@@ -55,14 +55,22 @@ void settle_noise(RenderJob& job, const Globals& globals) {
         say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
 }
 
+// What the rows of a mode begin with: radial-blur has radial_blur.samples.
+std::string setting_prefix(std::string_view mode) {
+    std::string prefix(mode);
+    std::ranges::replace(prefix, '-', '_');
+    return prefix;
+}
+
 // Settings of a technique that is not asked for. Surfaces that techniques share are lit as march says.
 void say_idle_settings(const std::vector<std::string>& settings, const RenderJob& job, const Globals& globals) {
     if (globals.quiet) return;
     for (const std::string& setting : settings) {
         const std::string owner = setting.substr(0, setting.find('.'));
         const bool shared = owner == "march" && find_mode(job.mode).surfaces == Surfaces::shared;
-        const auto owns = [&](const Mode& mode) { return mode.name == owner; };
-        if (owner != job.mode && !shared && std::ranges::any_of(modes(), owns))
+        const auto owns = [&](const Mode& mode) { return setting_prefix(mode.name) == owner; };
+        const bool plain = owner == "style" && !honours_style(find_mode(job.mode));
+        if (plain || (owner != setting_prefix(job.mode) && !shared && std::ranges::any_of(modes(), owns)))
             say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
     }
 }

@@ -53,6 +53,8 @@ Picture read_picture(const std::filesystem::path& file) {
 
     Picture picture;
     picture.file = file.string(), picture.display = exr.display, picture.low = exr.low;
+    const auto style = exr.attributes.find("stylised");
+    picture.stylised = style != exr.attributes.end() && style->second != "0";
     const Channels& own = layers[""];
     picture.grey = !is_color(own);
     if (picture.grey && !own.contains("Y")) refuse_colorless(picture.file, layers);

@@ -11,6 +11,7 @@ struct Picture {
     std::string file;
     ivec2 display{0}, low{0}; // display window's size; where the pixels lie in it
     bool grey = false;        // the file has luminance (Y) only
+    bool stylised = false;    // made with artist's controls: no measure of accuracy
     Image<vec3> beauty;
     // By name: NAME.R/G/B as colours, layers of one channel (transmittance.T) as grey.
     std::map<std::string, Image<vec3>> layers;

@@ -12,7 +12,7 @@ struct TileScores {
     double dark = 0;                // score of all dark tiles together: light where there should be none
 };
 
-// `variance`: of the difference of each pixel and channel; pixels are independent. Rounding of floats counts as an error
-// of 1e-5 of the tile.
+// `variance`: of the difference of each pixel and channel; pixels are independent. Rounding of floats counts as an
+// error of 1e-5 of the tile.
 TileScores tile_scores(const Image<vec3>& noisy, const Image<vec3>& variance, const Image<vec3>& reference);
 }

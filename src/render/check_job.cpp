@@ -51,6 +51,9 @@ void check_job(const Scene& scene, const RenderJob& job, const Mode& mode) {
     check_picture(scene, job);
     find_camera(scene, job.camera);
     if (job.target_error > 0) check_target(mode);
+    if (mode.surfaces == Surfaces::post && measures_noise(job))
+        fail(ExitCode::usage, "--aov",
+             std::string(mode.name) + " works on the finished picture: it has no variance and no halves");
     check_outputs(scene, job);
 }
 }

@@ -1,11 +1,10 @@
 #include "render/lettering.h"
 
-// NOLINTBEGIN: stb_easy_font keeps unused functions.
+// The library leaves functions unused.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_easy_font.h>
 #pragma GCC diagnostic pop
-// NOLINTEND
 
 #include <array>
 

@@ -1,0 +1,98 @@
+"""Several modes in one run, styles, and the history."""
+import json
+import pathlib
+import struct
+import unittest
+
+from program import ProgramTest, run, scene
+
+BOX = {"low": [-1, 0, -1], "high": [1, 1, 1]}
+
+
+def lit_fog(**changes):
+    return scene(frames="1", resolution=[32, 18],
+                 media=[{"type": "homogeneous", "extinction": 0.5, "bounds": BOX}], **changes)
+
+
+def png_size(path):
+    return struct.unpack(">II", pathlib.Path(path).read_bytes()[16:24])
+
+
+class Modes(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.json", lit_fog())
+
+    def modes(self):
+        return [mode["name"] for mode in json.loads(self.succeed("modes", "--json").stdout)["modes"]]
+
+    def attributes(self, file):
+        return json.loads(self.succeed("info", "--json", file).stdout)["attributes"]
+
+    def test_all_modes_write_files_of_their_own_and_a_sheet(self):
+        names = self.modes()
+        self.assertGreaterEqual(len(names), 3)
+        result = self.succeed("render", self.scene, "-o", self.path("out.####.exr"), "--mode", "all", "--frames", "1-2",
+                              "--samples", "1", "--stats-json", self.path("stats.json"))
+        for name in names:
+            self.assertEqual(self.attributes(self.path(f"out.{name}.0002.exr"))["tyndall:mode"], name)
+            self.assertEqual(json.loads(pathlib.Path(self.path(f"stats.{name}.json")).read_text())["mode"], name)
+        self.assertIn("out.modes.0001.png", result.stderr)
+        width, height = png_size(self.path("out.modes.0002.png"))
+        self.assertGreater(width, 2 * 32)
+        self.assertGreater(height, 18)
+
+    def test_two_modes_report_as_a_list(self):
+        result = self.succeed("--json", "render", self.scene, "-o", self.path("out.exr"), "--mode", "march,radial-blur",
+                              "--samples", "1")
+        self.assertEqual([report["mode"] for report in json.loads(result.stdout)], ["march", "radial-blur"])
+        for report in json.loads(result.stdout):
+            self.assertGreaterEqual(report["totals"]["fog_seconds"], 0)
+            self.assertLessEqual(report["totals"]["fog_seconds"],
+                                 report["totals"]["prepare_seconds"] + report["totals"]["render_seconds"] + 0.1)
+
+    def test_bad_lists_are_refused(self):
+        for names, why in (("march,march", "named twice"), ("march,rays", "no mode 'rays'"), ("", "empty")):
+            result = run("render", self.scene, "-o", self.path("out.exr"), "--mode", names)
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(why, result.stderr)
+
+    def test_a_style_is_written_into_the_header(self):
+        self.succeed("render", self.scene, "-o", self.path("plain.exr"), "--samples", "1")
+        self.succeed("render", self.scene, "-o", self.path("styled.exr"), "--samples", "1", "--set", "style.light_depth=0.5")
+        self.assertNotIn("stylised", self.attributes(self.path("plain.exr")))
+        self.assertEqual(self.attributes(self.path("styled.exr"))["stylised"], "1")
+        result = self.succeed("compare", self.path("styled.exr"), self.path("plain.exr"))
+        self.assertIn("stylised", result.stdout + result.stderr)
+        report = json.loads(self.succeed("--json", "compare", self.path("styled.exr"), self.path("plain.exr")).stdout)
+        self.assertTrue(report["stylised"])
+
+    def test_the_truth_has_no_style(self):
+        result = self.succeed("render", self.scene, "-o", self.path("out.exr"), "--mode", "path", "--samples", "1",
+                              "--set", "style.density=2")
+        self.assertIn("style.density=2 changes nothing", result.stderr)
+        self.assertNotIn("stylised", self.attributes(self.path("out.exr")))
+
+    def test_history_is_noted_where_it_changes_nothing(self):
+        result = self.succeed("render", self.scene, "-o", self.path("out.exr"), "--samples", "1", "--history", "3")
+        self.assertIn("march has no memory", result.stderr)
+        result = run("render", self.scene, "-o", self.path("out.exr"), "--history", "-1")
+        self.assertEqual(result.returncode, 2, result.stderr)
+
+    def test_radial_blur_of_a_crop_is_part_of_the_whole(self):
+        common = ["render", self.scene, "--mode", "radial-blur", "--samples", "1", "--aov", "Z,inscatter,validity,lights"]
+        self.succeed(*common, "-o", self.path("whole.exr"))
+        self.succeed(*common, "-o", self.path("crop.exr"), "--crop", "8,4,20,12")
+        info = json.loads(self.succeed("info", "--json", self.path("crop.exr")).stdout)
+        names = [channel["name"] for channel in info["channels"]]
+        self.assertIn("validity.T", names)
+        self.assertIn("light_sun.R", names)
+
+    def test_noise_of_a_finished_picture_is_not_measured(self):
+        result = run("render", self.scene, "-o", self.path("out.exr"), "--mode", "radial-blur", "--aov", "variance")
+        self.assertEqual(result.returncode, 2, result.stderr)
+        self.assertIn("radial-blur", result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
