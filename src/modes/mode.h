@@ -52,7 +52,7 @@ struct PlainPicture {
 struct Addition {
     Image<vec3> radiance;
     Image<float> validity;
-    std::vector<Image<vec3>> per_light; // parts of radiance, one for each light of the snapshot
+    std::vector<Image<vec3>> per_light; // if the view wants them: parts of radiance, one for each light
 };
 using PostFunction = std::function<Addition(const PlainPicture&)>;
 

@@ -45,17 +45,35 @@ vec3 brightness(const Snapshot& snapshot, const Light& light, const Ray& towards
 
 float squared_length(vec2 v) { return glm::dot(v, v); }
 
-// Bilinear value; what lies outside is black.
-template<class T> T sampled(const Image<T>& image, vec2 position) {
-    const vec2 p = position - 0.5f, low = glm::floor(p), share = p - low;
-    const int x = static_cast<int>(low.x), y = static_cast<int>(low.y);
-    const auto at = [&](int i, int j) {
-        return i >= 0 && j >= 0 && i < image.size.x && j < image.size.y ? image.at(i, j) : T(0);
-    };
-    if (x < -1 || y < -1 || x >= image.size.x || y >= image.size.y) return T(0);
-    const T upper = at(x, y) * (1 - share.x) + at(x + 1, y) * share.x;
-    const T lower = at(x, y + 1) * (1 - share.x) + at(x + 1, y + 1) * share.x;
-    return upper * (1 - share.y) + lower * share.y;
+// An image in a black frame two pixels wide, so that look-ups up to a pixel outside need no care.
+template<class T> struct Framed {
+    static constexpr int frame = 2;
+    ivec2 size; // within the frame
+    Image<T> image;
+
+    explicit Framed(const Image<T>& inner) : size(inner.size), image(inner.size + 2 * frame) {
+        for (int y = 0; y < size.y; ++y) std::copy_n(&inner.at(0, y), size.x, &image.at(frame, y + frame));
+    }
+
+    // Bilinear value at a position from -1 to size + 1.
+    T at(vec2 position) const {
+        const vec2 p = position + (frame - 0.5f);
+        const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
+        const float u = p.x - static_cast<float>(x), v = p.y - static_cast<float>(y);
+        const T *upper = &image.at(x, y), *lower = upper + image.size.x;
+        const T a = upper[0] + (upper[1] - upper[0]) * u, b = lower[0] + (lower[1] - lower[0]) * u;
+        return a + (b - a) * v;
+    }
+};
+
+// Narrows the numbers i for which from + i·step lies in low..high.
+void keep_inside(float from, float step, float low, float high, Interval& range) {
+    if (std::abs(step) < 1e-12f) {
+        if (from < low || from > high) range = {};
+        return;
+    }
+    const float a = (low - from) / step, b = (high - from) / step;
+    range.low = std::max(range.low, std::min(a, b)), range.high = std::min(range.high, std::max(a, b));
 }
 
 // The published sum, Σ decay^i · weight · sample_i / 32 with i from 0 to 31 along `density` of the line. Other numbers
@@ -88,20 +106,27 @@ struct RadialBlur {
 };
 
 // `radius`: how far from the centre the source is not black.
-template<class T> Image<T> blurred(const RadialBlur& blur, const Image<T>& source, vec2 center, float radius) {
+template<class T> Image<T> blurred(const RadialBlur& blur, const Image<T>& black_outside, vec2 center, float radius) {
     const Line& line = blur.line;
+    const Framed<T> source(black_outside);
     Image<T> result(source.size);
     const float count = static_cast<float>(line.weights.size());
     parallel_for(source.size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < source.size.x; ++x) {
-            const vec2 position = vec2(x, y) + 0.5f, step = (center - position) * (line.density / count);
             const float shift = to_unit(jitter_bits(blur.view.jitter, {x, y}, blur.view.frame, blur.view.seed));
-            const float away = glm::length(center - position);
-            const float before = away > radius ? count / line.density * (1 - radius / away) - 1 : 0;
+            const vec2 step = (center - (vec2(x, y) + 0.5f)) * (line.density / count);
+            const vec2 first = vec2(x, y) + 0.5f + shift * step;
+            const float away = glm::length(center - first);
+            Interval range{0, count - 1};
+            if (away > radius) range.low = count / line.density * (1 - radius / away) - 1;
+            for (int axis = 0; axis < 2; ++axis)
+                keep_inside(first[axis], step[axis], -0.99f, static_cast<float>(source.size[axis]) + 0.99f, range);
+            if (range.high < range.low) continue;
             T sum(0);
-            for (size_t i = before > 0 ? static_cast<size_t>(before) : 0; i < line.weights.size(); ++i)
-                sum += line.weights[i] * sampled(source, position + (static_cast<float>(i) + shift) * step);
+            const int last = static_cast<int>(range.high);
+            for (int i = static_cast<int>(std::ceil(std::max(range.low, 0.0f))); i <= last; ++i)
+                sum += line.weights[static_cast<size_t>(i)] * source.at(first + static_cast<float>(i) * step);
             result.at(x, y) = sum;
         }
     });
@@ -159,32 +184,29 @@ Image<float> occlusion_buffer(const RadialBlur& blur, const BlurLight& light, iv
     return mask;
 }
 
-void add_light(const RadialBlur& blur, size_t index, const Image<vec3>& smeared, Addition& addition) {
+// Spreads a blurred picture over the full one, in a colour.
+template<class T>
+void add_light(const RadialBlur& blur, size_t index, const Image<T>& smeared, vec3 color, Addition& addition) {
     const ivec2 size = blur.view.size;
     const vec2 scale = vec2(smeared.size) / vec2(size);
-    Image<vec3>& part = addition.per_light[index];
+    const Framed<T> source(smeared);
+    Image<vec3>* part = blur.view.per_light ? &addition.per_light[index] : nullptr;
     parallel_for(size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < size.x; ++x) {
             // Held at the border, where the blurred picture ends half a pixel early.
             const vec2 position = glm::clamp((vec2(x, y) + 0.5f) * scale, vec2(0.5f), vec2(smeared.size) - 0.5f);
-            const vec3 light = sampled(smeared, position);
-            part.at(x, y) += light;
+            const vec3 light = color * source.at(position);
             addition.radiance.at(x, y) += light;
+            if (part) part->at(x, y) += light;
         }
     });
-}
-
-Image<vec3> times(const Image<float>& image, vec3 color) {
-    Image<vec3> result(image.size);
-    for (size_t i = 0; i < image.pixels.size(); ++i) result.pixels[i] = image.pixels[i] * color;
-    return result;
 }
 
 Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
     const ivec2 full = blur.view.size, size = shared_size(full, blur.settings.picture);
     Addition addition{Image<vec3>(full), Image<float>(full, 1.0f), {}};
-    addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(full));
+    if (blur.view.per_light) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(full));
     if (blur.lights.empty()) return addition;
 
     Image<vec3> highlights;
@@ -192,15 +214,13 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
         highlights = shrunk(picture.color, size, blur.settings.threshold);
     for (const BlurLight& light : blur.lights) {
         const vec2 center = light.position * vec2(size) / vec2(full);
-        if (blur.settings.source == BlurSource::occlusion) {
-            const Image<float> rays = blurred(blur, occlusion_buffer(blur, light, size), center,
-                                              light.radius * static_cast<float>(size.y) / static_cast<float>(full.y));
-            add_light(blur, light.index, times(rays, light.color * light.fade), addition);
-        } else {
-            Image<vec3> rays = blurred(blur, highlights, center, infinity);
-            for (vec3& pixel : rays.pixels) pixel *= light.share * light.fade;
-            add_light(blur, light.index, rays, addition);
-        }
+        const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(full.y);
+        if (blur.settings.source == BlurSource::occlusion)
+            add_light(blur, light.index, blurred(blur, occlusion_buffer(blur, light, size), center, radius),
+                      light.color * light.fade, addition);
+        else
+            add_light(blur, light.index, blurred(blur, highlights, center, infinity), vec3(light.share * light.fade),
+                      addition);
     }
     for (size_t i = 0; i < addition.validity.pixels.size(); ++i)
         if (max_component(addition.radiance.pixels[i]) > 0) addition.validity.pixels[i] = 0;

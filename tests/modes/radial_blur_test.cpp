@@ -125,7 +125,8 @@ TEST(RadialBlur, ItsDiscIsRound) {
 }
 
 TEST(RadialBlur, LightsAddUp) {
-    const View view = view_towards({0, 0, -1}, {48, 27});
+    View view = view_towards({0, 0, -1}, {48, 27});
+    view.per_light = true;
     const Snapshot both = scene_of({even_fog(0.1f)}, {sun({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
     const Addition addition = blur(view, both, Settings{});
     ASSERT_EQ(addition.per_light.size(), 2u);
