@@ -13,6 +13,8 @@ std::span<const Mode> modes() {
              Surfaces::shared, march_limits, prepare_march},
         Mode{"path", "unbiased path tracing of all scattered light: the truth, with noise",
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
+        Mode{"shadow-volume", "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
+             Accuracy::even_fog, Surfaces::shared, shadow_volume_limits, prepare_shadow_volume},
     };
     return table;
 }

@@ -8,4 +8,7 @@ ScatterFunction prepare_march(const View&, const Snapshot&, const Settings&, His
 
 std::vector<Limit> path_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_path(const View&, const Snapshot&, const Settings&, History*);
+
+std::vector<Limit> shadow_volume_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_shadow_volume(const View&, const Snapshot&, const Settings&, History*);
 }

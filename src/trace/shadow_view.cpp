@@ -152,11 +152,11 @@ double place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& r
     const dvec3 across = view.parallel ? view.light.far ? view.forward : p - view.light.at : p;
     const dvec3 other = view.parallel ? view.light.far ? across : view.forward : towards(view.light, dvec3(0));
     const dvec3 normal = glm::cross(across, other);
-    constexpr double hair = 1e-9;
+    constexpr double hair = 1e-5; // below it rounding turns the plane by more than the eye clears the sides
     if ((!view.parallel || !view.light.far) &&
         glm::dot(normal, normal) <= hair * hair * glm::dot(across, across) * glm::dot(other, other)) {
         const dvec3 axis = std::abs(other.x) < 0.5 * glm::length(other) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-        p += 2 * hair * (1 + glm::length(across)) * glm::normalize(glm::cross(other, axis));
+        p += 2 * hair * (1e-3 + glm::length(across)) * glm::normalize(glm::cross(other, axis));
     }
     for (int k = 0; k < 3; ++k) rays.p[k][lane] = p[k];
     rays.end[lane] = along + ray.t_max, rays.active |= 1u << lane;

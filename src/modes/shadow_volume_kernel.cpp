@@ -1,0 +1,381 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/shadow_volume_kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/shadow_volume.h"
+#include "modes/style.h"
+
+#include "base/simd.h"
+#include "trace/light_depth_simd.h"
+#include "volume/medium_simd.h"
+#include "volume/phase_simd.h"
+
+#include <array>
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+constexpr int no_light = -1;
+
+// Points at which the integrand is asked for, sixteen at once, whichever rays they are on.
+struct Nodes {
+    alignas(64) float t[16], weight[16], depth[16]; // optical depth from the ray's origin; of sampled fog only
+    alignas(64) float origin[3][16], direction[3][16];
+    int lane[16];
+    int count = 0;
+};
+
+// Memory that a thread keeps from packet to packet.
+struct Scratch {
+    FogCuts cuts[16];
+    std::vector<std::array<float, 16>> depth; // optical depth at the cuts, of sampled fog
+    std::vector<ShadowCrossing> crossings[16];
+    std::vector<Stretch> lit;
+    LightAlong along[16];
+    Nodes nodes;
+};
+
+struct Packet {
+    const ShadowVolumeFrame& frame;
+    const RayBatch& batch;
+    Scratch& scratch;
+    vec3 radiance[16]; // of the current light
+    int asked[16] = {};
+};
+
+// What reaches each point of a light with nothing in the way, as arrival() of scene/light.h.
+HWY_INLINE Floats arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position, Vec3s& to_light) {
+    if (light.kind == LightKind::sun) return to_light = splat(-light.direction), 1.0f;
+    const Vec3s offset = splat(light.position) - position;
+    const float reach = std::max(light.radius, smallest_radius);
+    const Floats squared = dot(offset, offset), distance = max(sqrt(squared), 1e-12f);
+    to_light = offset * (1.0f / distance);
+    Floats amount = 1.0f / max(squared, reach * reach);
+    if (!std::isinf(light.range)) {
+        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
+        amount = amount * max(min(1.0f - fourth, 1.0f), 0.0f);
+    }
+    if (light.kind == LightKind::spot) {
+        const Floats cosine = -dot(to_light, splat(light.direction));
+        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+        amount = amount * edge * edge;
+    }
+    return amount;
+}
+
+// Light of one light scattered towards the eye per metre; of shells what falls on them.
+HWY_INLINE Vec3s scattered(const ShadowVolumeFrame& frame, size_t index, const Vec3s& position,
+                           const Vec3s& direction) {
+    const Light& light = frame.snapshot.lights[index];
+    Vec3s to_light;
+    const Floats amount = arriving(light, frame.cones[index], position, to_light);
+    const Vec3s color = splat(light.intensity * light.volume_scale);
+    if (frame.settings.picture == ShadowPicture::shells) return color * amount;
+    const Floats cosine = dot(to_light, direction);
+    Vec3s scattering = splat(vec3(0));
+    for (const Medium& medium : frame.snapshot.media) {
+        const Floats extinction = density16(medium, position) * medium.optics.extinction;
+        scattering = fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
+    }
+    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, amount > 0.0f));
+    return scattering * (amount * dimmed) * color;
+}
+
+// Emission and ambient light per metre.
+HWY_INLINE Vec3s glow(const ShadowVolumeFrame& frame, const Vec3s& position) {
+    Vec3s sum = splat(vec3(0));
+    for (const Medium& medium : frame.snapshot.media) {
+        const Optics& optics = medium.optics;
+        const vec3 per_density = optics.extinction * optics.albedo * frame.snapshot.ambient + optics.emission;
+        sum = fused(splat(per_density), density16(medium, position), sum);
+    }
+    return sum;
+}
+
+HWY_INLINE Floats closed_depth(const ShadowVolumeFrame& frame, const LightPaths& paths) {
+    Floats depth = 0.0f;
+    for (const Medium& medium : frame.snapshot.media) depth = depth + analytic_depth16(medium, paths);
+    return depth;
+}
+
+// Adds the waiting nodes to their rays.
+void add_nodes(Packet& packet, int light) {
+    const ShadowVolumeFrame& frame = packet.frame;
+    Nodes& nodes = packet.scratch.nodes;
+    if (nodes.count == 0) return;
+    for (int i = nodes.count; i < 16; ++i) {
+        nodes.t[i] = nodes.weight[i] = nodes.depth[i] = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            nodes.origin[axis][i] = nodes.origin[axis][0], nodes.direction[axis][i] = nodes.direction[axis][0];
+    }
+    const Vec3s origin{load(nodes.origin[0]), load(nodes.origin[1]), load(nodes.origin[2])};
+    const Vec3s direction{load(nodes.direction[0]), load(nodes.direction[1]), load(nodes.direction[2])};
+    const Floats t = load(nodes.t);
+    const Vec3s position = fused(direction, t, origin);
+    const Floats depth = frame.sampled ? load(nodes.depth) : closed_depth(frame, {origin, direction, t});
+    Floats weight = load(nodes.weight) * exp(-depth * frame.style.view_depth);
+    if (frame.style.range < StyleSettings().range) {
+        const Vec3s away = position - splat(frame.camera.position);
+        const Floats share = (frame.style.range - sqrt(dot(away, away))) * (5 / frame.style.range);
+        weight = weight * max(min(share, 1.0f), 0.0f);
+    }
+    const Vec3s source = light == no_light ? glow(frame, position)
+                                           : scattered(frame, static_cast<size_t>(light), position, direction);
+    alignas(64) float r[16], g[16], b[16];
+    store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
+    for (int i = 0; i < nodes.count; ++i) {
+        packet.radiance[nodes.lane[i]] += vec3(r[i], g[i], b[i]);
+        ++packet.asked[nodes.lane[i]];
+    }
+    nodes.count = 0;
+}
+
+// `cut`: the piece between cuts in which t lies.
+void push_node(Packet& packet, int light, size_t lane, size_t cut, double t, double weight) {
+    Nodes& nodes = packet.scratch.nodes;
+    const Ray& ray = packet.batch.rays[lane];
+    const int i = nodes.count++;
+    nodes.t[i] = static_cast<float>(t), nodes.weight[i] = static_cast<float>(weight);
+    nodes.lane[i] = static_cast<int>(lane), nodes.depth[i] = 0;
+    if (packet.frame.sampled) {
+        const std::vector<double>& at = packet.scratch.cuts[lane].at;
+        const float share = static_cast<float>((t - at[cut]) / (at[cut + 1] - at[cut]));
+        const float from = packet.scratch.depth[cut][lane], to = packet.scratch.depth[cut + 1][lane];
+        nodes.depth[i] = from + share * (to - from);
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        nodes.origin[axis][i] = ray.origin[axis], nodes.direction[axis][i] = ray.direction[axis];
+    if (nodes.count == 16) add_nodes(packet, light);
+}
+
+// How far the angle seen from a local light may turn on one set of nodes: less where the phase function has a lobe.
+double widest_turn(const ShadowVolumeFrame& frame) {
+    float g = 0;
+    for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(medium.optics.phase.g));
+    return std::min(0.8, 4 * (1 - double(g)));
+}
+
+// Nodes on a part of a ray in which nothing has a kink: in the angle seen from a local light, in which 1/r² is constant
+// (Kulla & Fajardo 2012, section 4.1), else along the ray.
+void push_part(Packet& packet, int light, size_t lane, size_t cut, double low, double high) {
+    const ShadowVolumeFrame& frame = packet.frame;
+    const LightAlong& along = packet.scratch.along[lane];
+    if (light == no_light || !along.local()) {
+        if (frame.sampled) return push_node(packet, light, lane, cut, 0.5 * (low + high), high - low);
+        for (const GaussNode& node : frame.nodes)
+            push_node(packet, light, lane, cut, 0.5 * (low + high) + 0.5 * (high - low) * node.at,
+                      0.5 * (high - low) * node.weight);
+        return;
+    }
+    const Light& source = *along.light;
+    const double scale = std::max<double>({along.distance, source.radius, smallest_radius});
+    const double from = std::atan((low - along.nearest) / scale), to = std::atan((high - along.nearest) / scale);
+    const int turns = frame.sampled ? 1 : static_cast<int>(std::ceil((to - from) / widest_turn(frame)));
+    for (int i = 0; i < turns; ++i) {
+        const double half = 0.5 * (to - from) / turns, middle = from + (2 * i + 1) * half;
+        for (const GaussNode& node : frame.nodes) {
+            const double x = std::tan(middle + half * node.at);
+            push_node(packet, light, lane, cut, std::clamp(along.nearest + scale * x, low, high),
+                      half * node.weight * scale * (1 + x * x));
+        }
+    }
+}
+
+// Whether a piece between cuts can be seen to hold fog.
+bool counts(const Packet& packet, size_t lane, size_t cut) {
+    if (!packet.frame.sampled) return true;
+    constexpr float opaque = 16; // e^-16 = 1e-7
+    const float from = packet.scratch.depth[cut][lane] * packet.frame.style.view_depth;
+    return from < opaque && packet.scratch.depth[cut + 1][lane] > packet.scratch.depth[cut][lane];
+}
+
+// Cuts lit stretches at the cuts of the fog and at the kinks of the light.
+void push_lit(Packet& packet, int light, size_t lane, std::span<const Stretch> lit, std::span<const Stretch> reached) {
+    const std::vector<double>& at = packet.scratch.cuts[lane].at;
+    size_t cut = 0, part = 0;
+    for (const Stretch& stretch : lit) {
+        double low = stretch.low;
+        while (low < stretch.high) {
+            while (cut + 1 < at.size() && at[cut + 1] <= low) ++cut;
+            while (part < reached.size() && reached[part].high <= low) ++part;
+            if (cut + 1 >= at.size() || part >= reached.size()) return;
+            low = std::max({low, at[cut], reached[part].low});
+            const double high = std::min({stretch.high, at[cut + 1], reached[part].high});
+            if (high > low && counts(packet, lane, cut)) push_part(packet, light, lane, cut, low, high);
+            low = std::max(low, high);
+            if (low >= stretch.high) break;
+        }
+    }
+}
+
+// A sheet of light wherever the ray goes from light into shadow or back.
+void push_shells(Packet& packet, int light, size_t lane, int dark, Stretch reached) {
+    const ShadowVolumeSettings& settings = packet.frame.settings;
+    const std::vector<double>& at = packet.scratch.cuts[lane].at;
+    std::vector<ShadowCrossing>& crossings = packet.scratch.crossings[lane];
+    std::sort(crossings.begin(), crossings.end(),
+              [](const ShadowCrossing& a, const ShadowCrossing& b) { return a.t < b.t; });
+    size_t cut = 0;
+    for (const ShadowCrossing& crossing : crossings) {
+        const bool was_dark = dark > 0;
+        dark += crossing.change;
+        if ((dark > 0) == was_dark || crossing.t < reached.low || crossing.t > reached.high) continue;
+        const double left = 1 - crossing.behind / settings.shell_length;
+        if (left <= 0) continue;
+        while (cut + 2 < at.size() && at[cut + 1] < crossing.t) ++cut;
+        push_node(packet, light, lane, cut, crossing.t, settings.shell_intensity * left * left);
+    }
+}
+
+// One light on all rays.
+void add_light(Packet& packet, size_t index) {
+    Scratch& scratch = packet.scratch;
+    const ShadowVolumeFrame& frame = packet.frame;
+    const Light& light = frame.snapshot.lights[index];
+    const size_t count = packet.batch.rays.size();
+    Stretch reached[16];
+    int dark[16];
+    for (size_t i = 0; i < count; ++i) {
+        const std::vector<double>& at = scratch.cuts[i].at;
+        const Ray& ray = packet.batch.rays[i];
+        scratch.along[i].lit.clear();
+        if (at.empty()) continue;
+        find_light(light, center_of(light), {ray.origin, ray.direction, static_cast<float>(at.back())}, nullptr, {},
+                   scratch.along[i]);
+        const std::vector<Stretch>& lit = scratch.along[i].lit;
+        if (!lit.empty()) reached[i] = {std::max(lit.front().low, at.front()), std::min(lit.back().high, at.back())};
+    }
+    find_shadows(frame, index, packet.batch, reached, scratch.crossings, dark);
+    const int name = static_cast<int>(index);
+    for (size_t i = 0; i < count; ++i) {
+        if (reached[i].empty()) continue;
+        if (frame.settings.picture == ShadowPicture::shells) {
+            push_shells(packet, name, i, dark[i], reached[i]);
+            continue;
+        }
+        scratch.lit.clear();
+        append_lit(dark[i], scratch.crossings[i], reached[i], scratch.lit);
+        push_lit(packet, name, i, scratch.lit, scratch.along[i].lit);
+    }
+    add_nodes(packet, name);
+}
+
+// Optical depth of sampled fog at every cut, by the density in the middle of each step.
+void sample_depths(Packet& packet) {
+    Scratch& scratch = packet.scratch;
+    const std::span<const Ray> rays = packet.batch.rays;
+    size_t longest = 1;
+    for (size_t i = 0; i < rays.size(); ++i) longest = std::max(longest, scratch.cuts[i].at.size());
+    scratch.depth.resize(longest);
+    scratch.depth[0].fill(0);
+    Floats depth = 0.0f;
+    for (size_t k = 0; k + 1 < longest; ++k) {
+        alignas(64) float p[3][16] = {}, length[16] = {};
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const std::vector<double>& at = scratch.cuts[i].at;
+            if (k + 1 >= at.size()) continue;
+            const vec3 point = rays[i].at(static_cast<float>(0.5 * (at[k] + at[k + 1])));
+            for (int axis = 0; axis < 3; ++axis) p[axis][i] = point[axis];
+            length[i] = static_cast<float>(at[k + 1] - at[k]);
+        }
+        const Vec3s point{load(p[0]), load(p[1]), load(p[2])};
+        Floats extinction = 0.0f;
+        for (const Medium& medium : packet.frame.snapshot.media)
+            extinction = fused(density16(medium, point), medium.optics.extinction, extinction);
+        depth = fused(extinction, load(length), depth);
+        store(depth, scratch.depth[k + 1].data());
+    }
+}
+
+// The optical depth of each whole ray.
+void find_depths(Packet& packet, float (&depth)[16]) {
+    const std::span<const Ray> rays = packet.batch.rays;
+    const std::vector<std::array<float, 16>>& sampled = packet.scratch.depth;
+    if (packet.frame.sampled) {
+        std::copy(sampled.back().begin(), sampled.back().end(), depth);
+        return;
+    }
+    alignas(64) float v[7][16] = {};
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const std::vector<double>& at = packet.scratch.cuts[i].at;
+        for (int axis = 0; axis < 3; ++axis) v[axis][i] = rays[i].origin[axis], v[3 + axis][i] = rays[i].direction[axis];
+        v[6][i] = at.empty() ? 0 : static_cast<float>(at.back());
+    }
+    store(closed_depth(packet.frame, {{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])},
+                                      load(v[6])}),
+          depth);
+}
+
+// What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.
+vec3 even_glow(const ShadowVolumeFrame& frame) {
+    vec3 common(0);
+    for (const Medium& medium : frame.snapshot.media) {
+        const Optics& optics = medium.optics;
+        const vec3 own = optics.albedo * frame.snapshot.ambient + optics.emission / optics.extinction;
+        if (&medium != &frame.snapshot.media.front() && own != common) return vec3(-1);
+        common = own;
+    }
+    return common;
+}
+
+void add_glow(Packet& packet, const float (&depth)[16]) {
+    const ShadowVolumeFrame& frame = packet.frame;
+    const vec3 even = even_glow(frame);
+    if (even == vec3(0)) return;
+    const size_t count = packet.batch.rays.size();
+    if (even.x >= 0 && frame.style.view_depth > 0 && frame.style.range >= StyleSettings().range) {
+        for (size_t i = 0; i < count; ++i)
+            packet.radiance[i] -= even * (std::expm1(-frame.style.view_depth * depth[i]) / frame.style.view_depth);
+        return;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        const std::vector<double>& at = packet.scratch.cuts[i].at;
+        for (size_t k = 0; k + 1 < at.size(); ++k)
+            if (counts(packet, i, k)) push_part(packet, no_light, i, k, at[k], at[k + 1]);
+    }
+    add_nodes(packet, no_light);
+}
+
+float validity_of(const ShadowVolumeFrame& frame, const Ray& ray) {
+    if (frame.settings.picture == ShadowPicture::shells) return 0;
+    for (const Box& box : frame.uneven)
+        if (!clip(box, ray.origin, ray.direction, {0, ray.t_max}).empty()) return 0;
+    return 1;
+}
+
+void shadow_volume_kernel(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local Scratch scratch;
+    Packet packet{frame, batch, scratch, {}, {}};
+    const size_t count = batch.rays.size(), lights = frame.snapshot.lights.size();
+    for (size_t i = 0; i < count; ++i) find_cuts(frame, batch.rays[i], scratch.cuts[i]);
+    if (frame.sampled) sample_depths(packet);
+    alignas(64) float depth[16];
+    find_depths(packet, depth);
+
+    vec3 total[16];
+    std::fill(packet.radiance, packet.radiance + 16, vec3(0));
+    if (frame.settings.picture == ShadowPicture::exact) add_glow(packet, depth);
+    std::copy(packet.radiance, packet.radiance + 16, total);
+    for (size_t light = 0; light < lights; ++light) {
+        std::fill(packet.radiance, packet.radiance + 16, vec3(0));
+        add_light(packet, light);
+        for (size_t i = 0; i < count; ++i) {
+            total[i] += packet.radiance[i];
+            if (!batch.per_light.empty()) batch.per_light[i * lights + light] += packet.radiance[i];
+        }
+    }
+    for (size_t i = 0; i < count; ++i)
+        results[i] = {total[i], std::exp(-depth[i]), validity_of(frame, batch.rays[i]), packet.asked[i]};
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(shadow_volume_kernel);
+void shadow_volume_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(shadow_volume_kernel)(frame, batch, results);
+}
+}
+#endif
