@@ -69,8 +69,8 @@ struct ShadowVolumeSettings {
     int nodes = 4;                  // Gauss–Legendre nodes on each lit stretch of even fog
     int steps = 48;                 // along a ray, where fog is sampled
     int light_resolution = 64;      // cells across the fog in the light grids, where fog is sampled
-    float shell_length = 2.5f;      // metres behind the occluder at which a shell has faded out
-    float shell_intensity = 0.006f; // radiance of a shell per unit of light
+    float shell_length = 4;         // metres behind the occluder at which a shell has faded out
+    float shell_intensity = 0.08f;  // share of that length: the depth of lit fog a shell is as bright as
 };
 
 struct Settings {

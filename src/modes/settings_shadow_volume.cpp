@@ -21,7 +21,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                               "distance behind the occluder at which a shell has faded out",
                               TYNDALL_FIELD(shadow_volume.shell_length)));
     rows.push_back(number_row("shadow_volume.shell_intensity", "", 0, 1e3,
-                              "brightness of a shell as a share of the light that falls on it",
+                              "a shell is as bright as this share of shell_length of lit fog",
                               TYNDALL_FIELD(shadow_volume.shell_intensity)));
 }
 }

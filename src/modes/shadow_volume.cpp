@@ -72,8 +72,8 @@ std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, c
     for (const Light& light : snapshot.lights) {
         if (!casts(light, snapshot)) continue;
         if (is_soft(light))
-            limits.push_back({Severity::degraded, "light " + light.name,
-                              "drawn as a point: its shadows have no soft edges"});
+            limits.push_back(
+                {Severity::degraded, "light " + light.name, "drawn as a point: its shadows have no soft edges"});
         if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(snapshot.occluders->shadow_triangles()));
         const size_t sides = make_shadow_volumes(mesh, center_of(light)).sides.size();
         if (sides > many)

@@ -4,6 +4,7 @@
 
 #include "modes/shadow_volume.h"
 #include "modes/style.h"
+#include "scene/cone.h"
 
 #include "base/simd.h"
 #include "trace/light_depth_simd.h"
@@ -28,7 +29,7 @@ struct Nodes {
 // Memory that a thread keeps from packet to packet.
 struct Scratch {
     FogCuts cuts[16];
-    std::vector<std::array<float, 16>> depth; // optical depth at the cuts, of sampled fog
+    std::vector<std::array<float, 16>> at, depth; // the cuts of all rays, and the optical depth there: of sampled fog
     std::vector<ShadowCrossing> crossings[16];
     std::vector<Stretch> lit;
     LightAlong along[16];
@@ -63,19 +64,19 @@ HWY_INLINE Floats arriving(const Light& light, const ConeFalloff& cone, const Ve
     return amount;
 }
 
-// Light of one light scattered towards the eye per metre; of shells what falls on them.
+// Light of one light scattered towards the eye per metre.
 HWY_INLINE Vec3s scattered(const ShadowVolumeFrame& frame, size_t index, const Vec3s& position,
                            const Vec3s& direction) {
     const Light& light = frame.snapshot.lights[index];
     Vec3s to_light;
     const Floats amount = arriving(light, frame.cones[index], position, to_light);
     const Vec3s color = splat(light.intensity * light.volume_scale);
-    if (frame.settings.picture == ShadowPicture::shells) return color * amount;
     const Floats cosine = dot(to_light, direction);
     Vec3s scattering = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Floats extinction = density16(medium, position) * medium.optics.extinction;
-        scattering = fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
+        scattering =
+            fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
     }
     const Floats dimmed = exp(-light_depth16(frame.depths[index], position, amount > 0.0f));
     return scattering * (amount * dimmed) * color;
@@ -119,8 +120,8 @@ void add_nodes(Packet& packet, int light) {
         const Floats share = (frame.style.range - sqrt(dot(away, away))) * (5 / frame.style.range);
         weight = weight * max(min(share, 1.0f), 0.0f);
     }
-    const Vec3s source = light == no_light ? glow(frame, position)
-                                           : scattered(frame, static_cast<size_t>(light), position, direction);
+    const Vec3s source =
+        light == no_light ? glow(frame, position) : scattered(frame, static_cast<size_t>(light), position, direction);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     for (int i = 0; i < nodes.count; ++i) {
@@ -208,22 +209,34 @@ void push_lit(Packet& packet, int light, size_t lane, std::span<const Stretch> l
     }
 }
 
-// A sheet of light wherever the ray goes from light into shadow or back.
+// The mantle of a spot's beam, half way down its soft edge: crossings that change no count.
+void append_mantle(const Light& light, const Ray& ray, std::vector<ShadowCrossing>& crossings) {
+    if (light.kind != LightKind::spot) return;
+    const dvec3 origin(ray.origin), direction(ray.direction), apex(light.position);
+    const double angle = std::acos(0.5 * (std::cos(double(light.inner_cone)) + std::cos(double(light.outer_cone))));
+    const Stretch beam = inside_cone(apex, glm::normalize(dvec3(light.direction)), angle, origin, direction);
+    for (const double t : {beam.low, beam.high})
+        if (!beam.empty() && std::isfinite(t)) crossings.push_back({t, glm::distance(origin + t * direction, apex), 0});
+}
+
+// A sheet of light wherever the ray goes from light into shadow or back: as bright as some metres of the fog.
 void push_shells(Packet& packet, int light, size_t lane, int dark, Stretch reached) {
     const ShadowVolumeSettings& settings = packet.frame.settings;
     const std::vector<double>& at = packet.scratch.cuts[lane].at;
     std::vector<ShadowCrossing>& crossings = packet.scratch.crossings[lane];
+    append_mantle(*packet.scratch.along[lane].light, packet.batch.rays[lane], crossings);
     std::sort(crossings.begin(), crossings.end(),
               [](const ShadowCrossing& a, const ShadowCrossing& b) { return a.t < b.t; });
     size_t cut = 0;
     for (const ShadowCrossing& crossing : crossings) {
         const bool was_dark = dark > 0;
         dark += crossing.change;
-        if ((dark > 0) == was_dark || crossing.t < reached.low || crossing.t > reached.high) continue;
+        const bool edge = crossing.change ? (dark > 0) != was_dark : !was_dark;
+        if (!edge || crossing.t < reached.low || crossing.t > reached.high) continue;
         const double left = 1 - crossing.behind / settings.shell_length;
         if (left <= 0) continue;
         while (cut + 2 < at.size() && at[cut + 1] < crossing.t) ++cut;
-        push_node(packet, light, lane, cut, crossing.t, settings.shell_intensity * left * left);
+        push_node(packet, light, lane, cut, crossing.t, settings.shell_intensity * settings.shell_length * left * left);
     }
 }
 
@@ -260,29 +273,39 @@ void add_light(Packet& packet, size_t index) {
     add_nodes(packet, name);
 }
 
+// Origins and directions; lanes without a ray repeat the last.
+void load_rays(std::span<const Ray> rays, Vec3s& origin, Vec3s& direction) {
+    alignas(64) float v[6][16];
+    for (size_t i = 0; i < 16; ++i) {
+        const Ray& ray = rays[std::min(i, rays.size() - 1)];
+        for (int axis = 0; axis < 3; ++axis) v[axis][i] = ray.origin[axis], v[3 + axis][i] = ray.direction[axis];
+    }
+    origin = {load(v[0]), load(v[1]), load(v[2])}, direction = {load(v[3]), load(v[4]), load(v[5])};
+}
+
 // Optical depth of sampled fog at every cut, by the density in the middle of each step.
 void sample_depths(Packet& packet) {
     Scratch& scratch = packet.scratch;
     const std::span<const Ray> rays = packet.batch.rays;
     size_t longest = 1;
     for (size_t i = 0; i < rays.size(); ++i) longest = std::max(longest, scratch.cuts[i].at.size());
-    scratch.depth.resize(longest);
+    scratch.at.assign(longest, {}), scratch.depth.resize(longest);
     scratch.depth[0].fill(0);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        const std::vector<double>& at = scratch.cuts[i].at;
+        for (size_t k = 0; k < longest && !at.empty(); ++k)
+            scratch.at[k][i] = static_cast<float>(at[std::min(k, at.size() - 1)]);
+    }
+    Vec3s origin, direction;
+    load_rays(rays, origin, direction);
     Floats depth = 0.0f;
     for (size_t k = 0; k + 1 < longest; ++k) {
-        alignas(64) float p[3][16] = {}, length[16] = {};
-        for (size_t i = 0; i < rays.size(); ++i) {
-            const std::vector<double>& at = scratch.cuts[i].at;
-            if (k + 1 >= at.size()) continue;
-            const vec3 point = rays[i].at(static_cast<float>(0.5 * (at[k] + at[k + 1])));
-            for (int axis = 0; axis < 3; ++axis) p[axis][i] = point[axis];
-            length[i] = static_cast<float>(at[k + 1] - at[k]);
-        }
-        const Vec3s point{load(p[0]), load(p[1]), load(p[2])};
+        const Floats from = load(scratch.at[k].data()), to = load(scratch.at[k + 1].data());
+        const Vec3s point = fused(direction, (from + to) * 0.5f, origin);
         Floats extinction = 0.0f;
         for (const Medium& medium : packet.frame.snapshot.media)
             extinction = fused(density16(medium, point), medium.optics.extinction, extinction);
-        depth = fused(extinction, load(length), depth);
+        depth = fused(extinction, to - from, depth);
         store(depth, scratch.depth[k + 1].data());
     }
 }
@@ -295,15 +318,14 @@ void find_depths(Packet& packet, float (&depth)[16]) {
         std::copy(sampled.back().begin(), sampled.back().end(), depth);
         return;
     }
-    alignas(64) float v[7][16] = {};
+    alignas(64) float end[16] = {};
     for (size_t i = 0; i < rays.size(); ++i) {
         const std::vector<double>& at = packet.scratch.cuts[i].at;
-        for (int axis = 0; axis < 3; ++axis) v[axis][i] = rays[i].origin[axis], v[3 + axis][i] = rays[i].direction[axis];
-        v[6][i] = at.empty() ? 0 : static_cast<float>(at.back());
+        if (!at.empty()) end[i] = static_cast<float>(at.back());
     }
-    store(closed_depth(packet.frame, {{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])},
-                                      load(v[6])}),
-          depth);
+    Vec3s origin, direction;
+    load_rays(rays, origin, direction);
+    store(closed_depth(packet.frame, {origin, direction, load(end)}), depth);
 }
 
 // What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.

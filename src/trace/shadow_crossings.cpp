@@ -84,8 +84,8 @@ struct Crossing16 {
 
     // How far behind an edge, along the light, a ray is at t.
     double behind(const ShadowView::Edge& edge, int ray, double t) const {
-        const double share = product(edge.before, ray) /
-                             (product(view.corners[edge.b], ray) - product(view.corners[edge.a], ray));
+        const double share =
+            product(edge.before, ray) / (product(view.corners[edge.b], ray) - product(view.corners[edge.a], ray));
         if (view.light.far) return share;
         const dvec3 p(rays.p[0][ray], rays.p[1][ray], rays.p[2][ray]);
         return share * glm::distance(view.parallel ? p + t * view.forward : t * p, view.light.at);
@@ -128,11 +128,11 @@ struct Crossing16 {
     }
 };
 
-void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays,
-                           std::vector<ShadowCrossing> (&found)[16]) {
+void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&found)[16]) {
     static thread_local Scratch scratch;
     if (scratch.corners.size() < view.corners.size()) scratch.corners.resize(view.corners.size());
-    if (++scratch.now == 0) std::fill(scratch.corners.begin(), scratch.corners.end(), Scratch::CornerSide{}), ++scratch.now;
+    if (++scratch.now == 0)
+        std::fill(scratch.corners.begin(), scratch.corners.end(), Scratch::CornerSide{}), ++scratch.now;
     double end = -double(infinity);
     for (int ray = 0; ray < 16; ++ray)
         if (rays.active >> ray & 1) end = std::max(end, rays.end[ray]);

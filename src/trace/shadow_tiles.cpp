@@ -27,11 +27,10 @@ struct Projection {
 };
 
 Projection make_projection(const Camera& camera, ivec2 size, float margin) {
-    Projection p{dvec3(camera.position), dvec3(camera.right), dvec3(camera.up), dvec3(camera.forward), {}, {}, {}, {},
-                 {}, {}};
+    Projection p{
+        dvec3(camera.position), dvec3(camera.right), dvec3(camera.up), dvec3(camera.forward), {}, {}, {}, {}, {}, {}};
     p.orthographic = camera.ortho_height > 0;
-    const double half =
-        p.orthographic ? 0.5 * camera.ortho_height : std::tan(0.5 * double(camera.vertical_fov));
+    const double half = p.orthographic ? 0.5 * camera.ortho_height : std::tan(0.5 * double(camera.vertical_fov));
     const double scale = 0.5 * size.y / half;
     p.margin = margin + 0.05;
     p.half_width = (0.5 * size.x + p.margin) / scale, p.half_height = (0.5 * size.y + p.margin) / scale;
@@ -94,8 +93,10 @@ struct Collector {
             endless |= !(depth > 1e-9 * size);
             x[i] = p.pixels.y + p.pixels.x * q.x / depth, y[i] = p.pixels.z - p.pixels.x * q.y / depth;
             bottom = std::min(bottom, y[i]), top = std::max(top, y[i]);
-            if (q.w > 0) near = std::min(near, q.z / q.w);
-            else if (q.z < 0) near = -double(infinity);
+            if (q.w > 0)
+                near = std::min(near, q.z / q.w);
+            else if (q.z < 0)
+                near = -double(infinity);
         }
         if (endless) {
             nearest.back() = -infinity;

@@ -104,8 +104,8 @@ ShadowView make_view(const Placed& placed, const dvec3* direction) {
         const ShadowView::Edge& edge = view.edges[side.edge];
         const dvec3 a = placed.corner(edge.a);
         const dvec3 across = glm::cross(towards(placed.light, a), placed.corner(edge.b) - a);
-        view.sides.push_back({side.edge, edge.start > 0 ? -side.volumes : side.volumes,
-                              {across, direction ? -glm::dot(across, a) : 0}});
+        view.sides.push_back(
+            {side.edge, edge.start > 0 ? -side.volumes : side.volumes, {across, direction ? -glm::dot(across, a) : 0}});
     }
     view.caps.resize(placed.volumes.caps.size());
     for (size_t i = 0; i < view.caps.size(); ++i) {
@@ -118,8 +118,8 @@ ShadowView make_view(const Placed& placed, const dvec3* direction) {
 
 ShadowView view_from(const ShadowVolumes& volumes, dvec3 point) {
     const double scale = volumes.light.far ? 1 + glm::length(point) : 1 + glm::distance(point, volumes.light.at);
-    const dvec3 step = clear_of_sides(
-        [&](dvec3 by) { return clearance(placed_at(volumes, point + by), nullptr); }, scale);
+    const dvec3 step =
+        clear_of_sides([&](dvec3 by) { return clearance(placed_at(volumes, point + by), nullptr); }, scale);
     return make_view(placed_at(volumes, point + step), nullptr);
 }
 
@@ -137,9 +137,8 @@ ShadowView view_along(const ShadowVolumes& volumes, dvec3 place, dvec3 direction
 }
 
 ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin) {
-    ShadowView view = camera.ortho_height > 0
-                          ? view_along(volumes, dvec3(camera.position), dvec3(camera.forward))
-                          : view_from(volumes, dvec3(camera.position));
+    ShadowView view = camera.ortho_height > 0 ? view_along(volumes, dvec3(camera.position), dvec3(camera.forward))
+                                              : view_from(volumes, dvec3(camera.position));
     fill_tiles(volumes, camera, size, margin, view);
     return view;
 }

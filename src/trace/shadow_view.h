@@ -45,7 +45,7 @@ struct ShadowView {
         bool left[3];
         bool dark = false;     // the eye is in its volume
         bool opposite = false; // the point opposite to the eye, beyond the light, is: rays end in it at infinity
-        dvec3 normal{0};   // the plane normal·x = height, x from `place`
+        dvec3 normal{0};       // the plane normal·x = height, x from `place`
         double height = 0;
     };
     LightPoint light; // from `place`

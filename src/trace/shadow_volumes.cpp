@@ -17,8 +17,7 @@ ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const 
     for (uint32_t t = 0; t < m.triangles.size(); ++t) {
         const ShadowMesh::Triangle& triangle = m.triangles[t];
         const dvec3 a = m.corners[triangle.corners[0]];
-        const dvec3 normal =
-            glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
+        const dvec3 normal = glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
         const double facing = glm::dot(normal, towards(light, a));
         if (facing == 0 || in_ball(m, triangle, light)) continue;
         result.caps.push_back({t, facing < 0});
@@ -42,8 +41,7 @@ int count_between(const ShadowVolumes& volumes, dvec3 point) {
         }
         if (!inside) continue;
         const dvec3 a = m.corners[triangle.corners[0]];
-        const dvec3 normal =
-            glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
+        const dvec3 normal = glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
         count += (glm::dot(normal, point - a) < 0) != cap.flipped;
     }
     return count;
