@@ -156,6 +156,14 @@ double widest_turn(const ShadowVolumeFrame& frame) {
     return std::min(0.8, 4 * (1 - double(g)));
 }
 
+// Far along the ray the angle hardly turns while fog goes on: parts end at ±1, ±3, ±9 ... times the light's distance.
+double next_bound(double x) {
+    double bound = 1;
+    while (bound <= std::abs(x)) bound *= 3;
+    if (x >= -1) return bound;
+    return -bound / (bound / 3 < -x ? 3 : 9);
+}
+
 // Nodes on a part of a ray in which nothing has a kink: in the angle seen from a local light, in which 1/r² is constant
 // (Kulla & Fajardo 2012, section 4.1), else along the ray.
 void push_part(Packet& packet, int light, size_t lane, size_t cut, double low, double high) {
@@ -168,17 +176,19 @@ void push_part(Packet& packet, int light, size_t lane, size_t cut, double low, d
                       0.5 * (high - low) * node.weight);
         return;
     }
-    const Light& source = *along.light;
-    const double scale = std::max<double>({along.distance, source.radius, smallest_radius});
-    const double from = std::atan((low - along.nearest) / scale), to = std::atan((high - along.nearest) / scale);
-    const int turns = frame.sampled ? 1 : static_cast<int>(std::ceil((to - from) / widest_turn(frame)));
-    for (int i = 0; i < turns; ++i) {
-        const double half = 0.5 * (to - from) / turns, middle = from + (2 * i + 1) * half;
-        for (const GaussNode& node : frame.nodes) {
-            const double x = std::tan(middle + half * node.at);
-            push_node(packet, light, lane, cut, std::clamp(along.nearest + scale * x, low, high),
-                      half * node.weight * scale * (1 + x * x));
-        }
+    const double scale = std::max<double>({along.distance, along.light->radius, smallest_radius});
+    const auto place = [&](double t) { return (t - along.nearest) / scale; };
+    const double end = place(high), widest = widest_turn(frame);
+    for (double x = place(low); x < end;) {
+        const double next = std::min(next_bound(x), end), from = std::atan(x), to = std::atan(next);
+        const double turns = frame.sampled ? 1 : std::ceil((to - from) / widest), half = 0.5 * (to - from) / turns;
+        for (double i = 0; i < turns; ++i)
+            for (const GaussNode& node : frame.nodes) {
+                const double at = std::tan(from + (2 * i + 1 + node.at) * half);
+                push_node(packet, light, lane, cut, std::clamp(along.nearest + scale * at, low, high),
+                          half * node.weight * scale * (1 + at * at));
+            }
+        x = next;
     }
 }
 
@@ -219,7 +229,8 @@ void append_mantle(const Light& light, const Ray& ray, std::vector<ShadowCrossin
         if (!beam.empty() && std::isfinite(t)) crossings.push_back({t, glm::distance(origin + t * direction, apex), 0});
 }
 
-// A sheet of light wherever the ray goes from light into shadow or back: as bright as some metres of the fog.
+// A sheet of light wherever the ray goes through a side from light into shadow or back: as bright as some metres of the
+// fog.
 void push_shells(Packet& packet, int light, size_t lane, int dark, Stretch reached) {
     const ShadowVolumeSettings& settings = packet.frame.settings;
     const std::vector<double>& at = packet.scratch.cuts[lane].at;
@@ -232,7 +243,7 @@ void push_shells(Packet& packet, int light, size_t lane, int dark, Stretch reach
         const bool was_dark = dark > 0;
         dark += crossing.change;
         const bool edge = crossing.change ? (dark > 0) != was_dark : !was_dark;
-        if (!edge || crossing.t < reached.low || crossing.t > reached.high) continue;
+        if (!edge || !(crossing.behind > 0) || crossing.t < reached.low || crossing.t > reached.high) continue;
         const double left = 1 - crossing.behind / settings.shell_length;
         if (left <= 0) continue;
         while (cut + 2 < at.size() && at[cut + 1] < crossing.t) ++cut;

@@ -47,6 +47,35 @@ void add_levels(const Medium& medium, const Ray& ray, Stretch inside, std::vecto
     }
 }
 
+// Where the way from the ray to a light begins to leave a medium's box through another face: the light that fog lets
+// through has a kink there. With the way x + u·(light - far·x), far = 0 for suns, the faces f of axes i and j are met
+// at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which is linear in x.
+void add_exits(const Medium& medium, const Light& light, const Ray& ray, Stretch inside, std::vector<double>& cuts) {
+    const double far = light.kind == LightKind::sun ? 0 : 1;
+    const glm::dvec4 source = far == 0 ? glm::dvec4(-dvec3(light.direction), 0) : glm::dvec4(light.position, 1);
+    const dvec3 to(dmat4(medium.world_to_local) * source);
+    const LocalRay local = local_ray(medium.world_to_local, ray);
+    dvec3 face(0);
+    bool leaves[3];
+    for (int i = 0; i < 3; ++i) {
+        const double low = medium.bounds.low[i], high = medium.bounds.high[i];
+        const double beyond = far == 0 ? 0 : high, before = far == 0 ? 0 : low;
+        face[i] = to[i] > beyond ? high : low;
+        leaves[i] = (to[i] > beyond || to[i] < before) && std::isfinite(face[i]);
+    }
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        if (!leaves[i] || !leaves[j]) continue;
+        const double of_i = far * face[j] - to[j], of_j = to[i] - far * face[i];
+        const double along = of_i * local.direction[i] + of_j * local.direction[j];
+        const double t = -(face[i] * to[j] - face[j] * to[i] + of_i * local.origin[i] + of_j * local.origin[j]) / along;
+        if (!(t > inside.low && t < inside.high)) continue;
+        const dvec3 x = local.origin + t * local.direction, way = to - far * x;
+        const double u = (face[i] - x[i]) / way[i];
+        if (!leaves[k] || (face[k] - x[k]) / way[k] >= u) cuts.push_back(t);
+    }
+}
+
 // Divides low..high evenly so that no part holds more than a given optical depth.
 void divide(const ShadowVolumeFrame& frame, const Ray& ray, double low, double high, std::vector<double>& cuts) {
     double extinction = 0;
@@ -84,6 +113,8 @@ void find_cuts(const ShadowVolumeFrame& frame, const Ray& ray, FogCuts& cuts) {
         if (inside.empty()) continue;
         kinks.push_back(inside.low), kinks.push_back(inside.high);
         if (medium.kind == DensityKind::height) add_levels(medium, ray, inside, kinks);
+        if (!frame.sampled)
+            for (const Light& light : frame.snapshot.lights) add_exits(medium, light, ray, inside, kinks);
         fog.low = std::min(fog.low, inside.low), fog.high = std::max(fog.high, inside.high);
     }
     if (fog.empty()) return;
