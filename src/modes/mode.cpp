@@ -15,6 +15,9 @@ std::span<const Mode> modes() {
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
         Mode{"radial-blur", "brightness smeared away from the lights in the finished picture", Accuracy::look,
              Surfaces::post, radial_blur_limits, prepare_radial_blur, post_radial_blur},
+        Mode{"shadow-volume",
+             "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
+             Accuracy::even_fog, Surfaces::shared, shadow_volume_limits, prepare_shadow_volume},
     };
     return table;
 }

@@ -49,6 +49,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_march_rows(all);
         append_path_rows(all);
         append_radial_blur_rows(all);
+        append_shadow_volume_rows(all);
         return all;
     }();
     return rows;
@@ -72,11 +73,13 @@ void apply_setting(Settings& settings, std::string_view assignment) {
 Settings settings_for(Quality quality) {
     Settings settings;
     MarchSettings& march = settings.march;
+    ShadowVolumeSettings& volume = settings.shadow_volume;
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
+        volume.nodes = 3, volume.steps = 24, volume.light_resolution = 32;
         break;
     case Quality::preview:
         break;
@@ -84,6 +87,7 @@ Settings settings_for(Quality quality) {
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
+        volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -91,6 +95,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
         march.visibility = Visibility::slices;
         march.light_resolution = 256;
+        volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
         break;
     }
     return settings;

@@ -74,12 +74,29 @@ struct PathSettings {
     bool ambient = true;
 };
 
+// What shadow volumes are drawn as: the light between them, or their sides themselves as bright sheets.
+enum class ShadowPicture { exact, shells };
+// The fog that is integrated: every medium at its mean density in closed form, or the true densities in short steps.
+// `automatic` samples where there is a grid.
+enum class ShadowFog { automatic, even, sampled };
+
+struct ShadowVolumeSettings {
+    ShadowPicture picture = ShadowPicture::exact;
+    ShadowFog fog = ShadowFog::automatic;
+    int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of even fog
+    int steps = 48;                // along a ray, where fog is sampled
+    int light_resolution = 64;     // cells across the fog in the light grids, where fog is sampled
+    float shell_length = 4;        // metres behind the occluder at which a shell has faded out
+    float shell_intensity = 0.08f; // share of that length: the depth of lit fog a shell is as bright as
+};
+
 struct Settings {
     PixelSettings pixel;
     StyleSettings style;
     MarchSettings march;
     PathSettings path;
     RadialBlurSettings radial_blur;
+    ShadowVolumeSettings shadow_volume;
 };
 
 enum class Quality { draft, preview, final, reference };

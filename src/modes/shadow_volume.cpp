@@ -1,0 +1,118 @@
+// Shadow volumes: exact shafts without noise.
+#include "modes/shadow_volume.h"
+
+#include "modes/style.h"
+#include "modes/techniques.h"
+
+#include <numbers>
+
+namespace tyndall {
+namespace {
+bool has_grid(const Snapshot& snapshot) {
+    return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.kind == DensityKind::bricks; });
+}
+
+bool samples_fog(const Snapshot& snapshot, const ShadowVolumeSettings& settings) {
+    return settings.fog == ShadowFog::sampled || (settings.fog == ShadowFog::automatic && has_grid(snapshot));
+}
+
+bool casts(const Light& light, const Snapshot& snapshot) {
+    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+}
+
+void add_fog_limits(const Snapshot& snapshot, const Settings& settings, std::vector<Limit>& limits) {
+    const bool sampled = samples_fog(snapshot, settings.shadow_volume);
+    for (const Medium& medium : snapshot.media) {
+        const std::string where = "medium " + medium.name;
+        if (medium.kind == DensityKind::bricks && !sampled)
+            limits.push_back({Severity::wrong, where, "shadow_volume.fog is even: drawn at its mean density"});
+        if (medium.kind == DensityKind::bricks && sampled)
+            limits.push_back({Severity::info, where,
+                              "sampled in " + std::to_string(settings.shadow_volume.steps) +
+                                  " steps a ray: detail finer than a step is smoothed (shadow_volume.steps)"});
+        Box box = medium.world_bounds;
+        box.low = glm::max(box.low, snapshot.bounds.low), box.high = glm::min(box.high, snapshot.bounds.high);
+        const float thickness = box.empty() ? 0 : medium.majorant() * glm::length(box.size());
+        const float scattered = thickness * max_component(medium.optics.albedo);
+        if (scattered > 0.5f)
+            limits.push_back({scattered > 2 ? Severity::degraded : Severity::info, where,
+                              "light scatters once only: real fog this thick is brighter and softer"});
+    }
+    if (max_component(snapshot.ambient) > 0)
+        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+}
+}
+
+std::vector<GaussNode> gauss_legendre(int count) {
+    std::vector<GaussNode> nodes;
+    for (int i = 0; i < count; ++i) {
+        double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;
+        for (int step = 0; step < 8; ++step) {
+            double now = 1, before = 0;
+            for (int k = 0; k < count; ++k) {
+                const double next = ((2 * k + 1) * x * now - k * before) / (k + 1);
+                before = now, now = next;
+            }
+            slope = count * (x * now - before) / (x * x - 1);
+            x -= now / slope;
+        }
+        nodes.push_back({x, 2 / ((1 - x * x) * slope * slope)});
+    }
+    return nodes;
+}
+
+std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits;
+    if (settings.shadow_volume.picture == ShadowPicture::shells)
+        limits.push_back({Severity::wrong, "shadow_volume.picture",
+                          "shells are a look: bright sheets where light meets shadow, not light scattered by fog"});
+    add_fog_limits(snapshot, settings, limits);
+    constexpr size_t many = 20000;
+    std::shared_ptr<const ShadowMesh> mesh;
+    for (const Light& light : snapshot.lights) {
+        if (!casts(light, snapshot)) continue;
+        if (is_soft(light))
+            limits.push_back(
+                {Severity::degraded, "light " + light.name, "drawn as a point: its shadows have no soft edges"});
+        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(snapshot.occluders->shadow_triangles()));
+        const size_t sides = make_shadow_volumes(mesh, center_of(light)).sides.size();
+        if (sides > many)
+            limits.push_back({Severity::info, "light " + light.name,
+                              std::to_string(sides) + " silhouette edges: every tile of the picture tests many"});
+    }
+    if (mesh && snapshot.occluders->has_alpha())
+        limits.push_back({Severity::wrong, "occluders",
+                          "MASK and BLEND surfaces cast no shadow: silhouettes are those of whole triangles"});
+    return limits;
+}
+
+ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    auto frame = std::make_shared<ShadowVolumeFrame>();
+    const ShadowVolumeSettings& own = settings.shadow_volume;
+    frame->snapshot = stylised(snapshot, settings.style);
+    frame->settings = own, frame->style = settings.style, frame->camera = view.camera;
+    frame->margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
+    frame->sampled = samples_fog(snapshot, own);
+    if (!frame->sampled) {
+        for (const Medium& medium : snapshot.media)
+            if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
+        frame->snapshot.media = even_media(frame->snapshot.media);
+    }
+    frame->nodes = gauss_legendre(frame->sampled ? 2 : own.nodes);
+
+    std::shared_ptr<const ShadowMesh> mesh;
+    for (const Light& light : frame->snapshot.lights) {
+        frame->depths.push_back(
+            make_light_depth(frame->snapshot, light, LightTransmittance::grid, own.light_resolution));
+        frame->depths.back().scale = settings.style.light_depth;
+        frame->cones.push_back(cone_falloff(light));
+        frame->casters.emplace_back();
+        if (!casts(light, snapshot)) continue;
+        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(snapshot.occluders->shadow_triangles()));
+        ShadowCaster& caster = frame->casters.back();
+        caster.volumes = make_shadow_volumes(mesh, center_of(light));
+        caster.view = view_from(caster.volumes, view.camera, view.size, frame->margin);
+    }
+    return [frame](const RayBatch& batch, std::span<Scatter> results) { shadow_volume_packet(*frame, batch, results); };
+}
+}
