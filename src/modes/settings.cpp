@@ -48,6 +48,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_style_rows(all);
         append_march_rows(all);
         append_path_rows(all);
+        append_froxel_rows(all);
         return all;
     }();
     return rows;

@@ -49,6 +49,21 @@ struct StyleSettings {
     vec3 tint{1};          // factor on the light of the fog
 };
 
+enum class FroxelVisibility { off, rays, slices };
+enum class FroxelLookup { trilinear, tricubic, jittered };
+
+// Terms of the light (phase, heterogeneity, emission, ambient, light-side transmittance) are those of the march.
+struct FroxelSettings {
+    int tile = 8; // pixels
+    int depth_slices = 64;
+    float depth_growth = 4; // thickness of the last slice over that of the first
+    FroxelVisibility visibility = FroxelVisibility::rays;
+    int shadow_rays = 1; // per froxel and frame
+    FroxelLookup lookup = FroxelLookup::tricubic;
+    float history = 0.9f; // weight of the frames before
+    bool amortise = false;
+};
+
 inline constexpr int all_orders = 65536; // ends paths that nothing else ends
 
 struct PathSettings {
@@ -62,6 +77,7 @@ struct Settings {
     StyleSettings style;
     MarchSettings march;
     PathSettings path;
+    FroxelSettings froxel;
 };
 
 enum class Quality { draft, preview, final, reference };

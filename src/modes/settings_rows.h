@@ -65,4 +65,5 @@ void append_pixel_rows(std::vector<SettingRow>& rows);
 void append_style_rows(std::vector<SettingRow>& rows);
 void append_march_rows(std::vector<SettingRow>& rows);
 void append_path_rows(std::vector<SettingRow>& rows);
+void append_froxel_rows(std::vector<SettingRow>& rows);
 }
