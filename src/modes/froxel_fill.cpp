@@ -271,6 +271,28 @@ void fill_lanes(const Fill& fill, const Lanes& where, int slice, const std::vect
     }
 }
 
+// Whether any froxel of a tile is to be lit anew.
+bool is_wanted(const Fill& fill, const Lanes& lanes, int i) {
+    if (!lanes.there[i] || !fill.pass.stale) return lanes.there[i];
+    const size_t slices = static_cast<size_t>(fill.grid.slices());
+    for (size_t k = 0; k < slices && !is_hidden(fill.grid, fill.tiles, lanes.tile[i], static_cast<int>(k)); ++k)
+        if (!fill.pass.stale[lanes.tile[i] * slices + k]) return true;
+    return false;
+}
+
+// Exact light for every sample of 16 tiles.
+std::vector<FroxelLit> find_all_lit(const Fill& fill, const Lanes& lanes) {
+    ivec2 wanted[16];
+    for (int i = 0; i < 16; ++i) wanted[i] = is_wanted(fill, lanes, i) ? lanes.at[i] : fill.grid.size;
+    std::vector<FroxelLit> lit;
+    for (int sample = 0; sample < fill.samples(); ++sample) {
+        uint32_t indices[16];
+        for (int i = 0; i < 16; ++i) indices[i] = spread_index(fill, lanes.at[i], sample);
+        lit.push_back(find_froxel_lit(fill.scene, fill.grid, fill.tiles, wanted, first_ray(fill, sample), indices));
+    }
+    return lit;
+}
+
 // A block of tiles through all slices. Every second tile in both directions makes a packet when only a quarter of the
 // froxels is new in a frame: then packets are wholly new or wholly remembered.
 void fill_block(const Fill& fill, ivec2 corner, int stride) {
@@ -285,13 +307,7 @@ void fill_block(const Fill& fill, ivec2 corner, int stride) {
             some |= lanes.there[i];
         }
         if (!some) continue;
-        exact.clear();
-        for (int sample = 0; sample < fill.samples() && fill.exact(); ++sample) {
-            uint32_t indices[16];
-            for (int i = 0; i < 16; ++i) indices[i] = spread_index(fill, lanes.at[i], sample);
-            exact.push_back(
-                find_froxel_lit(fill.scene, fill.grid, fill.tiles, lanes.at, first_ray(fill, sample), indices));
-        }
+        if (fill.exact()) exact = find_all_lit(fill, lanes);
         for (int slice = 0; slice < fill.grid.slices(); ++slice) fill_lanes(fill, lanes, slice, exact);
     }
 }

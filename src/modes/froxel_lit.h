@@ -9,7 +9,7 @@ struct FroxelArrival {
     vec3 point{0};
 };
 
-// Of 16 tiles and one of each tile's rays, up to the surface that it meets.
+// Of up to 16 tiles and one of each tile's rays, up to the surface that it meets.
 struct FroxelLit {
     std::vector<FroxelArrival> arrivals; // [(lane · lights + light) · slices + slice]
     size_t lights = 0, slices = 0;
@@ -19,7 +19,8 @@ struct FroxelLit {
 };
 
 // The lit stretches of the lines, integrated with the light's strength along them. Each line sees one point of a soft
-// light, picked by `indices` (one per lane).
+// light, picked by `indices` (one per lane). Tiles outside the grid are
+// left out.
 FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,
                           const ivec2* lanes, size_t ray, const uint32_t* indices);
 

@@ -72,11 +72,13 @@ void apply_setting(Settings& settings, std::string_view assignment) {
 Settings settings_for(Quality quality) {
     Settings settings;
     MarchSettings& march = settings.march;
+    FroxelSettings& froxel = settings.froxel;
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
+        froxel.tile = 16, froxel.depth_slices = 48, froxel.visibility = FroxelVisibility::rays;
         break;
     case Quality::preview:
         break;
@@ -84,6 +86,7 @@ Settings settings_for(Quality quality) {
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
+        froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 2;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -91,6 +94,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
         march.visibility = Visibility::slices;
         march.light_resolution = 256;
+        froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
         break;
     }
     return settings;

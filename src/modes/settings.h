@@ -57,9 +57,9 @@ struct FroxelSettings {
     int tile = 8; // pixels
     int depth_slices = 64;
     float depth_growth = 4; // thickness of the last slice over that of the first
-    FroxelVisibility visibility = FroxelVisibility::rays;
+    FroxelVisibility visibility = FroxelVisibility::slices;
     int shadow_rays = 1; // per froxel and frame
-    FroxelLookup lookup = FroxelLookup::tricubic;
+    FroxelLookup lookup = FroxelLookup::trilinear;
     float history = 0.9f; // weight of the frames before
     bool amortise = false;
 };
