@@ -56,7 +56,7 @@ FroxelLight light_with_history(FroxelFrame& frame, History& history) {
     } else {
         const FroxelLight remembered = recall(*history.froxels, grid, tiles);
         std::vector<uint8_t> stale;
-        if (settings.amortise) stale = stale_froxels(grid, remembered, frame.frame);
+        if (settings.amortise) stale = stale_froxels(grid, remembered, frame.scene.snapshot.lights, frame.frame);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
         light = fill_froxels(frame.scene, grid, tiles, {-1, frame.frame, skipped});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far

@@ -147,11 +147,13 @@ struct Job {
     const float (*extinction)[16]; // of each medium
 };
 
-// Froxels whose size counts beside their distance from a local light.
-Mask16 near_lanes(const Light& light, const FroxelLanes& lanes, const Floats& distance) {
+// Froxels whose size counts beside their distance from a local light. An exact line answers for their depth, and for
+// their width where that is a single ray.
+Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes, const Floats& distance) {
     constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
-    if (light.kind == LightKind::sun) return Floats(1.0f) < Floats(0.0f);
-    return lanes.active & (distance * distance < max(lanes.length * lanes.length, lanes.width2 * 4.0f) * (near * near));
+    if (light.kind == LightKind::sun || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
+    const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
+    return lanes.active & (distance * distance < size2 * (near * near));
 }
 
 LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
@@ -160,11 +162,11 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
     alignas(64) float v[4][16], wanted[16], near[16], traced[16] = {}, visible[16];
     store(lanes.point.x, v[0]), store(lanes.point.y, v[1]), store(lanes.point.z, v[2]), store(plain.amount, v[3]);
     store(select(lit, 1.0f, 0.0f), wanted);
-    store(select(near_lanes(light, lanes, plain.distance), 1.0f, 0.0f), near);
+    store(select(near_lanes(fill, light, lanes, plain.distance), 1.0f, 0.0f), near);
     const size_t ray = first_ray(fill, job.sample);
     for (size_t i = 0; i < 16; ++i) {
         if (!(wanted[i] > 0)) continue;
-        const bool sliced = job.exact && job.looks.ray[i] == static_cast<int>(ray);
+        const bool sliced = job.exact && job.looks.ray[i] == static_cast<int>(ray) && !(near[i] > 0);
         traced[i] = !sliced && !(near[i] > 0) && v[3][i] > 0;
         if (!sliced && !(near[i] > 0)) continue;
         const FroxelArrival one = sliced ? job.exact->at(i, index, job.slice)

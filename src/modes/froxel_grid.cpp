@@ -16,6 +16,9 @@ FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile) {
         grid.origin += corner, grid.origin_x = x, grid.origin_y = y;
     else
         grid.step += corner, grid.step_x = x, grid.step_y = y;
+    for (int row = 0; row < grid.size.y; ++row)
+        for (int column = 0; column < grid.size.x; ++column)
+            grid.slants.push_back(glm::length(grid.line_step(grid.pixel_of(vec2(column, row)))));
     return grid;
 }
 

@@ -21,6 +21,8 @@ struct FroxelGrid {
     // The point of the picture (pixels) at planar depth z: origin + x·origin_x + y·origin_y + z (step + …).
     vec3 origin{0}, origin_x{0}, origin_y{0}, step{0}, step_x{0}, step_y{0};
 
+    std::vector<float> slants; // per tile: metres of the line through its centre per metre of depth
+
     std::vector<int32_t> first_slice; // at or before the start of each of many thin, even stretches of depth
     float stretches_per_metre = 0;
 

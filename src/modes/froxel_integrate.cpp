@@ -14,9 +14,7 @@ namespace {
 void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light, float view_depth,
                     size_t tile, float* sums) {
     const int slices = grid.slices();
-    const ivec2 at(static_cast<int>(tile % static_cast<size_t>(grid.size.x)),
-                   static_cast<int>(tile / static_cast<size_t>(grid.size.x)));
-    const float slant = glm::length(grid.line_step(grid.pixel_of(vec2(at))));
+    const float slant = grid.slants[tile];
     std::fill_n(sums, 4, 0.0f);
     const float* froxel = light.at(grid, tile, 0);
     float sum[3] = {};

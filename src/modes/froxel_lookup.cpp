@@ -127,6 +127,11 @@ void add_faces(const FroxelPicture& picture, const FroxelSums& sums, const Place
     for (int c = 0; c < 8; ++c) faces.values[c][lane] = values[c];
 }
 
+// Metres per metre of depth: of the rays, and of the tiles' lines around them on average.
+struct Slants {
+    Floats ray, tiles;
+};
+
 // Light before a depth and optical depth up to it. Within the slice the light comes as from even fog.
 struct Reached {
     Vec3s light;
@@ -134,7 +139,8 @@ struct Reached {
     Floats last;      // share of the slice's light that lies before the depth
     Vec3s last_light; // from the last slice
 };
-Reached reach(const FaceSums& faces, const Floats& slant, float view_depth) {
+Reached reach(const FaceSums& faces, const Slants& slants, float view_depth) {
+    const Floats& slant = slants.ray;
     const Floats share = load(faces.share), before = faces.near(3) * slant;
     const Floats across = max(faces.far(3) * slant - before, 0.0f), within = across * share;
     Reached reached;
@@ -142,15 +148,25 @@ Reached reach(const FaceSums& faces, const Floats& slant, float view_depth) {
     reached.last = share * mean_transmittance(within * view_depth) / mean_transmittance(across * view_depth);
     reached.last_light =
         Vec3s{faces.far(0) - faces.near(0), faces.far(1) - faces.near(1), faces.far(2) - faces.near(2)} * reached.last;
-    reached.light = Vec3s{faces.near(0), faces.near(1), faces.near(2)} + reached.last_light;
+    // The tiles' lines are a little longer or shorter than the ray: in even fog the light is as 1 - e^-depth.
+    const Floats depth = reached.depth * view_depth, ratio = slant / slants.tiles;
+    const Floats fitted = ratio * mean_transmittance(depth) / mean_transmittance(depth / ratio);
+    reached.light = (Vec3s{faces.near(0), faces.near(1), faces.near(2)} + reached.last_light) * fitted;
+    reached.last_light = reached.last_light * fitted;
     return reached;
+}
+
+float slant_of_tiles(const FroxelGrid& grid, const Place& place) {
+    float slant = 0;
+    for (int i = 0; i < place.count; ++i) slant += place.weights[i] * grid.slants[place.tiles[i]];
+    return slant;
 }
 
 struct Lookup {
     const FroxelPicture& picture;
     const RayBatch& batch;
     Place places[16];
-    alignas(64) float slant[16];
+    alignas(64) float slant[16], tile_slant[16];
     bool late = false; // some ray starts behind the first slice
 
     FaceSums faces(const FroxelSums& sums, bool at_end) const {
@@ -177,19 +193,20 @@ void store_light(const Vec3s& light, float rgb[3][16]) {
 
 void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
                     std::span<const FroxelSums> parts, std::span<vec3> of_parts) {
-    Lookup lookup{picture, batch, {}, {}};
+    Lookup lookup{picture, batch, {}, {}, {}};
     for (size_t i = 0; i < 16; ++i) {
-        lookup.slant[i] = 1;
+        lookup.slant[i] = lookup.tile_slant[i] = 1;
         if (i >= batch.rays.size()) continue;
         lookup.places[i] = place_of(picture, batch, i);
-        lookup.slant[i] = lookup.places[i].slant;
+        if (!lookup.places[i].seen) continue;
+        lookup.slant[i] = lookup.places[i].slant, lookup.tile_slant[i] = slant_of_tiles(picture.grid, lookup.places[i]);
         lookup.late |= lookup.places[i].start > picture.grid.faces.front();
     }
-    const Floats slant = load(lookup.slant);
+    const Slants slants{load(lookup.slant), load(lookup.tile_slant)};
     const auto light_of = [&](const FroxelSums& sums, Reached& start, Reached& end) HWY_ATTR {
-        end = reach(lookup.faces(sums, true), slant, picture.view_depth);
+        end = reach(lookup.faces(sums, true), slants, picture.view_depth);
         if (!lookup.late) return end.light;
-        start = reach(lookup.faces(sums, false), slant, picture.view_depth);
+        start = reach(lookup.faces(sums, false), slants, picture.view_depth);
         return light_between(start, end, picture.view_depth);
     };
     Reached start{splat(vec3(0)), 0.0f, 0.0f, splat(vec3(0))}, end = start;

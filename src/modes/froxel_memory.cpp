@@ -15,6 +15,19 @@ void for_tiles(const FroxelGrid& grid, const std::function<void(ivec2, size_t)>&
     });
 }
 
+bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const Light> lights) {
+    constexpr float near = 4; // froxels
+    const float low = grid.faces[static_cast<size_t>(slice)], high = grid.faces[static_cast<size_t>(slice) + 1];
+    const float z = 0.5f * (low + high);
+    const vec3 center = grid.point(grid.pixel_of(vec2(at)), z);
+    const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
+    const float reach = near * std::max(width, high - low);
+    return std::ranges::any_of(lights, [&](const Light& light) {
+        const vec3 offset = light.position - center;
+        return light.kind != LightKind::sun && glm::dot(offset, offset) < reach * reach;
+    });
+}
+
 bool all_finite(const float* v) { return std::isfinite(v[0] + v[1] + v[2]); }
 
 // Trilinear sum of light and of `known`, at a pixel and depth of the remembered frame.
@@ -107,7 +120,8 @@ FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const Fro
     return remembered;
 }
 
-std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, int frame) {
+std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
+                                   int frame) {
     const ivec2 turns[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
     const ivec2 turn = turns[frame % 4];
     std::vector<uint8_t> stale(grid.tiles() * static_cast<size_t>(grid.slices()));
@@ -115,7 +129,7 @@ std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& re
         const bool in_turn = (at.x & 1) == turn.x && (at.y & 1) == turn.y;
         for (int k = 0; k < grid.slices(); ++k)
             stale[tile * static_cast<size_t>(grid.slices()) + static_cast<size_t>(k)] =
-                !in_turn && remembered.at(grid, tile, k)[3] > 0;
+                !in_turn && remembered.at(grid, tile, k)[3] > 0 && !is_near_light(grid, at, k, lights);
     });
     return stale;
 }

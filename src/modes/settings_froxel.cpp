@@ -9,7 +9,7 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
                               "froxels in depth, from the nearest fog in view to "
                               "the farthest depth that is needed",
                               TYNDALL_FIELD(froxel.depth_slices)));
-    rows.push_back(number_row("froxel.depth_growth", "", 1, 256,
+    rows.push_back(number_row("froxel.depth_growth", "", 0.1, 256,
                               "how many times as thick the last slice is as the first; 1 = all the same",
                               TYNDALL_FIELD(froxel.depth_growth)));
     rows.push_back(choice_row("froxel.visibility", {"off", "rays", "slices"},

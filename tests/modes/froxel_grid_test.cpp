@@ -60,7 +60,10 @@ TEST(FroxelGrid, SlicesGrowAsAskedAndAreFoundAgain) {
                 EXPECT_FLOAT_EQ(grid.faces[count], 40);
                 EXPECT_FLOAT_EQ(grid.faces.back(), std::max(end, 40.0f));
                 const double first = grid.faces[1] - grid.faces[0], last = grid.faces[count] - grid.faces[count - 1];
-                if (count > 1) EXPECT_NEAR(last / first / growth, 1, 4e-2) << count; // differences of floats near 40
+                // Thicknesses are differences of floats near 40.
+                if (count > 1) {
+                    EXPECT_NEAR(last / first / growth, 1, 4e-2) << count;
+                }
                 for (int k = 0; k < grid.slices(); ++k) {
                     const float middle = 0.5f * (grid.faces[k] + grid.faces[k + 1]);
                     ASSERT_EQ(slice_of(grid, middle), k);

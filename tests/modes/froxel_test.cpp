@@ -22,7 +22,7 @@ Settings with(const std::vector<std::string>& assignments) {
 TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
     // Sun across the view, not dimmed on its way: L = p E (1 - e^-σt), T = e^-σt, also in the middle of slices.
     const float extinction = 0.15f;
-    const Snapshot snapshot = scene_of({even_fog(extinction, {vec3(-30), vec3(30)})}, {sun({0, -1, 0}, 2)});
+    const Snapshot snapshot = scene_of({even_fog(extinction, {vec3(-60), vec3(60)})}, {sun({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 25}, {0, 0, 0});
     for (const std::string& way : ways) {
         const ScatterFunction scatter = froxels(view, snapshot, with({way, "march.light=off"}));
@@ -92,7 +92,7 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     for (const char* visibility : {"rays", "slices"}) {
-        const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=4"});
+        const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"});
         const std::vector<Scatter> results = scattered(froxels(view, stage.snapshot, settings), rays);
         EXPECT_NEAR(mean_radiance(results) / mean_radiance(truth), 1, 0.01) << visibility;
     }
@@ -110,23 +110,25 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
 }
 
 TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
-    const View view = view_of({0, 0, 6}, {0, 0, 0}, {64, 36});
-    Settings settings = with({"froxel.tile=8", "froxel.depth_slices=32"});
-    for (const char* visibility : {"rays", "slices"}) {
-        apply_setting(settings, std::string("froxel.visibility=") + visibility);
-        double least = infinity, most = 0;
-        for (int i = 0; i < 6; ++i) { // through one froxel, in steps of a fifth
-            const float place = 0.137f * static_cast<float>(i);
-            const Snapshot snapshot =
-                scene_of({even_fog(0.2f, {vec3(-3), vec3(3)})}, {point_light({place, 0.1f, 0.3f})});
-            const std::vector<Ray> rays = picture_rays(view, snapshot);
-            const double truth = mean_radiance(marched(snapshot, exact_settings(), rays));
+    // The lamp is as large as a pixel, so that single rays tell how bright pixels are; froxels are half a metre wide.
+    const View view = view_of({0, 0, 6}, {0, 0, 0});
+    double least[2] = {infinity, infinity}, most[2] = {};
+    for (int i = 0; i < 6; ++i) {
+        Light lamp = point_light({0.1f * static_cast<float>(i), 0.1f, 0.3f});
+        lamp.radius = 0.15f;
+        const Snapshot snapshot = scene_of({even_fog(0.2f, {vec3(-3), vec3(3)})}, {lamp});
+        const std::vector<Ray> rays = picture_rays(view, snapshot);
+        const double truth = mean_radiance(marched(snapshot, exact_settings(), rays));
+        for (const int exact : {0, 1}) {
+            const Settings settings = with({"froxel.tile=4", "froxel.depth_slices=32",
+                                            exact ? "froxel.visibility=slices" : "froxel.visibility=rays"});
             const double ratio = mean_radiance(scattered(froxels(view, snapshot, settings), rays)) / truth;
-            EXPECT_NEAR(ratio, 1, 0.05 + (settings.froxel.visibility == FroxelVisibility::slices ? 0.1 : 0)) << place;
-            least = std::min(least, ratio), most = std::max(most, ratio);
+            EXPECT_NEAR(ratio, 1, 0.05) << exact << " at " << i;
+            least[exact] = std::min(least[exact], ratio), most[exact] = std::max(most[exact], ratio);
         }
-        if (settings.froxel.visibility == FroxelVisibility::rays) EXPECT_LT(most - least, 0.05);
     }
+    EXPECT_LT(most[0] - least[0], 0.03);
+    EXPECT_LT(most[1] - least[1], 0.03);
 }
 
 TEST(Froxel, StretchesBehindGlassContinueTheRay) {
@@ -177,7 +179,7 @@ TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
 TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
     const FroxelStage stage = busy_stage();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
-    for (const float ortho : {0.0f, 2.5f}) {
+    for (const float ortho : {0.0f, 1.5f}) {
         view.camera.ortho_height = ortho;
         const ScatterFunction scatter = froxels(view, stage.snapshot, {});
         for (const vec2 pixel : {vec2(10, 20), vec2(40.3f, 7.7f), vec2(63, 35)}) {
@@ -196,12 +198,11 @@ TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
 TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
     const FroxelStage stage = busy_stage();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
-    view.camera.ortho_height = 2.5f;
+    view.camera.ortho_height = 1.5f;
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
     const Settings settings = with({"froxel.tile=2", "froxel.depth_slices=128", "froxel.shadow_rays=4"});
-    const double error = relative_rmse(scattered(froxels(view, stage.snapshot, settings), rays),
-                                       marched(stage.snapshot, sampled_settings(), rays));
-    EXPECT_LT(error, 0.1);
+    const double truth = mean_radiance(marched(stage.snapshot, sampled_settings(), rays));
+    EXPECT_NEAR(mean_radiance(scattered(froxels(view, stage.snapshot, settings), rays)) / truth, 1, 0.02);
 }
 
 TEST(Froxel, PartsOfTheLightsAddUp) {
