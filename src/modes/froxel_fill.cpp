@@ -181,9 +181,12 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
     if (light.shadows && occluders && !occluders->empty() && any(by_rays) &&
         fill.scene.settings.visibility != FroxelVisibility::off) {
         Sample2 places[16];
-        const uint32_t key = hash(static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
-        for (size_t i = 0; i < 16 && is_soft(light); ++i)
-            places[i] = sample2(spread_index(fill, job.where.at[i], job.sample), key);
+        for (size_t i = 0; i < 16 && is_soft(light); ++i) {
+            const ivec2 at = job.where.at[i];
+            const auto block = static_cast<uint32_t>((at.y >> 2) * fill.grid.size.x + (at.x >> 2));
+            const uint32_t key = hash(block, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
+            places[i] = sample2(spread_index(fill, at, job.sample), key);
+        }
         store(visible_at_points(*occluders, light, lanes, plain, by_rays, places), visible);
         amount = select(by_rays, amount * load(visible), amount);
     }

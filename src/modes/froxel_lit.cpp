@@ -123,8 +123,10 @@ FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, cons
         const double end = std::min(grid.faces.back(), tiles.depth[tile * tiles.rays() + ray]) / per_metre;
         const double start = grid.faces.front() / per_metre;
         line.t_max = static_cast<float>(end);
+        // Other points for each 4×4 tiles: the same ones again would show as a pattern.
+        const auto block = static_cast<uint32_t>((lanes[lane].y >> 2) * grid.size.x + (lanes[lane].x >> 2));
         for (size_t i = 0; i < lights.size(); ++i) {
-            const LightPoint point = light_point(lights[i], line, indices[lane], hash(static_cast<uint32_t>(i)));
+            const LightPoint point = light_point(lights[i], line, indices[lane], hash(block, static_cast<uint32_t>(i)));
             find_light(lights[i], point, line, &scene.slices, {}, along);
             moments.assign(lit.slices, {});
             for (const Stretch& s : along.lit)
