@@ -24,6 +24,8 @@ struct Fill {
 
     bool exact() const { return scene.settings.visibility == FroxelVisibility::slices; }
     bool wants(size_t part) const { return pass.only < 0 || static_cast<size_t>(pass.only) == part; }
+    // One look at a soft light is at its centre: other points would be noise that nothing averages.
+    bool spreads() const { return scene.settings.shadow_rays > 1 || pass.frame > 0; }
     int samples() const { return scene.settings.shadow_rays; }
 };
 
@@ -181,13 +183,14 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
     if (light.shadows && occluders && !occluders->empty() && any(by_rays) &&
         fill.scene.settings.visibility != FroxelVisibility::off) {
         Sample2 places[16];
-        for (size_t i = 0; i < 16 && is_soft(light); ++i) {
+        const bool soft = is_soft(light) && fill.spreads();
+        for (size_t i = 0; i < 16 && soft; ++i) {
             const ivec2 at = job.where.at[i];
             const auto block = static_cast<uint32_t>((at.y >> 2) * fill.grid.size.x + (at.x >> 2));
             const uint32_t key = hash(block, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
             places[i] = sample2(spread_index(fill, at, job.sample), key);
         }
-        store(visible_at_points(*occluders, light, lanes, plain, by_rays, places), visible);
+        store(visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr), visible);
         amount = select(by_rays, amount * load(visible), amount);
     }
     return {{load(v[0]), load(v[1]), load(v[2])}, amount};
@@ -293,7 +296,8 @@ std::vector<FroxelLit> find_all_lit(const Fill& fill, const Lanes& lanes) {
     for (int sample = 0; sample < fill.samples(); ++sample) {
         uint32_t indices[16];
         for (int i = 0; i < 16; ++i) indices[i] = spread_index(fill, lanes.at[i], sample);
-        lit.push_back(find_froxel_lit(fill.scene, fill.grid, fill.tiles, wanted, first_ray(fill, sample), indices));
+        lit.push_back(find_froxel_lit(fill.scene, fill.grid, fill.tiles, wanted, first_ray(fill, sample),
+                                      fill.spreads() ? indices : nullptr));
     }
     return lit;
 }

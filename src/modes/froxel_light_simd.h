@@ -48,8 +48,8 @@ HWY_INLINE Arriving arriving_at_points(const Light& light, const ConeFalloff& co
     return result;
 }
 
-// Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` are
-// samples of a soft light.
+// Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
+// points of a soft light; null = its centre.
 HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
                                     const Arriving& arrival, const Mask16& wanted, const Sample2* places) {
     Occluders::ShadowRays rays;
@@ -60,7 +60,7 @@ HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& lig
     store(select(wanted, 1.0f, 0.0f), is_wanted);
     for (size_t i = 0; i < 16; ++i) {
         rays.active[i] = is_wanted[i] > 0 ? -1 : 0, rays.t_min[i] = 0;
-        if (!rays.active[i] || !is_soft(light)) continue;
+        if (!rays.active[i] || !places) continue;
         const vec3 point(rays.ox[i], rays.oy[i], rays.oz[i]);
         const Ray ray = ray_to_light(light, point, vec2(places[i].x, places[i].y));
         rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;

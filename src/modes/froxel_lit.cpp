@@ -126,7 +126,9 @@ FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, cons
         // Other points for each 4×4 tiles: the same ones again would show as a pattern.
         const auto block = static_cast<uint32_t>((lanes[lane].y >> 2) * grid.size.x + (lanes[lane].x >> 2));
         for (size_t i = 0; i < lights.size(); ++i) {
-            const LightPoint point = light_point(lights[i], line, indices[lane], hash(block, static_cast<uint32_t>(i)));
+            const LightPoint point =
+                indices ? light_point(lights[i], line, indices[lane], hash(block, static_cast<uint32_t>(i)))
+                        : center_of(lights[i]);
             find_light(lights[i], point, line, &scene.slices, {}, along);
             moments.assign(lit.slices, {});
             for (const Stretch& s : along.lit)

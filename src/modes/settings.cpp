@@ -86,7 +86,7 @@ Settings settings_for(Quality quality) {
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
-        froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 2;
+        froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
