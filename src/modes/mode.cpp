@@ -11,6 +11,8 @@ std::span<const Mode> modes() {
     static const std::array table{
         Mode{"march", "ray march through all fog with shadow rays: the main renderer", Accuracy::single_scattering,
              Surfaces::shared, march_limits, prepare_march},
+        Mode{"froxel", "fog light cached in voxels of the view frustum: previews at interactive rates",
+             Accuracy::single_scattering, Surfaces::shared, froxel_limits, prepare_froxel, nullptr, true},
         Mode{"path", "unbiased path tracing of all scattered light: the truth, with noise",
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
         Mode{"radial-blur", "brightness smeared away from the lights in the finished picture", Accuracy::look,

@@ -50,6 +50,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_path_rows(all);
         append_radial_blur_rows(all);
         append_shadow_volume_rows(all);
+        append_froxel_rows(all);
         return all;
     }();
     return rows;
@@ -74,12 +75,14 @@ Settings settings_for(Quality quality) {
     Settings settings;
     MarchSettings& march = settings.march;
     ShadowVolumeSettings& volume = settings.shadow_volume;
+    FroxelSettings& froxel = settings.froxel;
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         volume.nodes = 3, volume.steps = 24, volume.light_resolution = 32;
+        froxel.tile = 16, froxel.depth_slices = 48, froxel.visibility = FroxelVisibility::rays;
         break;
     case Quality::preview:
         break;
@@ -88,6 +91,7 @@ Settings settings_for(Quality quality) {
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
+        froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -96,6 +100,7 @@ Settings settings_for(Quality quality) {
         march.visibility = Visibility::slices;
         march.light_resolution = 256;
         volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
+        froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
         break;
     }
     return settings;

@@ -64,6 +64,19 @@ struct RadialBlurSettings {
     float fade = 2;         // how far outside the picture a light may be before its rays have faded, in half pictures
     PictureShare picture = PictureShare::half;
     bool fog = true; // what lies behind fades in even fog
+enum class FroxelVisibility { off, rays, slices };
+enum class FroxelLookup { trilinear, tricubic, jittered };
+
+// Terms of the light (phase, heterogeneity, emission, ambient, light-side transmittance) are those of the march.
+struct FroxelSettings {
+    int tile = 8; // pixels
+    int depth_slices = 64;
+    float depth_growth = 4; // thickness of the last slice over that of the first
+    FroxelVisibility visibility = FroxelVisibility::slices;
+    int shadow_rays = 1; // per froxel and frame
+    FroxelLookup lookup = FroxelLookup::trilinear;
+    float history = 0.9f; // weight of the frames before
+    bool amortise = false;
 };
 
 inline constexpr int all_orders = 65536; // ends paths that nothing else ends
@@ -97,6 +110,7 @@ struct Settings {
     PathSettings path;
     RadialBlurSettings radial_blur;
     ShadowVolumeSettings shadow_volume;
+    FroxelSettings froxel;
 };
 
 enum class Quality { draft, preview, final, reference };

@@ -6,6 +6,9 @@ namespace tyndall {
 std::vector<Limit> march_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_march(const View&, const Snapshot&, const Settings&, History*);
 
+std::vector<Limit> froxel_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_froxel(const View&, const Snapshot&, const Settings&, History*);
+
 std::vector<Limit> path_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_path(const View&, const Snapshot&, const Settings&, History*);
 

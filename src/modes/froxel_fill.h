@@ -1,0 +1,44 @@
+// Light and extinction of every froxel.
+#pragma once
+#include "modes/froxel_tiles.h"
+#include "modes/settings.h"
+#include "trace/light_depth.h"
+#include "trace/shadow_slices.h"
+
+namespace tyndall {
+// What filling needs besides the grid, made once per frame.
+struct FroxelScene {
+    Snapshot snapshot; // media as the settings see them
+    FroxelSettings settings;
+    StyleSettings style;
+    std::vector<LightDepth> depths; // one per light
+    std::vector<ConeFalloff> cones; // one per light
+    ShadowSlices slices;            // with FroxelVisibility::slices
+};
+
+// Four floats per froxel, [tile · slices + slice]: the light that its fog sends towards the eye, per unit of
+// extinction (red, green, blue), and the extinction per metre. Froxels wholly behind surfaces hold nothing.
+struct FroxelLight {
+    std::vector<float> values;
+    const float* at(const FroxelGrid& grid, size_t tile, int slice) const {
+        return values.data() + 4 * (tile * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice));
+    }
+    float* at(const FroxelGrid& grid, size_t tile, int slice) {
+        return values.data() + 4 * (tile * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice));
+    }
+};
+
+struct FillPass {
+    int only = -1;                  // 0..: this light alone; the number of lights: ambient light and emission alone
+    int frame = 0;                  // of the history: 0 looks at the centres, later ones elsewhere in the froxels
+    const uint8_t* stale = nullptr; // per froxel, 1 = its light is remembered: find its extinction only
+};
+
+// Whether a froxel lies wholly behind what all rays of its tile meet.
+inline bool is_hidden(const FroxelGrid& grid, const FroxelTiles& tiles, size_t tile, int slice) {
+    return !(tiles.farthest[tile] > grid.faces[static_cast<size_t>(slice)]);
+}
+
+FroxelLight fill_froxels(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,
+                         const FillPass& pass);
+}

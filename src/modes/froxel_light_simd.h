@@ -1,0 +1,74 @@
+// A light as sixteen froxels see it (see base/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
+#undef TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
+#endif
+
+#include "base/random.h"
+#include "base/simd.h"
+#include "trace/light_depth_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+// Sixteen froxels of one slice: where light is asked for, and the stretch of a camera ray that each stands for.
+struct FroxelLanes {
+    Vec3s point;         // in front of every surface
+    Vec3s start, toward; // of the stretch; unit direction
+    Floats length;       // of the stretch, metres
+    Floats width2;       // squared radius of the disc as large as the froxel is across
+    Mask16 active;
+};
+
+// Irradiance of a light with nothing in the way.
+struct Arriving {
+    Vec3s to_light; // unit
+    Floats distance;
+    Floats amount; // multiplies the light's intensity
+};
+
+// As arrival() of scene/light.h, at the lanes' points.
+HWY_INLINE Arriving arriving_at_points(const Light& light, const ConeFalloff& cone, const FroxelLanes& lanes) {
+    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
+    const Vec3s offset = splat(light.position) - lanes.point;
+    const float reach = std::max(light.radius, smallest_radius);
+    const Floats squared = dot(offset, offset);
+    const Floats distance = max(sqrt(squared), 1e-12f);
+    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
+    if (!std::isinf(light.range)) {
+        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
+        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
+    }
+    if (light.kind == LightKind::spot) {
+        const Floats cosine = -dot(result.to_light, splat(light.direction));
+        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+        result.amount = result.amount * edge * edge;
+    }
+    return result;
+}
+
+// Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
+// points of a soft light; null = its centre.
+HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
+                                    const Arriving& arrival, const Mask16& wanted, const Sample2* places) {
+    Occluders::ShadowRays rays;
+    store(lanes.point.x, rays.ox), store(lanes.point.y, rays.oy), store(lanes.point.z, rays.oz);
+    store(arrival.to_light.x, rays.dx), store(arrival.to_light.y, rays.dy), store(arrival.to_light.z, rays.dz);
+    store(arrival.distance * 0.9999f, rays.t_max);
+    alignas(64) float is_wanted[16], share[16] = {};
+    store(select(wanted, 1.0f, 0.0f), is_wanted);
+    for (size_t i = 0; i < 16; ++i) {
+        rays.active[i] = is_wanted[i] > 0 ? -1 : 0, rays.t_min[i] = 0;
+        if (!rays.active[i] || !places) continue;
+        const vec3 point(rays.ox[i], rays.oy[i], rays.oz[i]);
+        const Ray ray = ray_to_light(light, point, vec2(places[i].x, places[i].y));
+        rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
+        rays.t_max[i] = ray.t_max;
+    }
+    occluders.transmission(rays, share);
+    return load(share);
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,70 @@
+// What a froxel cache cannot show of a scene, in words.
+#include "modes/froxel_grid.h"
+#include "modes/techniques.h"
+
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+std::string metres(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g m", static_cast<double>(value));
+    return text;
+}
+
+// Size of a froxel in the middle of the scene: across, and in depth.
+struct FroxelSize {
+    float across = 0, deep = 0;
+};
+FroxelSize middle_froxel(const View& view, const Snapshot& snapshot, const FroxelSettings& settings) {
+    const FroxelGrid grid = make_froxel_grid(view.camera, view.size, settings.tile);
+    const Box& box = snapshot.bounds;
+    const float depth = std::max(glm::dot(box.center() - view.camera.position, view.camera.forward), view.camera.near);
+    const float pixel = glm::length(grid.origin_x) + depth * glm::length(grid.step_x);
+    const float extent = box.empty() ? depth : depth + 0.5f * glm::length(box.size());
+    return {pixel * static_cast<float>(settings.tile), extent / static_cast<float>(settings.depth_slices)};
+}
+
+bool in_fog(const Snapshot& snapshot, vec3 point) {
+    return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
+}
+}
+
+std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    Settings terms = settings; // what the march says of light that scatters once holds here too
+    terms.march.visibility = Visibility::rays;
+    std::vector<Limit> limits = march_limits(view, snapshot, terms);
+    if (snapshot.media.empty()) return limits;
+
+    const FroxelSettings& froxel = settings.froxel;
+    const FroxelSize size = middle_froxel(view, snapshot, froxel);
+    const float coarse = std::max(size.across, size.deep);
+    const bool fine = froxel.tile == 1 && froxel.depth_slices >= 256;
+    const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
+    for (const Light& light : snapshot.lights) {
+        const std::string where = "light " + light.name;
+        if (froxel.visibility == FroxelVisibility::off && light.shadows)
+            limits.push_back({Severity::wrong, where, "froxel.visibility is off: no shafts"});
+        else if (light.shadows && shadows)
+            limits.push_back({fine ? Severity::info : Severity::degraded, where,
+                              "shafts are as coarse as froxels, here about " + metres(size.across) + " wide and " +
+                                  metres(size.deep) + " deep; walls and gaps thinner than that leak or vanish"});
+        if (light.kind != LightKind::sun && in_fog(snapshot, light.position))
+            limits.push_back({Severity::info, where, "its glow is even within " + metres(coarse) + " of it"});
+    }
+    for (const Medium& medium : snapshot.media) {
+        if (medium.kind != DensityKind::bricks) continue;
+        const float voxel = 1 / glm::length(vec3(medium.bricks->world_to_index[0]));
+        if (voxel < 0.5f * coarse)
+            limits.push_back(
+                {Severity::info, "medium " + medium.name,
+                 "detail finer than a froxel is lost: voxels of " + metres(voxel) + ", froxels of " + metres(coarse)});
+    }
+    const auto endless = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
+    if (std::ranges::any_of(snapshot.media, endless))
+        limits.push_back({Severity::info, "froxel.depth_slices", "fog behind the scene has a few long slices only"});
+    if (froxel.visibility == FroxelVisibility::slices && shadows && snapshot.occluders->has_alpha())
+        limits.push_back({Severity::info, "froxel.visibility", "rays are used: there are MASK or BLEND surfaces"});
+    return limits;
+}
+}

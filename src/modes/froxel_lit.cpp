@@ -1,0 +1,188 @@
+#include "modes/froxel_lit.h"
+
+#include "base/random.h"
+#include "modes/light_along.h"
+
+namespace tyndall {
+namespace {
+LightPoint light_point(const Light& light, const Ray& ray, uint32_t index, uint32_t seed) {
+    if (!is_soft(light)) return center_of(light);
+    const Sample2 u = sample2(index, seed);
+    return point_on(light, ray, {u.x, u.y, random_unit(index, 0, 2, seed)});
+}
+
+struct Moments {
+    double amount = 0, first = 0; // ∫ of the light along the ray, and of it times t
+};
+
+// Light on a stretch without kinks: 2 Gauss points along it, or 4 in the angle seen from the light where that is near
+// (equi-angular: Kulla & Fajardo 2012).
+Moments light_on(const LightAlong& along, double low, double high) {
+    const double length = high - low, middle = 0.5 * (low + high);
+    if (!along.local()) return {length, length * middle};
+    Moments sum;
+    const auto add = [&](double t, double weight) {
+        const double light = weight * arriving_at(along, t).amount;
+        sum.amount += light, sum.first += light * t;
+    };
+    if (length < 0.25 * along.distance_to(low, high)) {
+        for (const double side : {-1.0, 1.0}) add(middle + side * 0.2886751345948129 * length, 0.5 * length);
+        return sum;
+    }
+    constexpr double nodes[] = {0.3399810435848563, 0.8611363115940526},
+                     weights[] = {0.6521451548625461, 0.3478548451374538};
+    const double h = std::max(along.distance, 1e-5);
+    const double from = std::atan((low - along.nearest) / h), to = std::atan((high - along.nearest) / h);
+    for (int i = 0; i < 4; ++i) {
+        const double angle = 0.5 * (from + to + (i & 1 ? 1 : -1) * nodes[i / 2] * (to - from));
+        const double tangent = std::tan(angle);
+        add(along.nearest + h * tangent, 0.5 * weights[i / 2] * (to - from) * h * (1 + tangent * tangent));
+    }
+    return sum;
+}
+
+// Adds a lit stretch to the slices it crosses, in lengths of the ray.
+void add_stretch(const FroxelGrid& grid, const LightAlong& along, Stretch stretch, double per_metre,
+                 std::vector<Moments>& slices) {
+    const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_metre; };
+    int k = slice_of(grid, static_cast<float>(stretch.low * per_metre));
+    while (k > 0 && end(k - 1) > stretch.low) --k;
+    for (double low = stretch.low; k < grid.slices() && low < stretch.high; ++k) {
+        const double high = std::min(stretch.high, end(k));
+        if (!(high > low)) continue;
+        if (low * per_metre >= grid.faces[0]) {
+            const Moments part = light_on(along, low, high);
+            slices[static_cast<size_t>(k)].amount += part.amount, slices[static_cast<size_t>(k)].first += part.first;
+        }
+        low = high;
+    }
+}
+
+// One line of a froxel as a light near it sees it.
+struct NearLine {
+    vec3 start, direction;
+    float length, nearest, h; // nearest, h: where the line passes the light, and how near
+    float from, to;           // angles of its ends
+    float width2;             // of the light's 1/r²: at least that of the part of the froxel the line stands for
+};
+
+size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, int slice, const Light& light,
+                  NearLine* lines) {
+    const float low = grid.faces[static_cast<size_t>(slice)], high = grid.faces[static_cast<size_t>(slice) + 1];
+    const float* depth = tiles.depth.data() + grid.tile_index(at) * tiles.rays();
+    size_t count = 0;
+    for (size_t ray = 0; ray < tiles.rays() && count < 16; ++ray) {
+        if (!(depth[ray] > low)) continue;
+        const vec2 pixel = grid.pixel_of(vec2(at) + tiles.offsets[ray]);
+        const vec3 start = grid.point(pixel, low), step = grid.line_step(pixel), offset = light.position - start;
+        const float slant = glm::length(step);
+        const vec3 direction = step / slant;
+        lines[count++] = {start,
+                          direction,
+                          slant * (std::min(high, depth[ray]) - low),
+                          glm::dot(offset, direction),
+                          glm::length(glm::cross(offset, direction)),
+                          0,
+                          0,
+                          0};
+    }
+    const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
+    for (size_t i = 0; i < count; ++i) {
+        NearLine& line = lines[i];
+        line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), smallest_radius * smallest_radius);
+        line.h = std::sqrt(line.h * line.h + line.width2);
+        line.from = std::atan(-line.nearest / line.h), line.to = std::atan((line.length - line.nearest) / line.h);
+    }
+    return count;
+}
+
+// Factor on a light's intensity at a point, as arrival() of scene/light.h, with 1/r² of at most 1/width2.
+float falloff_at(const Light& light, vec3 point, float width2) {
+    Light unit = light;
+    unit.intensity = vec3(1);
+    const Arrival arriving = arrival(unit, point);
+    const float reach = std::max(light.radius, smallest_radius);
+    const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
+    return arriving.irradiance.x * squared / std::max(squared, width2);
+}
+}
+
+FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,
+                          const ivec2* lanes, size_t ray, const uint32_t* indices) {
+    const std::vector<Light>& lights = scene.snapshot.lights;
+    FroxelLit lit;
+    lit.lights = lights.size(), lit.slices = static_cast<size_t>(grid.slices());
+    lit.arrivals.assign(16 * lit.lights * lit.slices, {});
+    LightAlong along;
+    std::vector<Moments> moments;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (lanes[lane].x >= grid.size.x || lanes[lane].y >= grid.size.y) continue;
+        const size_t tile = grid.tile_index(lanes[lane]);
+        Ray line = camera_ray(grid.camera, grid.picture, grid.pixel_of(vec2(lanes[lane]) + tiles.offsets[ray]));
+        const double per_metre = glm::dot(line.direction, grid.camera.forward);
+        const double end = std::min(grid.faces.back(), tiles.depth[tile * tiles.rays() + ray]) / per_metre;
+        const double start = grid.faces.front() / per_metre;
+        line.t_max = static_cast<float>(end);
+        // Other points for each 4×4 tiles: the same ones again would show as a pattern.
+        const auto block = static_cast<uint32_t>((lanes[lane].y >> 2) * grid.size.x + (lanes[lane].x >> 2));
+        for (size_t i = 0; i < lights.size(); ++i) {
+            const LightPoint point =
+                indices ? light_point(lights[i], line, indices[lane], hash(block, static_cast<uint32_t>(i)))
+                        : center_of(lights[i]);
+            find_light(lights[i], point, line, &scene.slices, {}, along);
+            moments.assign(lit.slices, {});
+            for (const Stretch& s : along.lit)
+                add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
+            for (size_t k = 0; k < lit.slices; ++k) {
+                if (!(moments[k].amount > 0)) continue;
+                const double length = std::min<double>(grid.faces[k + 1] / per_metre, end) - grid.faces[k] / per_metre;
+                FroxelArrival& arrival = lit.arrivals[(lane * lit.lights + i) * lit.slices + k];
+                arrival.amount = length > 0 ? static_cast<float>(moments[k].amount / length) : 0.0f;
+                arrival.point = line.at(static_cast<float>(moments[k].first / moments[k].amount));
+            }
+        }
+    }
+    return lit;
+}
+
+FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,
+                           int slice, size_t light_index, uint32_t index) {
+    const Light& light = scene.snapshot.lights[light_index];
+    NearLine lines[16];
+    const size_t count = near_lines(grid, tiles, at, slice, light, lines);
+    if (count == 0) return {};
+
+    // The points take the lines in turn and have equal shares of the angle that the light sees of a line.
+    Occluders::ShadowRays shadow;
+    alignas(64) float visible[16], weight[16];
+    vec3 points[16];
+    for (size_t i = 0; i < 16; ++i) {
+        const NearLine& line = lines[i % count];
+        const auto on_line = static_cast<float>((16 - i % count + count - 1) / count);
+        const uint32_t key = hash(index, static_cast<uint32_t>(light_index), static_cast<uint32_t>(i));
+        const float u = (static_cast<float>(i / count) + to_unit(key)) / on_line;
+        const float tangent = std::tan(line.from + u * (line.to - line.from));
+        points[i] = line.start + (line.nearest + line.h * tangent) * line.direction;
+        weight[i] = (line.to - line.from) * line.h * (1 + tangent * tangent) /
+                    (on_line * line.length * static_cast<float>(count));
+        weight[i] *= falloff_at(light, points[i], line.width2);
+
+        const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
+        shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;
+        shadow.dx[i] = ray.direction.x, shadow.dy[i] = ray.direction.y, shadow.dz[i] = ray.direction.z;
+        shadow.t_min[i] = 0, shadow.t_max[i] = ray.t_max;
+        shadow.active[i] = weight[i] > 0 ? -1 : 0, visible[i] = 1;
+    }
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (light.shadows && occluders && !occluders->empty() && scene.settings.visibility != FroxelVisibility::off)
+        occluders->transmission(shadow, visible);
+
+    FroxelArrival result;
+    for (size_t i = 0; i < 16; ++i) {
+        const float amount = weight[i] > 0 ? weight[i] * visible[i] : 0;
+        result.amount += amount, result.point += amount * points[i];
+    }
+    if (result.amount > 0) result.point /= result.amount;
+    return result;
+}
+}

@@ -1,0 +1,29 @@
+// The light of froxels as it was in the last frame, found again from this frame's.
+#pragma once
+#include "modes/froxel_fill.h"
+
+#include <span>
+
+namespace tyndall {
+// Per froxel of the last frame: its light (as FroxelLight) and whether it is known (1) or hidden, empty or not finite
+// (0 and no light), so that sums over neighbours say how much of them is known.
+struct FroxelMemory {
+    FroxelGrid grid;
+    FroxelLight light;
+};
+
+FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light);
+
+// The light remembered at the centre of each froxel of `grid`, and 1; zeros where the last frame did not see it.
+FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles);
+
+// 1 for each froxel that need not be lit anew in this frame: all remembered ones but a quarter, another one each frame,
+// and but those near a local light, whose peak their neighbours do not show.
+std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
+                                   int frame);
+
+// Blends this frame's light with what is remembered, weighted `weight`, after clamping it to what the froxels around
+// show in this frame. Stale froxels (may be null) are what they were, within those bounds.
+void blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                   const uint8_t* stale, float weight, FroxelLight& light);
+}
