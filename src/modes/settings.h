@@ -64,6 +64,8 @@ struct RadialBlurSettings {
     float fade = 2;         // how far outside the picture a light may be before its rays have faded, in half pictures
     PictureShare picture = PictureShare::half;
     bool fog = true; // what lies behind fades in even fog
+};
+
 enum class FroxelVisibility { off, rays, slices };
 enum class FroxelLookup { trilinear, tricubic, jittered };
 
