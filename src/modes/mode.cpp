@@ -15,6 +15,8 @@ std::span<const Mode> modes() {
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
         Mode{"radial-blur", "brightness smeared away from the lights in the finished picture", Accuracy::look,
              Surfaces::post, radial_blur_limits, prepare_radial_blur, post_radial_blur},
+        Mode{"shadow-map", "ray march in a fixed number of steps with shadow maps", Accuracy::single_scattering,
+             Surfaces::shared, shadow_map_limits, prepare_shadow_map},
     };
     return table;
 }

@@ -49,6 +49,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_march_rows(all);
         append_path_rows(all);
         append_radial_blur_rows(all);
+        append_shadow_map_rows(all);
         return all;
     }();
     return rows;
@@ -72,11 +73,13 @@ void apply_setting(Settings& settings, std::string_view assignment) {
 Settings settings_for(Quality quality) {
     Settings settings;
     MarchSettings& march = settings.march;
+    ShadowMapSettings& map = settings.shadow_map;
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
+        map.steps = 16, map.resolution = 512;
         break;
     case Quality::preview:
         break;
@@ -84,6 +87,7 @@ Settings settings_for(Quality quality) {
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
+        map.steps = 64, map.resolution = 2048;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -91,6 +95,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
         march.visibility = Visibility::slices;
         march.light_resolution = 256;
+        map.steps = 256, map.resolution = 4096, map.light = LightTransmittance::marched;
         break;
     }
     return settings;

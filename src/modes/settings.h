@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tyndall {
-enum class Visibility { off, rays, slices };
+enum class Visibility { off, rays, maps, slices };
 
 // How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
 enum class PictureShare { full, half, third, quarter };
@@ -74,12 +74,25 @@ struct PathSettings {
     bool ambient = true;
 };
 
+enum class Spacing { angle, distance };
+
+struct ShadowMapSettings {
+    int steps = 24; // per ray, and per local light on what it reaches
+    Spacing spacing = Spacing::angle;
+    int resolution = 1024; // texels across each map
+    int cascades = 3;      // most maps of a sun
+    int pcf = 1;           // 0 nearest texel, 1 the four around, 2 sixteen
+    float bias = 0;        // texels
+    LightTransmittance light = LightTransmittance::grid;
+};
+
 struct Settings {
     PixelSettings pixel;
     StyleSettings style;
     MarchSettings march;
     PathSettings path;
     RadialBlurSettings radial_blur;
+    ShadowMapSettings shadow_map;
 };
 
 enum class Quality { draft, preview, final, reference };

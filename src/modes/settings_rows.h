@@ -66,4 +66,5 @@ void append_style_rows(std::vector<SettingRow>& rows);
 void append_march_rows(std::vector<SettingRow>& rows);
 void append_path_rows(std::vector<SettingRow>& rows);
 void append_radial_blur_rows(std::vector<SettingRow>& rows);
+void append_shadow_map_rows(std::vector<SettingRow>& rows);
 }

@@ -12,4 +12,6 @@ ScatterFunction prepare_path(const View&, const Snapshot&, const Settings&, Hist
 std::vector<Limit> radial_blur_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_radial_blur(const View&, const Snapshot&, const Settings&, History*);
 PostFunction post_radial_blur(const View&, const Snapshot&, const Settings&);
+std::vector<Limit> shadow_map_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_shadow_map(const View&, const Snapshot&, const Settings&, History*);
 }
