@@ -77,7 +77,8 @@ struct PathSettings {
 enum class Spacing { angle, distance };
 
 struct ShadowMapSettings {
-    int steps = 24; // per ray, and per local light on what it reaches
+    int steps = 24;  // per ray, and per local light on what it reaches
+    int lookups = 4; // in the maps, per step
     Spacing spacing = Spacing::angle;
     int resolution = 1024; // texels across each map
     int cascades = 3;      // most maps of a sun

@@ -6,6 +6,9 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.steps", "", 1, 1024,
                               "steps along each ray through the fog, and as many along what each local light reaches",
                               TYNDALL_FIELD(shadow_map.steps)));
+    rows.push_back(number_row("shadow_map.lookups", "", 1, 64,
+                              "points of each step whose shadows are looked up: narrow shafts need more than fog does",
+                              TYNDALL_FIELD(shadow_map.lookups)));
     rows.push_back(choice_row("shadow_map.spacing", {"angle", "distance"},
                               "steps of local lights: even in the angle around the light, or even along the ray",
                               TYNDALL_FIELD(shadow_map.spacing)));

@@ -14,7 +14,7 @@ void lit_shares_kernel(const ShadowMap& map, const float* x, const float* y, con
     store(lit_share16(map, {load(x), load(y), load(z)}), share);
 }
 void texel_sizes_kernel(const ShadowMap& map, const float* x, const float* y, const float* z, float* size) {
-    const TexelPlaces places = texel_places(map, {load(x), load(y), load(z)});
+    const TexelPlaces places = texel_places(map, map_coordinates(map, {load(x), load(y), load(z)}));
     store(zero_unless(places.mapped, places.texel), size);
 }
 }

@@ -12,6 +12,7 @@ struct Filling {
     const Occluders& occluders;
     ShadowMap& map;
     mat3 map_to_world;
+    bool has_alpha;
     float start = 0;           // w at which the rays of a sun begin, before all surfaces
     float nearest = 0;         // distance from a local light at which surfaces begin
     float smallest_cosine = 0; // to the axis, of texels that the light reaches
@@ -66,7 +67,7 @@ void fill_tile(const Filling& filling, const ShadowPicture& picture, size_t face
         const int lane = static_cast<int>(i);
         if (hits.instance[i] < 0) continue;
         float w = filling.start + hits.t[i];
-        if (filling.occluders.has_alpha() && filling.occluders.surface(rays[i], hits, lane).alpha < 0.5f)
+        if (filling.has_alpha && filling.occluders.surface(rays[i], hits, lane).alpha < 0.5f)
             w = depth_behind_sheets(filling.occluders, rays[i], filling.nearest, filling.start);
         depth[texels[i]] = w;
     }
@@ -74,7 +75,7 @@ void fill_tile(const Filling& filling, const ShadowPicture& picture, size_t face
 }
 
 void fill_shadow_map(const Light& light, const Occluders& occluders, ShadowMap& map) {
-    Filling filling{light, occluders, map, glm::transpose(map.world_to_map)};
+    Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha()};
     filling.smallest_cosine = -2;
     if (map.kind == LightKind::sun) {
         const Box box = occluders.bounds();

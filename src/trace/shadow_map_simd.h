@@ -71,22 +71,27 @@ HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPla
                     (places.v <= last);
 }
 
-HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& point) {
+// Points in the map's own coordinates: the light, or the sun's anchor, is the origin. Linear along rays.
+HWY_INLINE Vec3s turned_to_map(const ShadowMap& map, const Vec3s& p) {
     const mat3& m = map.world_to_map;
-    const Vec3s p = point - splat(map.position);
-    const Vec3s q = {dot(p, {m[0].x, m[1].x, m[2].x}), dot(p, {m[0].y, m[1].y, m[2].y}),
-                     dot(p, {m[0].z, m[1].z, m[2].z})};
+    return {dot(p, {m[0].x, m[1].x, m[2].x}), dot(p, {m[0].y, m[1].y, m[2].y}), dot(p, {m[0].z, m[1].z, m[2].z})};
+}
+HWY_INLINE Vec3s map_coordinates(const ShadowMap& map, const Vec3s& point) {
+    return turned_to_map(map, point - splat(map.position));
+}
+
+HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
     TexelPlaces places;
     map.kind == LightKind::sun ? place_in_cascades(map, q, places) : place_in_tangents(map, q, places);
     places.u = select(places.mapped, places.u, shadow_guard), places.v = select(places.mapped, places.v, shadow_guard);
     return places;
 }
 
-// Share of the light that reaches 16 points, by percentage-closer filtering (Reeves et al. 1987): depths are compared
-// first, then averaged. Lanes that are not wanted may hold anything.
-HWY_INLINE Floats lit_share16(const ShadowMap& map, const Vec3s& point) {
+// Share of the light that reaches 16 points given in map coordinates, by percentage-closer filtering (Reeves et al.
+// 1987): depths are compared first, then averaged.
+HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
     if (map.empty()) return 1.0f;
-    const TexelPlaces places = texel_places(map, point);
+    const TexelPlaces places = texel_places(map, q);
     const Floats outside = map.kind == LightKind::sun ? 1.0f : 0.0f;
     if (!any(places.mapped)) return outside;
 
@@ -115,6 +120,10 @@ HWY_INLINE Floats lit_share16(const ShadowMap& map, const Vec3s& point) {
         sum = fused(across, y == -1 ? 1.0f - down : y == 2 ? down : Floats(1.0f), sum);
     }
     return select(places.mapped, sum * (1.0f / 9), outside);
+}
+
+HWY_INLINE Floats lit_share16(const ShadowMap& map, const Vec3s& point) {
+    return map.empty() ? Floats(1.0f) : lit_share_at(map, map_coordinates(map, point));
 }
 }
 HWY_AFTER_NAMESPACE();
