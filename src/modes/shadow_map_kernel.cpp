@@ -240,7 +240,7 @@ struct Spaced {
         low = passing.low - passing.nearest, high = passing.high - passing.nearest;
         even = spacing == Spacing::distance;
         // Next to the light steps need not get shorter than what is far from it is long.
-        scale = max(max(passing.away, max(abs(low), abs(high)) * 0.15f), 1e-12f);
+        scale = max(max(passing.away, max(abs(low), abs(high)) * 0.03f), 1e-12f);
         first = even ? low : atan(low / scale);
         angle = (even ? high - low : atan(high / scale) - first) * (1 / static_cast<float>(steps));
     }

@@ -6,7 +6,7 @@ namespace tyndall {
 namespace {
 constexpr double steps_per_octave = 4; // of texel sizes
 constexpr double worth_it = 0.7;       // a cascade's texels are at most this part of the next one's
-constexpr int spare = 3;               // texels around what is asked for: filters, and what snapping takes
+constexpr int spare = 5; // texels around what is asked for: filters up to its edge, and what snapping takes
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 // A rectangle across the light, metres.

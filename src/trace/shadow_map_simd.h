@@ -14,6 +14,13 @@ namespace tyndall::HWY_NAMESPACE {
 // Texels around a filtered look-up on each side that a picture has to spare.
 inline constexpr float shadow_guard = 2;
 
+HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
+    Ints r;
+    for (size_t i = 0; i < parts; ++i)
+        r.part[i] = hn::IfThenElse(hn::RebindMask(IntTag(), where.part[i]), a.part[i], b.part[i]);
+    return r;
+}
+
 // Where points lie in the pictures.
 struct TexelPlaces {
     Floats u, v, w;  // texel numbers; along the light
@@ -22,29 +29,31 @@ struct TexelPlaces {
     Mask16 mapped;   // lanes that lie in a picture
 };
 
-// The finest cascade that holds the point.
+HWY_INLINE Mask16 in_picture(const Floats& u, const Floats& v, ivec2 size) {
+    return (u >= shadow_guard) & (u <= static_cast<float>(size.x) - shadow_guard) & (v >= shadow_guard) &
+           (v <= static_cast<float>(size.y) - shadow_guard);
+}
+
+// The finest cascade that holds the point. Neighbouring points mostly share one.
 HWY_INLINE void place_in_cascades(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
-    Floats scale_u = 1.0f, scale_v = 1.0f, offset_u = 0.0f, offset_v = 0.0f, first = 0.0f, row = 0.0f;
-    Mask16 mapped = Floats(1.0f) < Floats(0.0f);
-    for (size_t i = map.pictures.size(); i-- > 0;) {
-        const ShadowPicture& picture = map.pictures[i];
+    places.w = q.z, places.mapped = q.x < q.x;
+    for (const ShadowPicture& picture : map.pictures) {
         const Floats u = fused(q.x, picture.scale.x, picture.offset.x);
         const Floats v = fused(q.y, picture.scale.y, picture.offset.y);
-        const Mask16 inside = (u >= shadow_guard) & (u <= static_cast<float>(picture.size.x) - shadow_guard) &
-                              (v >= shadow_guard) & (v <= static_cast<float>(picture.size.y) - shadow_guard);
-        mapped = mapped | inside;
-        scale_u = select(inside, picture.scale.x, scale_u), scale_v = select(inside, picture.scale.y, scale_v);
-        offset_u = select(inside, picture.offset.x, offset_u), offset_v = select(inside, picture.offset.y, offset_v);
-        row = select(inside, static_cast<float>(picture.size.x), row);
-        first = select(inside, static_cast<float>(i), first);
+        const Mask16 inside = in_picture(u, v, picture.size);
+        const float texel = 1 / std::min(picture.scale.x, picture.scale.y);
+        const Ints first = static_cast<int32_t>(picture.first), row = picture.size.x;
+        if (&picture == map.pictures.data()) {
+            places.u = u, places.v = v, places.texel = texel, places.first = first, places.row = row;
+        } else {
+            const Mask16 here = inside & !places.mapped;
+            places.u = select(here, u, places.u), places.v = select(here, v, places.v);
+            places.texel = select(here, texel, places.texel);
+            places.first = chosen(here, first, places.first), places.row = chosen(here, row, places.row);
+        }
+        places.mapped = places.mapped | inside;
+        if (!any(!places.mapped)) break;
     }
-    places.u = fused(q.x, scale_u, offset_u), places.v = fused(q.y, scale_v, offset_v), places.w = q.z;
-    places.texel = 1.0f / min(scale_u, scale_v);
-    places.row = truncate(row);
-    alignas(64) int32_t firsts[16] = {};
-    for (size_t i = 0; i < map.pictures.size(); ++i) firsts[i] = static_cast<int32_t>(map.pictures[i].first);
-    places.first = gather(firsts, truncate(first));
-    places.mapped = mapped;
 }
 
 // The face of a cube, or the one picture of a spot. Faces look along their axes; u and v are the next two in turn.
@@ -66,9 +75,7 @@ HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPla
     places.texel = depth * (1 / picture.scale.x);
     places.row = picture.size.x;
     places.first = truncate(face) * (picture.size.x * picture.size.y);
-    const float last = static_cast<float>(picture.size.x) - shadow_guard;
-    places.mapped = (depth > 0.0f) & (places.u >= shadow_guard) & (places.u <= last) & (places.v >= shadow_guard) &
-                    (places.v <= last);
+    places.mapped = (depth > 0.0f) & in_picture(places.u, places.v, picture.size);
 }
 
 // Points in the map's own coordinates: the light, or the sun's anchor, is the origin. Linear along rays.
