@@ -238,7 +238,7 @@ TEST(ShadowMap, CascadesAgreeAtTheirBorders) {
         if (edge) continue;
         ++asked, same += share_at(map, point) == traced;
     }
-    EXPECT_GT(asked, 2000);
+    EXPECT_GT(asked, 1000); // a quarter of the line
     EXPECT_EQ(same, asked);
 }
 
