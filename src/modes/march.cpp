@@ -2,6 +2,7 @@
 // the fog it crosses.
 #include "modes/march_kernel.h"
 #include "modes/march_slices.h"
+#include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
@@ -28,7 +29,7 @@ float thickness(const Medium& medium, const Box& scene_bounds) {
 }
 }
 
-std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
+std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     const MarchSettings& march = settings.march;
     std::vector<Limit> limits;
     for (const Medium& medium : snapshot.media) {
@@ -47,6 +48,8 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
     if (march.visibility == Visibility::slices && snapshot.occluders && snapshot.occluders->has_alpha())
         limits.push_back(
             {Severity::info, "march.visibility", "shadows of MASK and BLEND surfaces are sampled, not sliced"});
+    if (march.visibility == Visibility::maps)
+        for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
     if (!snapshot.media.empty() && march.light == LightTransmittance::off)
         limits.push_back(
             {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
@@ -62,13 +65,18 @@ std::vector<Limit> march_limits(const View&, const Snapshot& snapshot, const Set
     return limits;
 }
 
+Snapshot march_snapshot(const Snapshot& snapshot, const Settings& settings) {
+    Snapshot result = stylised(snapshot, settings.style);
+    if (!settings.march.heterogeneity) result.media = even_media(result.media);
+    for (Medium& medium : result.media) simplify(medium, settings.march);
+    if (!settings.march.ambient) result.ambient = vec3(0);
+    return result;
+}
+
 ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto march = std::make_shared<March>();
-    march->snapshot = stylised(snapshot, settings.style);
+    march->snapshot = march_snapshot(snapshot, settings);
     march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
-    if (!settings.march.heterogeneity) march->snapshot.media = even_media(march->snapshot.media);
-    for (Medium& medium : march->snapshot.media) simplify(medium, settings.march);
-    if (!settings.march.ambient) march->snapshot.ambient = vec3(0);
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(
             make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution));
@@ -76,6 +84,8 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march->cones.push_back(cone_falloff(light));
         if (light.kind != LightKind::sun) march->near_points.push_back(light.position);
     }
+    if (settings.march.visibility == Visibility::maps)
+        march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
     if (settings.march.visibility != Visibility::slices)
         return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
     if (snapshot.occluders) march->slices = make_shadow_slices(snapshot.occluders->shadow_triangles());

@@ -2,6 +2,7 @@
 #pragma once
 #include "modes/mode.h"
 #include "trace/light_depth.h"
+#include "trace/shadow_map.h"
 #include "trace/shadow_slices.h"
 
 #include <vector>
@@ -17,7 +18,11 @@ struct March {
     std::vector<ConeFalloff> cones; // one per light
     std::vector<vec3> near_points;  // positions of the local lights
     ShadowSlices slices;            // with Visibility::slices
+    std::vector<ShadowMap> maps;    // with Visibility::maps, one per light
 };
+
+// The snapshot as march.* and style.* see it: terms that are off are taken out.
+Snapshot march_snapshot(const Snapshot& snapshot, const Settings& settings);
 
 // Fog along up to 16 rays. Source function and extinction are sampled once per step; within a step they are constant
 // and the integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015, section 5.6.3).

@@ -20,6 +20,8 @@ std::span<const Mode> modes() {
         Mode{"shadow-volume",
              "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
              Accuracy::even_fog, Surfaces::shared, shadow_volume_limits, prepare_shadow_volume},
+        Mode{"shadow-map", "ray march in a fixed number of steps with shadow maps", Accuracy::single_scattering,
+             Surfaces::shared, shadow_map_limits, prepare_shadow_map},
     };
     return table;
 }

@@ -51,6 +51,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_radial_blur_rows(all);
         append_shadow_volume_rows(all);
         append_froxel_rows(all);
+        append_shadow_map_rows(all);
         return all;
     }();
     return rows;
@@ -76,6 +77,7 @@ Settings settings_for(Quality quality) {
     MarchSettings& march = settings.march;
     ShadowVolumeSettings& volume = settings.shadow_volume;
     FroxelSettings& froxel = settings.froxel;
+    ShadowMapSettings& map = settings.shadow_map;
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
@@ -83,6 +85,7 @@ Settings settings_for(Quality quality) {
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         volume.nodes = 3, volume.steps = 24, volume.light_resolution = 32;
         froxel.tile = 16, froxel.depth_slices = 48, froxel.visibility = FroxelVisibility::rays;
+        map.steps = 16, map.resolution = 512;
         break;
     case Quality::preview:
         break;
@@ -92,6 +95,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
         froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
+        map.steps = 64, map.resolution = 2048;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -101,6 +105,7 @@ Settings settings_for(Quality quality) {
         march.light_resolution = 256;
         volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
         froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
+        map.steps = 256, map.resolution = 4096, map.light = LightTransmittance::marched;
         break;
     }
     return settings;

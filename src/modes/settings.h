@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tyndall {
-enum class Visibility { off, rays, slices };
+enum class Visibility { off, rays, maps, slices };
 
 // How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
 enum class PictureShare { full, half, third, quarter };
@@ -105,6 +105,19 @@ struct ShadowVolumeSettings {
     float shell_intensity = 0.08f; // share of that length: the depth of lit fog a shell is as bright as
 };
 
+enum class Spacing { angle, distance };
+
+struct ShadowMapSettings {
+    int steps = 24;  // per ray, and per local light on what it reaches
+    int lookups = 4; // in the maps, per step
+    Spacing spacing = Spacing::angle;
+    int resolution = 1024; // texels across each map
+    int cascades = 3;      // most maps of a sun
+    int pcf = 1;           // 0 nearest texel, 1 the four around, 2 sixteen
+    float bias = 0;        // texels
+    LightTransmittance light = LightTransmittance::grid;
+};
+
 struct Settings {
     PixelSettings pixel;
     StyleSettings style;
@@ -113,6 +126,7 @@ struct Settings {
     RadialBlurSettings radial_blur;
     ShadowVolumeSettings shadow_volume;
     FroxelSettings froxel;
+    ShadowMapSettings shadow_map;
 };
 
 enum class Quality { draft, preview, final, reference };

@@ -21,11 +21,11 @@ void append_march_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(march.max_steps)));
     rows.push_back(number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
                               TYNDALL_FIELD(march.min_transmittance)));
-    rows.push_back(choice_row(
-        "march.visibility", {"off", "rays", "slices"},
-        "shadows of surfaces in the fog; rays = sampled at each step, slices = exact: only lit stretches are "
-        "integrated, as exactly as the fog allows",
-        TYNDALL_FIELD(march.visibility)));
+    rows.push_back(choice_row("march.visibility", {"off", "rays", "maps", "slices"},
+                              "shadows of surfaces in the fog; rays = sampled at each step, maps = the same, looked up "
+                              "in shadow_map.*, slices = exact: only lit stretches are "
+                              "integrated, as exactly as the fog allows",
+                              TYNDALL_FIELD(march.visibility)));
     rows.push_back(choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
                               TYNDALL_FIELD(march.light)));
     rows.push_back(number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",

@@ -68,4 +68,5 @@ void append_path_rows(std::vector<SettingRow>& rows);
 void append_radial_blur_rows(std::vector<SettingRow>& rows);
 void append_shadow_volume_rows(std::vector<SettingRow>& rows);
 void append_froxel_rows(std::vector<SettingRow>& rows);
+void append_shadow_map_rows(std::vector<SettingRow>& rows);
 }

@@ -17,4 +17,6 @@ ScatterFunction prepare_radial_blur(const View&, const Snapshot&, const Settings
 PostFunction post_radial_blur(const View&, const Snapshot&, const Settings&);
 std::vector<Limit> shadow_volume_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_shadow_volume(const View&, const Snapshot&, const Settings&, History*);
+std::vector<Limit> shadow_map_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_shadow_map(const View&, const Snapshot&, const Settings&, History*);
 }

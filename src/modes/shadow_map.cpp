@@ -1,0 +1,149 @@
+// Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
+#include "modes/march_kernel.h"
+#include "modes/shadow_map_kernel.h"
+#include "modes/style.h"
+#include "modes/techniques.h"
+
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+constexpr float detail_voxels = 4; // of the finest detail of a noise
+constexpr float sharp_pixels = 4;  // a texel that covers more of the picture shows
+
+std::string number_text(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+// Rays through the middle and towards the corners of the picture, to the end of fog and scene.
+std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
+    Box fog;
+    for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
+    fog.low = glm::max(fog.low, snapshot.bounds.low), fog.high = glm::min(fog.high, snapshot.bounds.high);
+    std::vector<Ray> rays;
+    for (const vec2 at : {vec2(0.5f), vec2(0.1f), vec2(0.9f, 0.1f), vec2(0.1f, 0.9f), vec2(0.9f)}) {
+        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
+        const Interval inside = clip(fog, ray.origin, ray.direction, {0, infinity});
+        if (inside.empty()) continue;
+        ray.t_max = inside.high;
+        rays.push_back(ray);
+    }
+    return rays;
+}
+
+// The largest texel of a light's map at the ends of the rays: its size, and its share of a pixel there.
+void append_resolution_limit(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
+                             std::vector<Limit>& limits) {
+    float largest = 0, pixels = 0;
+    for (const Ray& ray : rays) {
+        const vec3 end = ray.at(ray.t_max);
+        const float texel = texel_size(map, end), depth = planar_depth(view.camera, ray, ray.t_max);
+        const float height = view.camera.ortho_height > 0
+                                 ? view.camera.ortho_height
+                                 : 2 * std::max(depth, 1e-6f) * std::tan(0.5f * view.camera.vertical_fov);
+        largest = std::max(largest, texel);
+        pixels = std::max(pixels, texel * static_cast<float>(view.size.y) / height);
+    }
+    if (largest > 0)
+        limits.push_back({pixels > sharp_pixels ? Severity::degraded : Severity::info, "light " + light.name,
+                          "texels of its shadow map are up to " + number_text("%.2g", largest) + " m wide (" +
+                              number_text("%.2g", pixels) +
+                              " pixels) at the end of the view; edges are as coarse, thinner things and gaps can be "
+                              "missed"});
+}
+
+bool has_blend(const Snapshot& snapshot) {
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->materials, [](const Material& material) {
+               return material.alpha_mode == AlphaMode::blend;
+           });
+}
+
+void append_step_limits(const ShadowMapSettings& settings, const Snapshot& snapshot, std::span<const Ray> rays,
+                        std::vector<Limit>& limits) {
+    for (const Medium& medium : snapshot.media) {
+        if (medium.kind != DensityKind::bricks || rays.empty()) continue;
+        float length = 0;
+        for (const Ray& ray : rays)
+            length += clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length();
+        const float step = length / static_cast<float>(rays.size()) / static_cast<float>(settings.steps);
+        const float detail = fog_detail({&medium, 1});
+        if (step > detail)
+            limits.push_back({step > 8 * detail ? Severity::degraded : Severity::info, "medium " + medium.name,
+                              "steps of about " + number_text("%.2g", step) + " m are longer than its detail of " +
+                                  number_text("%.2g", detail) + " m, which is seen blurred or as grain; more " +
+                                  "shadow_map.steps resolve it"});
+    }
+}
+}
+
+float fog_detail(std::span<const Medium> media) {
+    float detail = infinity;
+    for (const Medium& medium : media) {
+        if (medium.kind != DensityKind::bricks) continue;
+        const vec3 voxel = medium.bricks->voxel_size;
+        detail = std::min(detail, detail_voxels * std::min(voxel.x, std::min(voxel.y, voxel.z)));
+    }
+    return detail;
+}
+
+ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
+    return {settings.resolution, settings.cascades, settings.pcf, settings.bias};
+}
+
+std::vector<ShadowMap> make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings) {
+    std::vector<ShadowMap> maps;
+    for (const Light& light : snapshot.lights)
+        maps.push_back(make_shadow_map(view, snapshot, light, shadow_map_options(settings)));
+    return maps;
+}
+
+std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits;
+    const std::vector<Ray> rays = probing_rays(view, snapshot);
+    for (const Light& light : snapshot.lights) {
+        if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) continue;
+        if (is_soft(light))
+            limits.push_back({Severity::degraded, "light " + light.name,
+                              "shadow maps see it from one point: its soft shadows have hard edges in the fog"});
+        append_resolution_limit(view, fitted_shadow_map(view, snapshot, light, shadow_map_options(settings.shadow_map)),
+                                light, rays, limits);
+    }
+    if (snapshot.occluders && snapshot.occluders->has_alpha() && has_blend(snapshot))
+        limits.push_back({Severity::degraded, "BLEND surfaces",
+                          "shadow maps know no half shadows: surfaces of alpha 1/2 and more block all light in the "
+                          "fog, others none"});
+    return limits;
+}
+
+std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    // What a march cannot do this one cannot either.
+    Settings like = settings;
+    like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
+    std::vector<Limit> limits = march_limits(view, snapshot, like);
+    for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
+    append_step_limits(settings.shadow_map, snapshot, probing_rays(view, snapshot), limits);
+    if (!snapshot.media.empty() && settings.shadow_map.light == LightTransmittance::off)
+        limits.push_back(
+            {Severity::degraded, "lights", "shadow_map.light is off: fog does not dim the light that crosses it"});
+    if (!snapshot.media.empty() && settings.shadow_map.light == LightTransmittance::average)
+        limits.push_back({Severity::degraded, "lights", "shadow_map.light is average: every point is dimmed the same"});
+    return limits;
+}
+
+ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    auto march = std::make_shared<ShadowMapMarch>();
+    march->snapshot = march_snapshot(snapshot, settings);
+    march->settings = settings.shadow_map, march->style = settings.style, march->camera = view.camera;
+    march->detail = fog_detail(march->snapshot.media);
+    march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
+    for (const Light& light : march->snapshot.lights) {
+        march->depths.push_back(
+            make_light_depth(march->snapshot, light, settings.shadow_map.light, settings.march.light_resolution));
+        march->depths.back().scale = settings.style.light_depth;
+        march->cones.push_back(cone_falloff(light));
+    }
+    return [march](const RayBatch& batch, std::span<Scatter> results) { march_shadow_maps(*march, batch, results); };
+}
+}

@@ -1,0 +1,116 @@
+// Fills shadow maps with the first surface of rays from the light, 4×4 texels at a time.
+#include "base/parallel.h"
+#include "trace/shadow_map.h"
+
+namespace tyndall {
+namespace {
+constexpr int tile_side = 4;
+constexpr int most_sheets = 64; // BLEND surfaces passed by one ray
+
+struct Filling {
+    const Light& light;
+    const Occluders& occluders;
+    ShadowMap& map;
+    mat3 map_to_world;
+    bool has_alpha;
+    float start = 0;           // w at which the rays of a sun begin, before all surfaces
+    float nearest = 0;         // distance from a local light at which surfaces begin
+    float smallest_cosine = 0; // to the axis, of texels that the light reaches
+};
+
+// The ray through a texel; w = its t + start.
+Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 texel) {
+    const vec2 at = (vec2(texel) + 0.5f - picture.offset) / picture.scale;
+    const ShadowMap& map = filling.map;
+    if (map.kind == LightKind::sun)
+        return {map.position + filling.map_to_world * vec3(at, filling.start), filling.light.direction};
+    if (map.kind == LightKind::spot) return {map.position, filling.map_to_world * glm::normalize(vec3(at, 1))};
+    const int axis = static_cast<int>(face) / 2;
+    vec3 direction;
+    direction[axis] = face % 2 ? -1.0f : 1.0f;
+    direction[(axis + 1) % 3] = at.x, direction[(axis + 2) % 3] = at.y;
+    return {map.position, glm::normalize(direction)};
+}
+
+// Depths of rays that met a sheet more transparent than opaque: from behind it on, one sheet after the other.
+float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, float depth) {
+    Hits hits;
+    for (int sheet = 0; sheet < most_sheets; ++sheet) {
+        occluders.closest({&ray, 1}, t_min, hits);
+        if (hits.instance[0] < 0) return infinity;
+        if (occluders.surface(ray, hits, 0).alpha >= 0.5f) return depth + hits.t[0];
+        const float step = hits.t[0] + shadow_offset(ray.at(hits.t[0]));
+        ray.origin = ray.at(step), depth += step, t_min = 0;
+    }
+    return depth;
+}
+
+void fill_tile(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 corner) {
+    Ray rays[16];
+    int texels[16];
+    size_t count = 0;
+    const ivec2 end = glm::min(corner + tile_side, picture.size);
+    float* depth = filling.map.depth.data() + picture.first;
+    for (int y = corner.y; y < end.y; ++y)
+        for (int x = corner.x; x < end.x; ++x) {
+            const Ray ray = texel_ray(filling, picture, face, {x, y});
+            const int texel = y * picture.size.x + x;
+            depth[texel] = infinity;
+            if (glm::dot(ray.direction, filling.light.direction) < filling.smallest_cosine) continue;
+            rays[count] = ray, texels[count++] = texel;
+        }
+    if (count == 0) return;
+
+    Hits hits;
+    filling.occluders.closest({rays, count}, filling.nearest, hits);
+    for (size_t i = 0; i < count; ++i) {
+        const int lane = static_cast<int>(i);
+        if (hits.instance[i] < 0) continue;
+        float w = filling.start + hits.t[i];
+        if (filling.has_alpha && filling.occluders.surface(rays[i], hits, lane).alpha < 0.5f)
+            w = depth_behind_sheets(filling.occluders, rays[i], filling.nearest, filling.start);
+        depth[texels[i]] = w;
+    }
+}
+}
+
+void fill_shadow_map(const Light& light, const Occluders& occluders, ShadowMap& map) {
+    Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha()};
+    filling.smallest_cosine = -2;
+    if (map.kind == LightKind::sun) {
+        const Box box = occluders.bounds();
+        float first = infinity;
+        for (int i = 0; i < 8; ++i) {
+            const vec3 corner(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+                              i & 4 ? box.high.z : box.low.z);
+            first = std::min(first, glm::dot(corner - map.position, light.direction));
+        }
+        filling.start = first - 0.01f * glm::length(box.size()) - shadow_offset(map.position);
+    } else {
+        filling.nearest = std::max(light.radius, shadow_offset(light.position));
+        // Filters reach two texels beyond the cone.
+        const float texel = 1 / map.pictures[0].scale.x;
+        if (light.kind == LightKind::spot)
+            filling.smallest_cosine = std::cos(std::min(light.outer_cone + 4 * texel, pi));
+    }
+
+    size_t texels = 0;
+    int64_t rows = 0;
+    for (const ShadowPicture& picture : map.pictures) {
+        texels += static_cast<size_t>(picture.size.x) * static_cast<size_t>(picture.size.y);
+        rows += (picture.size.y + tile_side - 1) / tile_side;
+    }
+    map.depth.resize(texels);
+    parallel_for(rows, [&](int64_t row) {
+        size_t face = 0;
+        for (;; ++face) {
+            const int64_t of_face = (map.pictures[face].size.y + tile_side - 1) / tile_side;
+            if (row < of_face) break;
+            row -= of_face;
+        }
+        const ShadowPicture& picture = map.pictures[face];
+        for (int x = 0; x < picture.size.x; x += tile_side)
+            fill_tile(filling, picture, face, {x, static_cast<int>(row) * tile_side});
+    });
+}
+}
