@@ -11,6 +11,10 @@ std::span<const Mode> modes() {
     static const std::array table{
         Mode{"march", "ray march through all fog with shadow rays: the main renderer", Accuracy::single_scattering,
              Surfaces::shared, march_limits, prepare_march},
+        Mode{"cone", "closed forms for the light of spots, points and suns in even fog, without shadows",
+             Accuracy::even_fog, Surfaces::shared, cone_limits, prepare_cone},
+        Mode{"billboard", "textured beam cards where light leaks into the scene: a look, not light", Accuracy::look,
+             Surfaces::shared, billboard_limits, prepare_billboard},
         Mode{"path", "unbiased path tracing of all scattered light: the truth, with noise",
              Accuracy::multiple_scattering, Surfaces::own, path_limits, prepare_path},
     };

@@ -49,6 +49,39 @@ struct StyleSettings {
     vec3 tint{1};          // factor on the light of the fog
 };
 
+enum class ConeAttenuation { inverse_square, linear, none };
+enum class ConeEdge { physical, soft };
+
+struct ConeSettings {
+    int nodes = 8;         // Gauss–Legendre nodes on the widest pieces of a ray
+    float near_radius = 0; // of the lens of a spot: its light begins where the cone is that wide, metres
+    ConeAttenuation attenuation = ConeAttenuation::inverse_square;
+    ConeEdge edge = ConeEdge::physical;
+    float inner = 0.5f;       // with ConeEdge::soft: share of the outer cone's angle that is evenly lit
+    float noise = 0;          // modulates the light, 0..1
+    float noise_size = 0.6f;  // metres
+    float noise_speed = 0.2f; // metres per second, upwards
+};
+
+enum class CardFacing { axis, camera, cross };
+
+struct BillboardSettings {
+    int cards = 12; // most per light, largest openings first
+    int rays = 96;  // across the light's view that looks for openings
+    CardFacing facing = CardFacing::axis;
+    float brightness = 1;    // factor on all cards
+    float streaks = 0.55f;   // how far stripes along the beam darken it, 0..1
+    float stripes = 14;      // stripes across a card
+    float soft = 1;          // share of a card's half width that fades out
+    float scroll = 0.05f;    // of the texture along the beam, metres per second
+    float sway = 0.15f;      // how far the brightness swings, 0..1
+    float specks = 0.25f;    // brightness of dust particles in the beam
+    float near_fade = 0.6f;  // metres from the eye within which a card fades in
+    float far_fade = 1e6f;   // metres from the eye at which it has faded out
+    float soft_depth = 0.4f; // metres before a surface over which a card fades out
+    bool fog = true;         // even fog dims cards and what is behind
+};
+
 inline constexpr int all_orders = 65536; // ends paths that nothing else ends
 
 struct PathSettings {
@@ -61,6 +94,8 @@ struct Settings {
     PixelSettings pixel;
     StyleSettings style;
     MarchSettings march;
+    ConeSettings cone;
+    BillboardSettings billboard;
     PathSettings path;
 };
 
