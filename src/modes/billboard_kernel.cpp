@@ -81,7 +81,9 @@ HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, co
     const BillboardSettings& s = billboards.settings;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000);
     const Floats moved = (on.along - s.scroll * billboards.seconds) * 0.7f;
-    const Floats x = fused(on.across, 0.5f * s.stripes, quad.seed);
+    // Narrow cards have fewer stripes: none thinner than on a card 40 cm wide.
+    const float stripes = s.stripes * std::clamp(std::max(quad.half_from, quad.half_to) * (1 / 0.2f), 0.15f, 1.0f);
+    const Floats x = fused(on.across, 0.5f * stripes, quad.seed);
     const Floats coarse = value_noise(x * 0.37f, moved * 0.5f, seed), fine = value_noise(x, moved, seed + 1);
     const Floats both = min(coarse * 0.6f + fine * 0.4f, 1.0f);
     const Floats light = smooth(0.2f, 0.8f, both);
@@ -117,7 +119,7 @@ HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const
     if (s.near_fade > 0) share = share * smooth(0.25f * s.near_fade, s.near_fade, away);
     share = share * (1.0f - smooth(0.5f * s.far_fade, s.far_fade, away));
     const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
-    share = share * smooth(0.03f, 0.4f, facing);
+    share = share * smooth(0, 0.75f, facing);
     if (billboards.style.range < 1e6f)
         share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
     return share;

@@ -131,7 +131,7 @@ std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
 
 // Numbers the connected lit cells; returns the cells of each opening.
 std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>& cells) {
-    float longest = 0;
+    float longest = 0.05f * view.reach; // reach: twice the scene's diagonal
     for (const Cell& cell : cells) longest = std::max(longest, cell.to - cell.from);
     std::vector<std::vector<int>> found;
     const auto is_lit = [&](int i) { return cells[i].to - cells[i].from > long_way * longest; };
@@ -277,8 +277,11 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
     LightView view = light_view(light, snapshot, settings.rays);
     std::vector<Cell> cells = looked(view, snapshot);
     std::vector<std::vector<int>> found = openings(view, cells);
+    float large = large_share * static_cast<float>(cells.size());
     if (light.kind == LightKind::sun && !found.empty()) {
         const LightView closer = closer_view(view, found);
+        const auto area = [](const LightView& of) { return glm::length(of.right) * glm::length(of.up); };
+        large *= area(view) / std::max(area(closer), 1e-20f);
         view.corner = closer.corner, view.right = closer.right, view.up = closer.up;
         cells = looked(view, snapshot), found = openings(view, cells);
     }
@@ -294,10 +297,10 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
         for (const auto& opening : found) largest = std::max(largest, opening.size());
         if (10 * largest > 6 * in_cone) return add(cone_card(view, cells));
     }
-    const size_t large = static_cast<size_t>(large_share * static_cast<float>(cells.size()));
     std::vector<std::vector<int>> parts;
     for (const auto& opening : found) {
-        const auto pieces = cut(view, opening, static_cast<int>(std::min<size_t>(opening.size() / large + 1, 64)));
+        const int count = 1 + static_cast<int>(std::min(static_cast<float>(opening.size()) / large, 63.0f));
+        const auto pieces = cut(view, opening, count);
         parts.insert(parts.end(), pieces.begin(), pieces.end());
     }
     std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });

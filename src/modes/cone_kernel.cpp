@@ -30,6 +30,7 @@ struct Packet {
     const Cone& cone;
     const AnchoredFog& fog;
     Vec3s origin, direction; // from the fog's anchor
+    Vec3s rest;              // of the origin, what floats lose
     Floats t_max, before;    // length, and the way from the eye to the origin
     Scratch& scratch;
     Stretch16 stretch; // from first to last fog
@@ -39,11 +40,13 @@ struct Packet {
 };
 
 Packet make_packet(const Cone& cone, const AnchoredFog& fog, const RayBatch& batch, Scratch& scratch) {
-    alignas(64) float v[8][16];
+    alignas(64) float v[11][16];
     for (size_t lane = 0; lane < 16; ++lane) {
         const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
-        const vec3 from = vec3(dvec3(ray.origin) - fog.anchor);
+        const dvec3 exact = dvec3(ray.origin) - fog.anchor;
+        const vec3 from(exact), rest(exact - dvec3(from));
         for (int axis = 0; axis < 3; ++axis) v[axis][lane] = from[axis], v[3 + axis][lane] = ray.direction[axis];
+        for (int axis = 0; axis < 3; ++axis) v[8 + axis][lane] = rest[axis];
         v[6][lane] = lane < batch.rays.size() ? ray.t_max : 0;
         v[7][lane] = glm::dot(ray.origin - cone.eye, ray.direction);
     }
@@ -51,6 +54,7 @@ Packet make_packet(const Cone& cone, const AnchoredFog& fog, const RayBatch& bat
             fog,
             {load(v[0]), load(v[1]), load(v[2])},
             {load(v[3]), load(v[4]), load(v[5])},
+            {load(v[8]), load(v[9]), load(v[10])},
             load(v[6]),
             max(load(v[7]), 0.0f),
             scratch,
@@ -177,7 +181,8 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
         narrowest = std::min(narrowest, 1 - std::min(g, largest_g));
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
-    const float wanted = 2.5f + (nodes - 2) * (share * lobe + std::min(highest(amount), 60.0f) * (1.0f / 16));
+    const float change_at_most = std::min(highest(amount), 60.0f);
+    const float wanted = 4.5f + (nodes - 2) * (2 * share * lobe + change_at_most * 0.12f);
     return std::clamp(static_cast<int>(wanted), 2, most_gauss_nodes);
 }
 
@@ -291,7 +296,7 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
 }
 
 bool add_local(Packet& packet, const ConeLight& light) {
-    const SeenRays seen = seen_rays(packet.origin, packet.direction, light.light.direction);
+    const SeenRays seen = seen_rays(packet.origin, packet.rest, packet.direction, light.light.direction);
     if (light.light.kind == LightKind::spot) {
         const Stretch16 wedge = inside_wedge(seen, light.edges.cosine, light.edges.sine);
         if (!any((wedge.high > wedge.low) & (wedge.high > -seen.nearest) & (wedge.low < packet.t_max - seen.nearest)))

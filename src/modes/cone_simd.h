@@ -54,16 +54,16 @@ HWY_INLINE void cosine_and_sinc(const Floats& u, Floats& cosine, Floats& sinc) {
 }
 
 // A ray as a light at the origin sees it: nearest point, distance there, and the light's axis along that point's
-// direction, along the ray and across both.
+// direction, along the ray and across both. `rest` is what the floats of the origin lose: next to a light it matters.
 struct SeenRays {
     Floats nearest, distance, squared; // t of the nearest point; how far it is, and the square
     Floats axis_out, axis_along, axis_across;
     Vec3s out; // unit, towards the nearest point
 };
 
-HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& direction, vec3 axis) {
+HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& rest, const Vec3s& direction, vec3 axis) {
     SeenRays seen;
-    const Vec3s normal = cross(origin, direction);
+    const Vec3s normal = cross(origin, direction) + cross(rest, direction);
     const Floats squared = dot(normal, normal);
     const Mask16 through = squared < 1e-30f; // the light: all directions out are the same
     const Floats inverse = 1.0f / sqrt(select(through, 1.0f, squared));

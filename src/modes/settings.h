@@ -66,8 +66,8 @@ struct ConeSettings {
 enum class CardFacing { axis, camera, cross };
 
 struct BillboardSettings {
-    int cards = 12; // most per light, largest openings first
-    int rays = 96;  // across the light's view that looks for openings
+    int cards = 64; // most per light, largest openings first
+    int rays = 128; // across the light's view that looks for openings
     CardFacing facing = CardFacing::axis;
     float brightness = 1;    // factor on all cards
     float streaks = 0.55f;   // how far stripes along the beam darken it, 0..1
