@@ -55,7 +55,7 @@ void add_quads(const BeamCard& card, int index, const Camera& camera, CardFacing
     const vec3 to_eye = camera.ortho_height > 0 ? -camera.forward : glm::normalize(camera.position - middle);
     if (facing == CardFacing::camera) return add(-camera.forward);
     if (facing == CardFacing::cross) {
-        quad.share *= 0.5f;
+        quad.crossed = true;
         add(card.across[0]);
         return add(card.across[1]);
     }
@@ -81,7 +81,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
         // Each card swings at its own pace.
         const float pace = 0.08f + 0.17f * to_unit(hash(card.seed, 1u)), phase = to_unit(hash(card.seed, 2u));
         const float swing = 0.5f + 0.5f * std::sin(2 * pi * (pace * billboards.seconds + phase));
-        const float inside = smooth(0.4f, 1.6f, off_axis(card, view.camera.position));
+        const float inside = smooth(0.5f, 4, off_axis(card, view.camera.position));
         const float share = (1 - settings.billboard.sway * swing) * inside * settings.billboard.brightness;
         if (share > 0)
             add_quads(card, static_cast<int>(i), view.camera, settings.billboard.facing, share, billboards.quads);

@@ -32,8 +32,9 @@ struct CardQuad {
     vec3 across[2]{};
     vec2 width_from{0}, width_to{0}; // of the beam, as half_from and half_to of the card
     vec3 tint{1};
-    float share = 1; // of the beam's brightness: sway, crossed cards, an eye inside
+    float share = 1; // of the beam's brightness: sway, an eye inside
     float seed = 0;
+    bool crossed = false; // one of two that stand still
 };
 
 struct Billboards {

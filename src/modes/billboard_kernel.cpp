@@ -101,12 +101,13 @@ HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, con
     const Ints i = truncate(fx), j = truncate(fy);
     const Floats dx = (x - fx) - mixed(0.3f, 0.7f, random16(i, j, seed));
     const Floats dy = (y - fy) - mixed(0.3f, 0.7f, random16(i, j, seed + 1));
-    const Floats size = max((on.t + packet.before) * (0.9f * billboards.pixel), radius) * (1 / cell);
-    const Floats dim = min(radius * radius / (cell * cell) / (size * size), 1.0f); // of dots held at a pixel's size
+    const Floats pixel = (on.t + packet.before) * (0.9f * billboards.pixel);
+    const Floats size = min(max(pixel, radius) * (1 / cell), 0.3f);
+    const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // of dots held at a pixel's size
     const Floats off = fused(dx, dx, dy * dy) / (size * size);
     const Floats chance = random16(i, j, seed + 2);
     const Floats bright = zero_unless(chance < populated, chance * (1 / populated));
-    return bright * sqrt(dim) * max(1.0f - off, 0.0f);
+    return bright * dim * max(1.0f - off, 0.0f);
 }
 
 // Share of the card's brightness that its soft borders, surfaces close behind and fades leave.
@@ -119,7 +120,8 @@ HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const
     if (s.near_fade > 0) share = share * smooth(0.25f * s.near_fade, s.near_fade, away);
     share = share * (1.0f - smooth(0.5f * s.far_fade, s.far_fade, away));
     const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
-    share = share * smooth(0, 0.75f, facing);
+    // Of two crossed cards sin² + cos² is seen, whatever side they are seen from.
+    share = share * (quad.crossed ? facing : smooth(0, 0.75f, facing));
     if (billboards.style.range < 1e6f)
         share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
     return share;
