@@ -16,7 +16,7 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
                    TYNDALL_FIELD(billboard.facing)));
     number("brightness", "", 0, 1000, "factor on all cards", TYNDALL_FIELD(billboard.brightness));
     number("streaks", "", 0, 1, "how far stripes along the beam darken it", TYNDALL_FIELD(billboard.streaks));
-    number("stripes", "", 1, 200, "stripes across a card", TYNDALL_FIELD(billboard.stripes));
+    number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(billboard.stripes));
     number("soft", "", 0.05, 1, "share of a card's half width over which it fades out", TYNDALL_FIELD(billboard.soft));
     number("scroll", "m/s", -100, 100, "how fast the texture moves along the beam", TYNDALL_FIELD(billboard.scroll));
     number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(billboard.sway));
