@@ -47,11 +47,13 @@ const std::vector<SettingRow>& setting_rows() {
         append_pixel_rows(all);
         append_style_rows(all);
         append_march_rows(all);
-        append_path_rows(all);
-        append_radial_blur_rows(all);
-        append_shadow_volume_rows(all);
         append_froxel_rows(all);
         append_shadow_map_rows(all);
+        append_shadow_volume_rows(all);
+        append_cone_rows(all);
+        append_billboard_rows(all);
+        append_radial_blur_rows(all);
+        append_path_rows(all);
         return all;
     }();
     return rows;
@@ -81,6 +83,7 @@ Settings settings_for(Quality quality) {
     switch (quality) {
     case Quality::draft:
         settings.pixel.samples = 1;
+        settings.cone.nodes = 6;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
         volume.nodes = 3, volume.steps = 24, volume.light_resolution = 32;
@@ -99,6 +102,7 @@ Settings settings_for(Quality quality) {
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
+        settings.cone.nodes = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
         march.visibility = Visibility::slices;

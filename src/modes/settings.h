@@ -81,6 +81,40 @@ struct FroxelSettings {
     bool amortise = false;
 };
 
+enum class ConeAttenuation { inverse_square, linear, none };
+enum class ConeEdge { physical, soft };
+
+struct ConeSettings {
+    int nodes = 8;         // Gauss–Legendre nodes on the widest pieces of a ray
+    float near_radius = 0; // of the lens of a spot: its light begins where the cone is that wide, metres
+    ConeAttenuation attenuation = ConeAttenuation::inverse_square;
+    ConeEdge edge = ConeEdge::physical;
+    float inner = 0.5f;       // with ConeEdge::soft: share of the outer cone's angle that is evenly lit
+    float noise = 0;          // modulates the light, 0..1
+    float noise_size = 0.6f;  // metres
+    float noise_speed = 0.2f; // metres per second, upwards
+    PictureShare picture = PictureShare::full;
+};
+
+enum class CardFacing { axis, camera, cross };
+
+struct BillboardSettings {
+    int cards = 64; // most per light, largest openings first
+    int rays = 128; // across the light's view that looks for openings
+    CardFacing facing = CardFacing::axis;
+    float brightness = 1;    // factor on all cards
+    float streaks = 0.55f;   // how far stripes along the beam darken it, 0..1
+    float stripes = 14;      // stripes across a card
+    float soft = 1;          // share of a card's half width that fades out
+    float scroll = 0.05f;    // of the texture along the beam, metres per second
+    float sway = 0.15f;      // how far the brightness swings, 0..1
+    float specks = 0.25f;    // brightness of dust particles in the beam
+    float near_fade = 0.6f;  // metres from the eye within which a card fades in
+    float far_fade = 1e6f;   // metres from the eye at which it has faded out
+    float soft_depth = 0.4f; // metres before a surface over which a card fades out
+    bool fog = true;         // even fog dims cards and what is behind
+};
+
 inline constexpr int all_orders = 65536; // ends paths that nothing else ends
 
 struct PathSettings {
@@ -90,13 +124,13 @@ struct PathSettings {
 };
 
 // What shadow volumes are drawn as: the light between them, or their sides themselves as bright sheets.
-enum class ShadowPicture { exact, shells };
+enum class ShadowDraw { exact, shells };
 // The fog that is integrated: every medium at its mean density in closed form, or the true densities in short steps.
 // `automatic` samples where there is a grid.
 enum class ShadowFog { automatic, even, sampled };
 
 struct ShadowVolumeSettings {
-    ShadowPicture picture = ShadowPicture::exact;
+    ShadowDraw draw = ShadowDraw::exact;
     ShadowFog fog = ShadowFog::automatic;
     int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of even fog
     int steps = 48;                // along a ray, where fog is sampled
@@ -116,12 +150,16 @@ struct ShadowMapSettings {
     int pcf = 1;           // 0 nearest texel, 1 the four around, 2 sixteen
     float bias = 0;        // texels
     LightTransmittance light = LightTransmittance::grid;
+    PictureShare picture = PictureShare::full;
+    bool blur = false; // of the jitter's pattern
 };
 
 struct Settings {
     PixelSettings pixel;
     StyleSettings style;
     MarchSettings march;
+    ConeSettings cone;
+    BillboardSettings billboard;
     PathSettings path;
     RadialBlurSettings radial_blur;
     ShadowVolumeSettings shadow_volume;

@@ -27,5 +27,12 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("shadow_map.light", {"off", "average", "grid", "marched"},
                               "fog between light and fog; cells of the grid: march.light_resolution",
                               TYNDALL_FIELD(shadow_map.light)));
+    rows.push_back(choice_row("shadow_map.picture", picture_shares,
+                              "resolution of the fog's light along each side; it is spread over the whole picture with "
+                              "regard to depth",
+                              TYNDALL_FIELD(shadow_map.picture)));
+    rows.push_back(choice_row("shadow_map.blur", switches,
+                              "smooths the jitter's pattern over 4x4 pixels of like depth (of one ray per pixel)",
+                              TYNDALL_FIELD(shadow_map.blur)));
 }
 }

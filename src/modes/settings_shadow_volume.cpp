@@ -3,9 +3,9 @@
 
 namespace tyndall {
 void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(choice_row("shadow_volume.picture", {"exact", "shells"},
+    rows.push_back(choice_row("shadow_volume.draw", {"exact", "shells"},
                               "exact = fog light integrated between the volumes; shells = their sides as bright sheets",
-                              TYNDALL_FIELD(shadow_volume.picture)));
+                              TYNDALL_FIELD(shadow_volume.draw)));
     rows.push_back(choice_row("shadow_volume.fog", {"auto", "even", "sampled"},
                               "even = every medium at its mean density, in closed form; sampled = true densities in "
                               "steps; auto = sampled where there is a grid",

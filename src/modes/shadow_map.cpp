@@ -1,4 +1,5 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
+#include "modes/fog_picture.h"
 #include "modes/march_kernel.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
@@ -132,7 +133,8 @@ std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot,
     return limits;
 }
 
-ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
+                                   History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
     march->snapshot = march_snapshot(snapshot, settings);
     march->settings = settings.shadow_map, march->style = settings.style, march->camera = view.camera;
@@ -144,6 +146,12 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
     }
-    return [march](const RayBatch& batch, std::span<Scatter> results) { march_shadow_maps(*march, batch, results); };
+    ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
+        march_shadow_maps(*march, batch, results);
+    };
+    const FogPictureOptions picture{settings.shadow_map.picture, settings.shadow_map.blur};
+    if (history) follow(*history, view, snapshot, settings);
+    if (picture.share == PictureShare::full && !picture.blur && !history) return scatter;
+    return from_fog_picture(view, snapshot, picture, std::move(scatter), history);
 }
 }

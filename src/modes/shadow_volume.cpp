@@ -63,8 +63,8 @@ std::vector<GaussNode> gauss_legendre(int count) {
 
 std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits;
-    if (settings.shadow_volume.picture == ShadowPicture::shells)
-        limits.push_back({Severity::wrong, "shadow_volume.picture",
+    if (settings.shadow_volume.draw == ShadowDraw::shells)
+        limits.push_back({Severity::wrong, "shadow_volume.draw",
                           "shells are a look: bright sheets where light meets shadow, not light scattered by fog"});
     add_fog_limits(snapshot, settings, limits);
     constexpr size_t many = 20000;

@@ -136,7 +136,7 @@ void add_light(Packet& packet, size_t index) {
     const int name = static_cast<int>(index);
     for (size_t i = 0; i < count; ++i) {
         if (reached[i].empty()) continue;
-        if (frame.settings.picture == ShadowPicture::shells) {
+        if (frame.settings.draw == ShadowDraw::shells) {
             push_shells(packet, name, i, dark[i], reached[i]);
             continue;
         }
@@ -233,7 +233,7 @@ void add_glow(Packet& packet, const float (&depth)[16]) {
 }
 
 float validity_of(const ShadowVolumeFrame& frame, const Ray& ray) {
-    if (frame.settings.picture == ShadowPicture::shells) return 0;
+    if (frame.settings.draw == ShadowDraw::shells) return 0;
     for (const Box& box : frame.uneven)
         if (!clip(box, ray.origin, ray.direction, {0, ray.t_max}).empty()) return 0;
     return 1;
@@ -250,7 +250,7 @@ void shadow_volume_kernel(const ShadowVolumeFrame& frame, const RayBatch& batch,
 
     vec3 total[16];
     std::fill(packet.radiance, packet.radiance + 16, vec3(0));
-    if (frame.settings.picture == ShadowPicture::exact) add_glow(packet, depth);
+    if (frame.settings.draw == ShadowDraw::exact) add_glow(packet, depth);
     std::copy(packet.radiance, packet.radiance + 16, total);
     for (size_t light = 0; light < lights; ++light) {
         std::fill(packet.radiance, packet.radiance + 16, vec3(0));

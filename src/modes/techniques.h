@@ -8,6 +8,11 @@ ScatterFunction prepare_march(const View&, const Snapshot&, const Settings&, His
 
 std::vector<Limit> froxel_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_froxel(const View&, const Snapshot&, const Settings&, History*);
+std::vector<Limit> cone_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_cone(const View&, const Snapshot&, const Settings&, History*);
+
+std::vector<Limit> billboard_limits(const View&, const Snapshot&, const Settings&);
+ScatterFunction prepare_billboard(const View&, const Snapshot&, const Settings&, History*);
 
 std::vector<Limit> path_limits(const View&, const Snapshot&, const Settings&);
 ScatterFunction prepare_path(const View&, const Snapshot&, const Settings&, History*);

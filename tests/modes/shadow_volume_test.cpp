@@ -249,7 +249,7 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, brighter;
-    shells.shadow_volume.picture = brighter.shadow_volume.picture = ShadowPicture::shells;
+    shells.shadow_volume.draw = brighter.shadow_volume.draw = ShadowDraw::shells;
     brighter.shadow_volume.shell_intensity *= 2;
     const std::vector<Scatter> one = drawn("shadow-volume", picture, stage.snapshot, shells);
     const std::vector<Scatter> two = drawn("shadow-volume", picture, stage.snapshot, brighter);
@@ -257,7 +257,7 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     EXPECT_NEAR(mean_of(two) / mean_of(one), 2, 1e-5);
     EXPECT_EQ(one[100].validity, 0);
     const auto limits = find_mode("shadow-volume").limits(picture.view, stage.snapshot, shells);
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "shadow_volume.picture"; }));
+    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "shadow_volume.draw"; }));
     shells.shadow_volume.shell_length = 1e-3f; // nothing shows that near its occluder
     EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
 }

@@ -1,0 +1,33 @@
+// Rows of the beam cards.
+#include "modes/settings_rows.h"
+
+namespace tyndall {
+void append_billboard_rows(std::vector<SettingRow>& rows) {
+    const auto number = [&](const char* name, const char* unit, double low, double high, const char* doc, auto field) {
+        rows.push_back(number_row(std::string("billboard.") + name, unit, low, high, doc, field));
+    };
+    number("cards", "", 0, 256, "most cards found per light, largest openings first; 0 = hand-placed ones only",
+           TYNDALL_FIELD(billboard.cards));
+    number("rays", "", 8, 1024, "rays across the light's view that looks for openings", TYNDALL_FIELD(billboard.rays));
+    rows.push_back(
+        choice_row("billboard.facing", {"axis", "camera", "cross"},
+                   "how cards turn: about their beam towards the eye, square to the view, or not at all, two "
+                   "crossed for each beam",
+                   TYNDALL_FIELD(billboard.facing)));
+    number("brightness", "", 0, 1000, "factor on all cards", TYNDALL_FIELD(billboard.brightness));
+    number("streaks", "", 0, 1, "how far stripes along the beam darken it", TYNDALL_FIELD(billboard.streaks));
+    number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(billboard.stripes));
+    number("soft", "", 0.05, 1, "share of a card's half width over which it fades out", TYNDALL_FIELD(billboard.soft));
+    number("scroll", "m/s", -100, 100, "how fast the texture moves along the beam", TYNDALL_FIELD(billboard.scroll));
+    number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(billboard.sway));
+    number("specks", "", 0, 100, "brightness of dust particles in the beam", TYNDALL_FIELD(billboard.specks));
+    number("near_fade", "m", 0, 1e6, "distance from the eye within which cards fade in",
+           TYNDALL_FIELD(billboard.near_fade));
+    number("far_fade", "m", 0.01, 1e6, "distance from the eye at which cards have faded out, over its last half",
+           TYNDALL_FIELD(billboard.far_fade));
+    number("soft_depth", "m", 0, 1e6, "distance before a surface over which a card fades out",
+           TYNDALL_FIELD(billboard.soft_depth));
+    rows.push_back(choice_row("billboard.fog", switches, "even fog dims the cards and what is behind them",
+                              TYNDALL_FIELD(billboard.fog)));
+}
+}

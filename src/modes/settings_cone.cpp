@@ -1,0 +1,33 @@
+// Rows of the analytic light cones.
+#include "modes/settings_rows.h"
+
+namespace tyndall {
+void append_cone_rows(std::vector<SettingRow>& rows) {
+    rows.push_back(number_row("cone.nodes", "", 2, 32,
+                              "quadrature nodes on the widest pieces of a ray; narrow and thin ones take fewer",
+                              TYNDALL_FIELD(cone.nodes)));
+    rows.push_back(number_row("cone.near_radius", "m", 0, 1000,
+                              "radius of a spot's lens: its light begins where the cone is that wide",
+                              TYNDALL_FIELD(cone.near_radius)));
+    rows.push_back(choice_row("cone.attenuation", {"inverse_square", "linear", "none"},
+                              "of local lights with distance; linear = from its strength at 1 m to 0 at the light's "
+                              "range (or the scene's diagonal), none = as at 1 m everywhere within range",
+                              TYNDALL_FIELD(cone.attenuation)));
+    rows.push_back(choice_row("cone.edge", {"physical", "soft"},
+                              "of spots; physical = the light's inner and outer cone, soft = smooth in the angle from "
+                              "cone.inner of the outer cone on",
+                              TYNDALL_FIELD(cone.edge)));
+    rows.push_back(number_row("cone.inner", "", 0, 1, "share of the outer cone's angle that a soft edge leaves even",
+                              TYNDALL_FIELD(cone.inner)));
+    rows.push_back(number_row("cone.noise", "", 0, 1, "how far drifting noise modulates the light of local lights",
+                              TYNDALL_FIELD(cone.noise)));
+    rows.push_back(number_row("cone.noise_size", "m", 0.001, 1e5, "size of the noise's largest shapes",
+                              TYNDALL_FIELD(cone.noise_size)));
+    rows.push_back(number_row("cone.noise_speed", "m/s", -1000, 1000, "how fast the noise rises",
+                              TYNDALL_FIELD(cone.noise_speed)));
+    rows.push_back(choice_row("cone.picture", picture_shares,
+                              "resolution of the fog's light along each side; it is spread over the whole picture with "
+                              "regard to depth",
+                              TYNDALL_FIELD(cone.picture)));
+}
+}
