@@ -280,11 +280,12 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
                inverse_square = packet.cone.settings.attenuation == ConeAttenuation::inverse_square;
     const Floats whole = select(capped, length * (1 / (light.reach * light.reach)), angles.per_distance);
     for (const QuadratureNode& node : gauss_legendre(count)) {
-        Floats s = angles.place(node.at);
-        if (has_cap) s = select(capped, fused(length, node.at, piece.low), s);
+        const float at = static_cast<float>(node.at), weight = static_cast<float>(node.weight);
+        Floats s = angles.place(at);
+        if (has_cap) s = select(capped, fused(length, at, piece.low), s);
         const Floats square = max(fused(s, s, seen.squared), 1e-30f), inverse = 1.0f / sqrt(square);
         const Floats distance = square * inverse, t = seen.nearest + s;
-        Floats amount = whole * node.weight * strength(packet, light, seen, s, distance, inverse);
+        Floats amount = whole * weight * strength(packet, light, seen, s, distance, inverse);
         if (!inverse_square) amount = amount * select(capped, light.reach * light.reach, square);
         const Vec3s point = packet.at(t);
         const Floats depth =
@@ -364,8 +365,9 @@ bool add_even(Packet& packet, const ConeLight* light) {
         if (!any(bright)) continue;
         const int count = node_count(packet, 0, zero_unless(bright, abs(last - first)), zero_unless(bright, length));
         for (const QuadratureNode& node : gauss_legendre(count)) {
-            const Floats t = fused(length, node.at, piece.low);
-            add_node(packet, t, length * node.weight * exp(-depth_at(t)) * fade(packet, t), cosine, light);
+            const Floats t = fused(length, static_cast<float>(node.at), piece.low);
+            add_node(packet, t, length * static_cast<float>(node.weight) * exp(-depth_at(t)) * fade(packet, t), cosine,
+                     light);
         }
     }
     return true;

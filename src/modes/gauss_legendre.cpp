@@ -27,7 +27,7 @@ std::vector<QuadratureNode> rule(int n) {
         for (int step = 0; n > 1 && step < 20; ++step) legendre(n, x, value, slope), x -= value / slope;
         if (n > 1) legendre(n, x, value, slope);
         const double weight = 1 / ((1 - x * x) * slope * slope);
-        nodes.push_back({static_cast<float>(0.5 + 0.5 * x), static_cast<float>(weight)});
+        nodes.push_back({0.5 + 0.5 * x, weight});
     }
     return nodes;
 }

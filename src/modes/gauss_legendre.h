@@ -4,7 +4,7 @@
 
 namespace tyndall {
 struct QuadratureNode {
-    float at, weight;
+    double at, weight;
 };
 inline constexpr int most_gauss_nodes = 32;
 

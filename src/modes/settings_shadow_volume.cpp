@@ -10,7 +10,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                               "even = every medium at its mean density, in closed form; sampled = true densities in "
                               "steps; auto = sampled where there is a grid",
                               TYNDALL_FIELD(shadow_volume.fog)));
-    rows.push_back(number_row("shadow_volume.nodes", "", 1, 64, "Gauss-Legendre nodes on each lit stretch of even fog",
+    rows.push_back(number_row("shadow_volume.nodes", "", 1, 32, "Gauss-Legendre nodes on each lit stretch of even fog",
                               TYNDALL_FIELD(shadow_volume.nodes)));
     rows.push_back(number_row("shadow_volume.steps", "", 1, 4096, "steps along a ray where fog is sampled",
                               TYNDALL_FIELD(shadow_volume.steps)));

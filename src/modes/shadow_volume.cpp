@@ -4,8 +4,6 @@
 #include "modes/style.h"
 #include "modes/techniques.h"
 
-#include <numbers>
-
 namespace tyndall {
 namespace {
 bool has_grid(const Snapshot& snapshot) {
@@ -41,24 +39,6 @@ void add_fog_limits(const Snapshot& snapshot, const Settings& settings, std::vec
     if (max_component(snapshot.ambient) > 0)
         limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
 }
-}
-
-std::vector<GaussNode> gauss_legendre(int count) {
-    std::vector<GaussNode> nodes;
-    for (int i = 0; i < count; ++i) {
-        double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), slope = 1;
-        for (int step = 0; step < 8; ++step) {
-            double now = 1, before = 0;
-            for (int k = 0; k < count; ++k) {
-                const double next = ((2 * k + 1) * x * now - k * before) / (k + 1);
-                before = now, now = next;
-            }
-            slope = count * (x * now - before) / (x * x - 1);
-            x -= now / slope;
-        }
-        nodes.push_back({x, 2 / ((1 - x * x) * slope * slope)});
-    }
-    return nodes;
 }
 
 std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
@@ -98,7 +78,8 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
-    frame->nodes = gauss_legendre(frame->sampled ? 2 : own.nodes);
+    for (const QuadratureNode& node : gauss_legendre(frame->sampled ? 2 : own.nodes))
+        frame->nodes.push_back({2 * node.at - 1, 2 * node.weight});
 
     std::shared_ptr<const ShadowMesh> mesh;
     for (const Light& light : frame->snapshot.lights) {

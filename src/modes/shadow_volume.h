@@ -1,17 +1,12 @@
 // Fog between shadow volumes: what is made once per frame, and the integral along a packet of rays.
 #pragma once
+#include "modes/gauss_legendre.h"
 #include "modes/light_along.h"
 #include "modes/mode.h"
 #include "trace/light_depth.h"
 #include "trace/shadow_view.h"
 
 namespace tyndall {
-struct GaussNode {
-    double at = 0, weight = 0; // on -1..1
-};
-// Gauss–Legendre, by Newton's method on the Legendre polynomial.
-std::vector<GaussNode> gauss_legendre(int count);
-
 // A light that casts shadows, and its volumes from the camera.
 struct ShadowCaster {
     ShadowVolumes volumes;
@@ -29,7 +24,7 @@ struct ShadowVolumeFrame {
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
     std::vector<ShadowCaster> casters; // one per light; without mesh where it casts no shadows
-    std::vector<GaussNode> nodes;
+    std::vector<QuadratureNode> nodes; // on -1..1
 };
 
 // Where a ray is cut: between cuts the fog is smooth, or a step long.

@@ -34,7 +34,7 @@ void push_part(Packet& packet, int light, size_t lane, size_t cut, double low, d
     const LightAlong& along = packet.scratch.along[lane];
     if (light == no_light || !along.local()) {
         if (frame.sampled) return push_node(packet, light, lane, cut, 0.5 * (low + high), high - low);
-        for (const GaussNode& node : frame.nodes)
+        for (const QuadratureNode& node : frame.nodes)
             push_node(packet, light, lane, cut, 0.5 * (low + high) + 0.5 * (high - low) * node.at,
                       0.5 * (high - low) * node.weight);
         return;
@@ -46,7 +46,7 @@ void push_part(Packet& packet, int light, size_t lane, size_t cut, double low, d
         const double next = std::min(next_bound(x), end), from = std::atan(x), to = std::atan(next);
         const double turns = frame.sampled ? 1 : std::ceil((to - from) / widest), half = 0.5 * (to - from) / turns;
         for (double i = 0; i < turns; ++i)
-            for (const GaussNode& node : frame.nodes) {
+            for (const QuadratureNode& node : frame.nodes) {
                 const double at = std::tan(from + (2 * i + 1 + node.at) * half);
                 push_node(packet, light, lane, cut, std::clamp(along.nearest + scale * at, low, high),
                           half * node.weight * scale * (1 + at * at));
