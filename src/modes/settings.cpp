@@ -86,9 +86,9 @@ Settings settings_for(Quality quality) {
         settings.cone.nodes = 6;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32;
-        volume.nodes = 3, volume.steps = 24, volume.light_resolution = 32;
+        volume.nodes = 3, volume.steps = 16, volume.light_resolution = 32;
         froxel.tile = 16, froxel.depth_slices = 48, froxel.visibility = FroxelVisibility::rays;
-        map.steps = 16, map.resolution = 512;
+        map.steps = 16, map.resolution = 256;
         break;
     case Quality::preview:
         break;
@@ -98,7 +98,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
         froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
-        map.steps = 64, map.resolution = 2048;
+        map.steps = 64, map.resolution = 2048, map.pcf = 1;
         break;
     case Quality::reference:
         settings.pixel.samples = 64;
@@ -109,7 +109,7 @@ Settings settings_for(Quality quality) {
         march.light_resolution = 256;
         volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
         froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
-        map.steps = 256, map.resolution = 4096, map.light = LightTransmittance::marched;
+        map.steps = 256, map.resolution = 4096, map.pcf = 1, map.light = LightTransmittance::marched;
         break;
     }
     return settings;

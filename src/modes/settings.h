@@ -133,7 +133,7 @@ struct ShadowVolumeSettings {
     ShadowDraw draw = ShadowDraw::exact;
     ShadowFog fog = ShadowFog::automatic;
     int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of even fog
-    int steps = 48;                // along a ray, where fog is sampled
+    int steps = 24;                // along a ray, where fog is sampled
     int light_resolution = 64;     // cells across the fog in the light grids, where fog is sampled
     float shell_length = 4;        // metres behind the occluder at which a shell has faded out
     float shell_intensity = 0.08f; // share of that length: the depth of lit fog a shell is as bright as
@@ -145,10 +145,10 @@ struct ShadowMapSettings {
     int steps = 24;  // per ray, and per local light on what it reaches
     int lookups = 4; // in the maps, per step
     Spacing spacing = Spacing::angle;
-    int resolution = 1024; // texels across each map
-    int cascades = 3;      // most maps of a sun
-    int pcf = 1;           // 0 nearest texel, 1 the four around, 2 sixteen
-    float bias = 0;        // texels
+    int resolution = 512; // texels across each map
+    int cascades = 3;     // most maps of a sun
+    int pcf = 0;          // 0 nearest texel, 1 the four around, 2 sixteen
+    float bias = 0;       // texels
     LightTransmittance light = LightTransmittance::grid;
     PictureShare picture = PictureShare::full;
     bool blur = false; // of the jitter's pattern

@@ -90,7 +90,9 @@ void divide(const ShadowVolumeFrame& frame, const Ray& ray, double low, double h
 void add_steps(const ShadowVolumeFrame& frame, const Ray& ray, Stretch fog, std::vector<double>& cuts) {
     const int steps = frame.settings.steps;
     const auto add = [&](double low, double high, int count) {
-        for (int i = 1; i <= count && high > low; ++i) cuts.push_back(low + (high - low) * i / count);
+        const double step = (high - low) / count;
+        for (int i = 1; i < count && step > 0; ++i) cuts.push_back(low + step * i);
+        if (step > 0) cuts.push_back(high);
     };
     cuts.push_back(fog.low);
     const Interval scene = clip(frame.snapshot.bounds, ray.origin, ray.direction,
@@ -129,6 +131,7 @@ void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& 
                   std::vector<ShadowCrossing> (&crossings)[16], int (&dark)[16]) {
     const ShadowCaster& caster = frame.casters[light];
     ShadowRays rays;
+    rays.edges = frame.settings.draw == ShadowDraw::shells;
     double origin[16] = {};
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         crossings[i].clear(), dark[i] = 0;
@@ -140,6 +143,7 @@ void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& 
             origin[i] = place_ray(caster.view, ray, lane, rays);
         } else { // not a ray of the camera: its origin is an eye of its own
             ShadowRays alone;
+            alone.edges = rays.edges;
             const ShadowView view = view_from(caster.volumes, dvec3(ray.origin));
             double start[16] = {};
             start[i] = place_ray(view, ray, lane, alone);

@@ -6,6 +6,7 @@
 #define TYNDALL_TRACE_LIGHT_DEPTH_SIMD_H
 #endif
 
+#include "base/gather_simd.h"
 #include "base/simd.h"
 #include "trace/light_depth.h"
 #include "volume/medium_simd.h"
@@ -131,9 +132,9 @@ HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
     const Ints corner = (k * grid.size.y + j) * row + i;
     const float* depth = grid.depth.data();
     const auto across = [&](const float* from) HWY_ATTR {
-        const Floats near = mixed(gather(from, corner), gather(from + 1, corner), share_u);
-        const Floats far = mixed(gather(from + row, corner), gather(from + row + 1, corner), share_u);
-        return mixed(near, far, share_v);
+        Floats a, b, c, d;
+        gather_pairs(from, corner, a, b), gather_pairs(from + row, corner, c, d);
+        return mixed(mixed(a, b, share_u), mixed(c, d, share_u), share_v);
     };
     return zero_unless(valid, mixed(across(depth), across(depth + layer), share_w));
 }

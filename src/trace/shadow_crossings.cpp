@@ -78,7 +78,7 @@ struct Crossing16 {
             const double t = view.parallel ? across / edge.start : edge.start / -across;
             // Beyond the end, or where lines of sight and light part.
             if (!(t < rays.end[ray]) || (!view.parallel && !(t >= 0))) continue;
-            found[ray].push_back({t, behind(edge, ray, t), side.change});
+            found[ray].push_back({t, rays.edges ? behind(edge, ray, t) : 0, side.change});
         }
     }
 

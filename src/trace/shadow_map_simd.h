@@ -6,6 +6,7 @@
 #define TYNDALL_TRACE_SHADOW_MAP_SIMD_H
 #endif
 
+#include "base/gather_simd.h"
 #include "base/simd.h"
 #include "trace/shadow_map.h"
 
@@ -116,9 +117,12 @@ HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
     const auto blend = [](const Floats& a, const Floats& b, const Floats& weight)
                            HWY_ATTR { return fused(b - a, weight, a); };
     if (map.pcf == 1) {
-        const Ints below = corner + places.row;
-        const Floats upper = blend(lit(corner), lit(corner + 1), right);
-        return select(places.mapped, blend(upper, blend(lit(below), lit(below + 1), right), down), outside);
+        const auto lit_pair = [&](const Ints& texel) HWY_ATTR {
+            Floats first, second;
+            gather_pairs(stored, texel, first, second);
+            return blend(select(first >= depth, 1.0f, 0.0f), select(second >= depth, 1.0f, 0.0f), right);
+        };
+        return select(places.mapped, blend(lit_pair(corner), lit_pair(corner + places.row), down), outside);
     }
     Floats sum = 0.0f;
     for (int y = -1; y <= 2; ++y) {

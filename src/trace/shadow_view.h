@@ -17,7 +17,7 @@ namespace tyndall {
 // x·p.x + y·p.y + z·p.z + w; p is a ray's direction, or where it crosses the plane of `place` when rays are parallel.
 using RayProduct = glm::dvec4;
 
-inline constexpr int shadow_tile_side = 16; // pixels
+inline constexpr int shadow_tile_side = 8; // pixels
 
 // Faces of one kind by tiles of the picture, the nearest first.
 struct ShadowTiles {
@@ -73,7 +73,7 @@ void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, 
 // Where the count of volumes around a ray changes.
 struct ShadowCrossing {
     double t = 0;      // from the eye; from the plane of `place` when rays are parallel
-    double behind = 0; // metres from there to the edge that casts this shadow; 0 at caps
+    double behind = 0; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
     int change = 0;
 };
 
@@ -83,6 +83,7 @@ struct ShadowRays {
     double end[16] = {};
     uint32_t active = 0; // bits
     int tile = -1;       // that all of them lie in; -1 = unknown
+    bool edges = true;   // whether crossings tell how far behind an edge they lie
 };
 
 // Makes a ray that the view's eye sees the lane-th of `rays`, up to its t_max. Returns where on it, as crossings count,
