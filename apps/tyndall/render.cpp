@@ -153,11 +153,12 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
         for (const Rendered& one : all) {
             const auto found = std::ranges::find(one.report.frames, frame, &FrameReport::frame);
             if (found == one.report.frames.end()) return; // cancelled
-            std::string label = one.job.mode;
+            const FrameStats& stats = found->stats;
+            std::string remark = "kept";
             if (!found->kept)
-                label += formatted("  %.3g s, fog %.3g s", found->stats.prepare_seconds + found->stats.render_seconds,
-                                   found->stats.fog_seconds);
-            pictures.push_back({color_of(read_exr(found->file)), label});
+                remark = seconds_text(stats.prepare_seconds + stats.render_seconds) + ", fog " +
+                         seconds_text(stats.fog_seconds);
+            pictures.push_back({color_of(read_exr(found->file)), one.job.mode, remark});
         }
         const float exposure = all[0].job.exposure + scene.exposure.at(moment_of(scene, frame).seconds);
         write_contact_sheet(sheet_name(texts, frame), pictures, exposure);

@@ -272,6 +272,11 @@ std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot
     std::vector<Limit> limits{
         {Severity::degraded, "picture",
          "rays are smeared brightness, not light: fog, distance and what is off screen play no part"}};
+    for (const Medium& medium : snapshot.media)
+        if (medium.kind == DensityKind::bricks && settings.radial_blur.fog)
+            limits.push_back({Severity::degraded, "medium " + medium.name,
+                              "dims what is behind it as even fog of its mean density in the grid's bounds "
+                              "(radial_blur.fog)"});
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.radial_blur);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const auto found = std::ranges::find(seen, i, &BlurLight::index);

@@ -34,7 +34,7 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, floa
     const ivec2 whole = pictures[0].color.size;
     const int width = std::min(whole.x, widest_tile);
     const ivec2 tile(width, std::max(1, whole.y * width / whole.x));
-    const int scale = width >= 320 ? 2 : 1, strip = (letter_height + 4) * scale;
+    const int scale = width >= 320 ? 2 : 1, strip = (2 * letter_height + 2) * scale;
     const int count = static_cast<int>(pictures.size());
     const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
     const int rows = (count + columns - 1) / columns;
@@ -43,9 +43,9 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, floa
     for (int i = 0; i < count; ++i) {
         const ivec2 corner = ivec2(i % columns, i / columns) * (tile + ivec2(gap, strip + gap)) + gap;
         put(display_codes(shrunk(pictures[i].color, tile), exposure), corner, sheet);
-        std::string label = pictures[i].label;
-        while (!label.empty() && text_width(label, scale) > tile.x) label.pop_back();
-        draw_text(sheet, corner + ivec2(2 * scale, tile.y + 4 * scale), scale, label, glm::u8vec3(230));
+        draw_text(sheet, corner + ivec2(2 * scale, tile.y + 2 * scale), scale, pictures[i].title, glm::u8vec3(235));
+        draw_text(sheet, corner + ivec2(2 * scale, tile.y + (2 + letter_height) * scale), scale, pictures[i].remark,
+                  glm::u8vec3(150));
     }
     return sheet;
 }

@@ -1,4 +1,4 @@
-// Several pictures of one view side by side, with a line of text under each.
+// Several pictures of one view side by side, with two lines of text under each.
 #pragma once
 #include "base/image.h"
 
@@ -9,7 +9,7 @@
 namespace tyndall {
 struct SheetPicture {
     Image<vec3> color; // linear Rec.709, all of one size
-    std::string label;
+    std::string title, remark;
 };
 
 // Tiles of at most 640 pixels across, in about as many rows as columns.
