@@ -163,6 +163,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
             const HalfShadowed box(light);
             Settings settings;
             settings.march.light = transmittance, settings.shadow_map.resolution = 512;
+            settings.shadow_map.pcf = 1;
             const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
             settings.march.visibility = Visibility::maps;
             EXPECT_LT(rmse_rel(run("march", box.snapshot, settings, rays), traced), 0.03)

@@ -354,7 +354,7 @@ TEST(ShadowTiles, HoldAllThatTheirRaysCross) {
         const Stage stage = stage_of(random_boxes(12), light);
         for (const Camera& camera : cameras) {
             const ShadowView view = view_from(stage.volumes, camera, size, 0.5f);
-            ASSERT_EQ(view.tiles, ivec2(10, 7));
+            ASSERT_EQ(view.tiles, ivec2(19, 13));
             size_t crossed = 0;
             for (int i = 0; i < 400; ++i) {
                 const vec2 pixel(static_cast<float>(i * 7919 % 1500) / 10, static_cast<float>(i * 104729 % 1000) / 10);
