@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-constexpr float veil_share = 0.6f; // of the open air's fog that is taken for lit
+constexpr float veil_share = 0.5f; // of the open air's fog that is taken for lit
 
 float smooth(float low, float high, float x) {
     const float s = std::clamp((x - low) / std::max(high - low, 1e-6f), 0.0f, 1.0f);

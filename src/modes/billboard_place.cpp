@@ -12,6 +12,8 @@ namespace {
 constexpr float long_way = 0.2f;     // share of the longest way through fog that counts as lit
 constexpr float large_share = 0.03f; // of the grid's cells: larger openings are cut up
 constexpr float open_share = 0.3f;   // of a sun's grid: a larger opening is the open air, its shafts come by gaps
+constexpr float long_gap = 0.025f;   // of the rays: the least way behind a gap that has a shaft
+constexpr float gap_share = 0.001f;  // of the grid's cells: larger gaps are cut up
 constexpr int unlit = -1;
 
 // The view from a light: an orthographic grid (sun), an octahedron (point) or a square over the cone (spot).
@@ -75,12 +77,16 @@ Box shown(const Snapshot& snapshot) {
     return box.empty() ? snapshot.bounds : box;
 }
 
-LightView light_view(const Light& light, const Snapshot& snapshot, int n) {
+LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level = false) {
     LightView view{light, n};
     const Box box = shown(snapshot);
     view.reach = 2 * glm::length(snapshot.bounds.size()) + 1;
     vec3 u, v;
     make_frame(light.direction, u, v);
+    if (level && std::abs(light.direction.y) < 0.99f) {
+        u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // rows of the grid follow the ground
+        v = glm::cross(light.direction, u);
+    }
     if (light.kind == LightKind::spot) {
         const float half = std::tan(std::min(light.outer_cone, 1.4f));
         view.right = half * u, view.up = half * v;
@@ -158,19 +164,15 @@ std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>&
     return openings(view, cells, longest);
 }
 
-// Smallest or largest value within `radius` cells, along x and then along y.
-std::vector<float> spread(std::vector<float> values, int n, int radius, bool smallest) {
-    for (const int stride : {1, n}) {
-        const std::vector<float> before = values;
-        for (int line = 0; line < n; ++line)
-            for (int i = 0; i < n; ++i) {
-                const float* first = before.data() + line * (n + 1 - stride);
-                float& value = values[line * (n + 1 - stride) + i * stride];
-                for (int k = std::max(i - radius, 0); k <= std::min(i + radius, n - 1); ++k)
-                    value = smallest ? std::min(value, first[k * stride]) : std::max(value, first[k * stride]);
-            }
+// Smallest or largest value within `radius` cells of the same row.
+std::vector<float> spread(const std::vector<float>& values, int n, int radius, bool smallest) {
+    std::vector<float> result = values;
+    for (int i = 0; i < n * n; ++i) {
+        const int x = i % n, row = i - x;
+        for (int k = std::max(x - radius, 0); k <= std::min(x + radius, n - 1); ++k)
+            result[i] = smallest ? std::min(result[i], values[row + k]) : std::max(result[i], values[row + k]);
     }
-    return values;
+    return result;
 }
 
 // In the open, the cells between surfaces that stand next to each other before them: where the depths' morphological
@@ -179,12 +181,13 @@ std::vector<std::vector<int>> gaps(const LightView& view, std::vector<Cell>& cel
     std::vector<float> depth;
     for (const Cell& cell : cells) depth.push_back(cell.hit);
     const int radius = std::max(view.n / 10, 1);
+    // Row by row: level ground is no surface beside a gap.
     const std::vector<float> closed = spread(spread(depth, view.n, radius, true), view.n, radius, false);
     for (size_t i = 0; i < cells.size(); ++i) {
-        const bool between = cells[i].hit - closed[i] > 0.01f * view.reach;
+        const bool between = cells[i].hit - closed[i] > long_gap * view.reach;
         cells[i].from = between ? std::max(cells[i].from, closed[i]) : cells[i].to;
     }
-    return openings(view, cells, 0.01f * view.reach / long_way);
+    return openings(view, cells, long_gap * view.reach / long_way);
 }
 
 // Cuts an opening into `count` parts of like size (Lloyd's k-means from far-apart seeds).
@@ -256,10 +259,10 @@ BeamCard card_of(const LightView& view, const std::vector<Cell>& cells, const st
     const bool sun = light.kind == LightKind::sun;
     const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
     // The beam begins where the surfaces around the opening are.
-    float start = static_cast<float>(from / count);
-    const float end = static_cast<float>(to / count);
+    const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
+    float start = fog;
     if (edges > 0) start = std::max(start, static_cast<float>(edge / edges));
-    start = std::min(start, 0.8f * end);
+    start = std::min(start, glm::mix(fog, end, 0.8f));
     const vec3 origin = sun ? center : light.position;
     card.from = origin + start * axis, card.to = origin + end * axis;
     vec2 half;
@@ -324,7 +327,12 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
         size_t largest = 0;
         for (const auto& opening : found) largest = std::max(largest, opening.size());
         const float share = static_cast<float>(largest) / static_cast<float>(cells.size());
-        if (share > open_share) open = share, found = gaps(view, cells);
+        if (share > open_share) {
+            const LightView level = light_view(light, snapshot, settings.rays, true);
+            open = share, view.corner = level.corner, view.right = level.right, view.up = level.up;
+            cells = looked(view, snapshot), found = gaps(view, cells);
+            large = gap_share * static_cast<float>(cells.size());
+        }
     }
     const auto add = [&](BeamCard card) {
         if (!(glm::length(card.to - card.from) > 1e-4f)) return;
