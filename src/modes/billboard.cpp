@@ -7,6 +7,8 @@
 
 namespace tyndall {
 namespace {
+constexpr float veil_share = 0.5f; // of the open air's fog that is taken for lit
+
 float smooth(float low, float high, float x) {
     const float s = std::clamp((x - low) / std::max(high - low, 1e-6f), 0.0f, 1.0f);
     return s * s * (3 - 2 * s);
@@ -63,12 +65,20 @@ void add_quads(const BeamCard& card, int index, const Camera& camera, CardFacing
     if (glm::length(normal) > 1e-4f) add(glm::normalize(normal));
 }
 
+// A handful of names in one line.
+std::string some_of(const std::vector<std::string>& names) {
+    std::string line;
+    for (size_t i = 0; i < std::min<size_t>(names.size(), 5); ++i) line += (i ? ", " : "") + names[i];
+    return names.size() > 5 ? line + " and " + std::to_string(names.size() - 5) + " more" : line;
+}
+
 bool eye_inside(const BeamCard& card, vec3 eye) { return off_axis(card, eye) < 1; }
 }
 
 Billboards make_billboards(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard);
     Billboards billboards;
+    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard, &billboards.veils);
+    for (float& veil : billboards.veils) veil *= veil_share * settings.billboard.brightness;
     billboards.settings = settings.billboard, billboards.style = settings.style;
     billboards.snapshot = stylised(snapshot, settings.style);
     billboards.snapshot.media = even_media(billboards.snapshot.media);
@@ -92,16 +102,24 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
 std::vector<Limit> billboard_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits{
         {Severity::wrong, "billboard", "cards are a look: they are not lit, shadowed or made of fog"}};
-    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard);
+    std::vector<float> open;
+    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard, &open);
+    std::vector<std::string> around, along;
     for (const BeamCard& card : cards) {
-        if (eye_inside(card, view.camera.position))
-            limits.push_back({Severity::wrong, card.name, "the camera is inside this beam: its card is faded out"});
+        if (eye_inside(card, view.camera.position)) around.push_back(card.name);
         const vec3 axis = glm::normalize(card.to - card.from);
         const vec3 look = glm::normalize(0.5f * (card.from + card.to) - view.camera.position);
-        if (std::abs(glm::dot(axis, look)) > 0.94f)
-            limits.push_back(
-                {Severity::degraded, card.name, "seen along the beam, where a card is thin: it fades out"});
+        if (std::abs(glm::dot(axis, look)) > 0.94f) along.push_back(card.name);
     }
+    if (!around.empty())
+        limits.push_back({Severity::wrong, some_of(around), "the camera is inside: such cards are faded out"});
+    if (!along.empty())
+        limits.push_back(
+            {Severity::degraded, some_of(along), "seen along the beam, where a card is thin: it fades out"});
+    for (size_t l = 0; l < snapshot.lights.size(); ++l)
+        if (open[l] > 0)
+            limits.push_back({Severity::degraded, "light " + snapshot.lights[l].name,
+                              "shines in the open: cards stand in gaps only, the rest is a veil without shadows"});
     for (size_t l = 0; l < snapshot.lights.size(); ++l)
         if (std::ranges::none_of(cards, [&](const BeamCard& card) { return card.light == static_cast<int>(l); }))
             limits.push_back({Severity::info, "light " + snapshot.lights[l].name,

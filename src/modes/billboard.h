@@ -19,8 +19,11 @@ struct BeamCard {
 
 // Cards for the openings that lights shine through, and those placed by hand. Does not depend on the camera.
 // Looks from each light: cells of a grid of rays that get past the occluders next to the light are lit, and connected
-// lit cells are an opening. Those that fill much of the grid are cut up (k-means); a free spot has one card.
-std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings);
+// lit cells are an opening. Those that fill much of the grid are cut up (k-means); a free spot has one card. Under an
+// open sun the gaps between neighbouring surfaces are the openings; `open`: per light, the lit share of such a sun's
+// grid.
+std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
+                                  std::vector<float>* open = nullptr);
 
 // A card as this camera sees it.
 struct CardQuad {
@@ -42,6 +45,7 @@ struct Billboards {
     StyleSettings style;
     Snapshot snapshot; // stylised, fog made even
     std::vector<CardQuad> quads;
+    std::vector<float> veils; // per light: share of the unshadowed light that an open sun leaves in all fog
     vec3 eye{0};
     float pixel = 0; // width of a pixel one metre away
     float seconds = 0;

@@ -170,6 +170,45 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     return scattered * (arriving * exp(-depth) * length * mean_transmittance(extinction * length));
 }
 
+// Light of a sun in the open, per unit of its intensity: single scattering of even fog without shadows, in three
+// pieces of the way through fog, the nearest the shortest.
+Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet& packet) {
+    const StyleSettings& style = billboards.style;
+    Floats low = infinity, high = 0.0f;
+    for (const Medium& medium : billboards.snapshot.media) {
+        const Ranges in = inside_box(medium, {packet.origin, packet.direction, packet.t_max});
+        const Mask16 there = in.high > in.low;
+        low = select(there, min(low, in.low), low), high = select(there, max(high, in.high), high);
+    }
+    const Mask16 foggy = high > low;
+    if (!any(foggy)) return splat(vec3(0));
+    low = zero_unless(foggy, low), high = zero_unless(foggy, high);
+    const Floats cosine = -dot(packet.direction, splat(light.direction));
+    Vec3s sum = splat(vec3(0));
+    Floats depth = 0.0f, from = low;
+    for (const float share : {1.0f / 9, 4.0f / 9, 1.0f}) {
+        const Floats to = fused(high - low, share, low), middle = 0.5f * (from + to);
+        const LightPaths piece{fused(packet.direction, from, packet.origin), packet.direction, to - from};
+        const LightPaths to_sun = light_paths(light, fused(packet.direction, middle, packet.origin));
+        Vec3s scattered = splat(vec3(0));
+        Floats change = 0.0f, light_depth = 0.0f;
+        for (const Medium& medium : billboards.snapshot.media) {
+            const Floats part = analytic_depth16(medium, piece);
+            scattered = fused(splat(medium.optics.albedo), part * phase_value(medium.optics.phase, cosine), scattered);
+            change = change + part, light_depth = light_depth + analytic_depth16(medium, to_sun);
+        }
+        const float dimmed = billboards.settings.fog ? style.view_depth : 0;
+        Floats arriving =
+            exp(-(depth * dimmed + light_depth * style.light_depth)) * mean_transmittance(change * dimmed);
+        if (style.range < 1e6f)
+            arriving =
+                arriving * max(min((style.range - middle - packet.before) * (1 / (0.2f * style.range)), 1.0f), 0.0f);
+        sum = sum + scattered * zero_unless(foggy, arriving);
+        depth = depth + change, from = to;
+    }
+    return sum;
+}
+
 void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local std::vector<std::array<float, 64>> light_sums; // per light: r, g, b and the brightest card
     const Snapshot& snapshot = billboards.snapshot;
@@ -194,6 +233,14 @@ void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch
         drawn = max(drawn, share);
     }
 
+    static thread_local std::vector<std::array<float, 48>> veils; // per light: r, g, b
+    veils.assign(lights, {});
+    for (size_t l = 0; l < lights; ++l) {
+        if (!(billboards.veils[l] > 0)) continue;
+        const Vec3s veil = veil_light(billboards, snapshot.lights[l], packet) * splat(vec3(billboards.veils[l]));
+        store(veil.x, veils[l].data()), store(veil.y, veils[l].data() + 16), store(veil.z, veils[l].data() + 32);
+    }
+
     Floats depth = 0.0f;
     for (const Medium& medium : snapshot.media)
         depth = depth + analytic_depth16(medium, {packet.origin, packet.direction, packet.t_max});
@@ -211,6 +258,7 @@ void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch
             const float bound = 2 * sums[48 + lane] * std::max(billboards.settings.brightness, 1.0f);
             const float most = max_component(light);
             if (most > bound && most > 0) light *= bound / most;
+            light += vec3(veils[l][lane], veils[l][16 + lane], veils[l][32 + lane]);
             light *= snapshot.lights[l].intensity * snapshot.lights[l].volume_scale;
             result.radiance += light;
             if (!batch.per_light.empty()) batch.per_light[lane * lights + l] += light;

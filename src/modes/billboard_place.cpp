@@ -11,6 +11,9 @@ namespace tyndall {
 namespace {
 constexpr float long_way = 0.2f;     // share of the longest way through fog that counts as lit
 constexpr float large_share = 0.03f; // of the grid's cells: larger openings are cut up
+constexpr float open_share = 0.3f;   // of a sun's grid: a larger opening is the open air, its shafts come by gaps
+constexpr float long_gap = 0.025f;   // of the rays: the least way behind a gap that has a shaft
+constexpr float gap_share = 0.001f;  // of the grid's cells: larger gaps are cut up
 constexpr int unlit = -1;
 
 // The view from a light: an orthographic grid (sun), an octahedron (point) or a square over the cone (spot).
@@ -74,12 +77,16 @@ Box shown(const Snapshot& snapshot) {
     return box.empty() ? snapshot.bounds : box;
 }
 
-LightView light_view(const Light& light, const Snapshot& snapshot, int n) {
+LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level = false) {
     LightView view{light, n};
     const Box box = shown(snapshot);
     view.reach = 2 * glm::length(snapshot.bounds.size()) + 1;
     vec3 u, v;
     make_frame(light.direction, u, v);
+    if (level && std::abs(light.direction.y) < 0.99f) {
+        u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // rows of the grid follow the ground
+        v = glm::cross(light.direction, u);
+    }
     if (light.kind == LightKind::spot) {
         const float half = std::tan(std::min(light.outer_cone, 1.4f));
         view.right = half * u, view.up = half * v;
@@ -129,11 +136,10 @@ std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
     return cells;
 }
 
-// Numbers the connected lit cells; returns the cells of each opening.
-std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>& cells) {
-    float longest = 0.05f * view.reach; // reach: twice the scene's diagonal
-    for (const Cell& cell : cells) longest = std::max(longest, cell.to - cell.from);
+// Numbers the connected cells with a long way through fog; returns the cells of each opening.
+std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>& cells, float longest) {
     std::vector<std::vector<int>> found;
+    for (Cell& cell : cells) cell.opening = unlit;
     const auto is_lit = [&](int i) { return cells[i].to - cells[i].from > long_way * longest; };
     for (int seed = 0; seed < static_cast<int>(cells.size()); ++seed) {
         if (cells[seed].opening != unlit || !is_lit(seed)) continue;
@@ -152,35 +158,65 @@ std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>&
     return found;
 }
 
+std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>& cells) {
+    float longest = 0.05f * view.reach; // reach: twice the scene's diagonal
+    for (const Cell& cell : cells) longest = std::max(longest, cell.to - cell.from);
+    return openings(view, cells, longest);
+}
+
+// Smallest or largest value within `radius` cells of the same row.
+std::vector<float> spread(const std::vector<float>& values, int n, int radius, bool smallest) {
+    std::vector<float> result = values;
+    for (int i = 0; i < n * n; ++i) {
+        const int x = i % n, row = i - x;
+        for (int k = std::max(x - radius, 0); k <= std::min(x + radius, n - 1); ++k)
+            result[i] = smallest ? std::min(result[i], values[row + k]) : std::max(result[i], values[row + k]);
+    }
+    return result;
+}
+
+// In the open, the cells between surfaces that stand next to each other before them: where the depths' morphological
+// closing is nearer than they are. Their light begins at those surfaces.
+std::vector<std::vector<int>> gaps(const LightView& view, std::vector<Cell>& cells) {
+    std::vector<float> depth;
+    for (const Cell& cell : cells) depth.push_back(cell.hit);
+    const int radius = std::max(view.n / 10, 1);
+    // Row by row: level ground is no surface beside a gap.
+    const std::vector<float> closed = spread(spread(depth, view.n, radius, true), view.n, radius, false);
+    for (size_t i = 0; i < cells.size(); ++i) {
+        const bool between = cells[i].hit - closed[i] > long_gap * view.reach;
+        cells[i].from = between ? std::max(cells[i].from, closed[i]) : cells[i].to;
+    }
+    return openings(view, cells, long_gap * view.reach / long_way);
+}
+
 // Cuts an opening into `count` parts of like size (Lloyd's k-means from far-apart seeds).
 std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>& cells, int count) {
-    std::vector<vec3> centers{view.place(cells[cells.size() / 2])};
-    const auto away = [&](vec3 p) {
-        float least = infinity;
-        for (const vec3 c : centers) least = std::min(least, glm::dot(p - c, p - c));
-        return least;
-    };
+    if (count <= 1) return {cells};
+    std::vector<vec3> places;
+    for (const int cell : cells) places.push_back(view.place(cell));
+    std::vector<vec3> centers{places[places.size() / 2]};
+    std::vector<float> away(places.size(), infinity);
     while (static_cast<int>(centers.size()) < count) {
-        const auto farthest = std::max_element(cells.begin(), cells.end(),
-                                               [&](int a, int b) { return away(view.place(a)) < away(view.place(b)); });
-        centers.push_back(view.place(*farthest));
+        for (size_t i = 0; i < places.size(); ++i) {
+            const vec3 off = places[i] - centers.back();
+            away[i] = std::min(away[i], glm::dot(off, off));
+        }
+        centers.push_back(places[std::max_element(away.begin(), away.end()) - away.begin()]);
     }
     std::vector<std::vector<int>> parts;
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 4; ++round) {
         parts.assign(centers.size(), {});
-        for (const int cell : cells) {
-            const vec3 p = view.place(cell);
+        std::vector<vec3> sums(centers.size(), vec3(0));
+        for (size_t i = 0; i < places.size(); ++i) {
+            const vec3 p = places[i];
             const auto nearest = std::min_element(centers.begin(), centers.end(), [&](vec3 a, vec3 b) {
                 return glm::dot(p - a, p - a) < glm::dot(p - b, p - b);
             });
-            parts[nearest - centers.begin()].push_back(cell);
+            parts[nearest - centers.begin()].push_back(cells[i]), sums[nearest - centers.begin()] += p;
         }
-        for (size_t i = 0; i < centers.size(); ++i) {
-            if (parts[i].empty()) continue;
-            vec3 sum(0);
-            for (const int cell : parts[i]) sum += view.place(cell);
-            centers[i] = sum / static_cast<float>(parts[i].size());
-        }
+        for (size_t i = 0; i < centers.size(); ++i)
+            if (!parts[i].empty()) centers[i] = sums[i] / static_cast<float>(parts[i].size());
     }
     std::erase_if(parts, [](const std::vector<int>& part) { return part.empty(); });
     return parts;
@@ -223,10 +259,10 @@ BeamCard card_of(const LightView& view, const std::vector<Cell>& cells, const st
     const bool sun = light.kind == LightKind::sun;
     const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
     // The beam begins where the surfaces around the opening are.
-    float start = static_cast<float>(from / count);
-    const float end = static_cast<float>(to / count);
+    const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
+    float start = fog;
     if (edges > 0) start = std::max(start, static_cast<float>(edge / edges));
-    start = std::min(start, 0.8f * end);
+    start = std::min(start, glm::mix(fog, end, 0.8f));
     const vec3 origin = sun ? center : light.position;
     card.from = origin + start * axis, card.to = origin + end * axis;
     vec2 half;
@@ -270,20 +306,33 @@ LightView closer_view(const LightView& view, const std::vector<std::vector<int>>
     return closer;
 }
 
-void place_for(const Snapshot& snapshot, int index, const BillboardSettings& settings, std::vector<BeamCard>& cards) {
+void place_for(const Snapshot& snapshot, int index, const BillboardSettings& settings, std::vector<BeamCard>& cards,
+               float& open) {
     const Light& light = snapshot.lights[index];
     const bool blocked = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
     if (settings.cards == 0 || (!blocked && light.kind != LightKind::spot)) return;
-    LightView view = light_view(light, snapshot, settings.rays);
+    // A sun's first look only finds out where to look closer.
+    const bool sun = light.kind == LightKind::sun;
+    LightView view = light_view(light, snapshot, sun ? (settings.rays + 1) / 2 : settings.rays);
     std::vector<Cell> cells = looked(view, snapshot);
     std::vector<std::vector<int>> found = openings(view, cells);
     float large = large_share * static_cast<float>(cells.size());
-    if (light.kind == LightKind::sun && !found.empty()) {
+    if (sun && !found.empty()) {
         const LightView closer = closer_view(view, found);
         const auto area = [](const LightView& of) { return glm::length(of.right) * glm::length(of.up); };
         large *= area(view) / std::max(area(closer), 1e-20f);
-        view.corner = closer.corner, view.right = closer.right, view.up = closer.up;
+        view.corner = closer.corner, view.right = closer.right, view.up = closer.up, view.n = settings.rays;
+        large *= 4;
         cells = looked(view, snapshot), found = openings(view, cells);
+        size_t largest = 0;
+        for (const auto& opening : found) largest = std::max(largest, opening.size());
+        const float share = static_cast<float>(largest) / static_cast<float>(cells.size());
+        if (share > open_share) {
+            const LightView level = light_view(light, snapshot, settings.rays, true);
+            open = share, view.corner = level.corner, view.right = level.right, view.up = level.up;
+            cells = looked(view, snapshot), found = gaps(view, cells);
+            large = gap_share * static_cast<float>(cells.size());
+        }
     }
     const auto add = [&](BeamCard card) {
         if (!(glm::length(card.to - card.from) > 1e-4f)) return;
@@ -325,10 +374,14 @@ void place_by_hand(const Snapshot& snapshot, std::vector<BeamCard>& cards) {
 }
 }
 
-std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings) {
+std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
+                                  std::vector<float>* open) {
     std::vector<BeamCard> cards;
+    std::vector<float> shares(snapshot.lights.size(), 0);
     place_by_hand(snapshot, cards);
-    for (size_t l = 0; l < snapshot.lights.size(); ++l) place_for(snapshot, static_cast<int>(l), settings, cards);
+    for (size_t l = 0; l < snapshot.lights.size(); ++l)
+        place_for(snapshot, static_cast<int>(l), settings, cards, shares[l]);
+    if (open) *open = shares;
     return cards;
 }
 }

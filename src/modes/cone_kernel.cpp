@@ -182,7 +182,7 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
     const float change_at_most = std::min(highest(amount), 60.0f);
-    const float wanted = 4.5f + (nodes - 2) * (2 * share * lobe + change_at_most * 0.12f);
+    const float wanted = 7 + (nodes - 2) * (2 * share * lobe + change_at_most * 0.16f);
     return std::clamp(static_cast<int>(wanted), 2, most_gauss_nodes);
 }
 
@@ -251,6 +251,22 @@ Stretch16 reached(const Packet& packet, const ConeLight& light, const SeenRays& 
     return stretch;
 }
 
+// Far from the light, compared with how near it the ray passes, metres are packed into little angle: what falls or
+// grows by e per metre is an edge there. Such stretches are cut where that has happened a little, once, and four times.
+void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Stretch16& stretch) {
+    Floats rate = packet.fog.extinction();
+    for (const Medium& medium : packet.fog.media)
+        if (medium.kind == DensityKind::height) rate = rate + abs(packet.direction.y) * (1 / medium.height_falloff);
+    const Floats scale = 1.0f / max(rate, 1e-20f), behind = max(stretch.low, 0.0f), before = min(stretch.high, 0.0f);
+    for (const float share : {1.0f / 16, 0.25f, 1.0f, 4.0f}) {
+        const Floats at = behind + share * scale, mirrored = before - share * scale;
+        const Mask16 packed = (stretch.high > stretch.low) & (share * scale > seen.distance);
+        if (any(packed & (at < stretch.high))) add_break(packet, at);
+        // Before the light the two ways together stay as long in fog that is around all.
+        if (!packet.fog.direct && any(packed & (mirrored > stretch.low))) add_break(packet, mirrored);
+    }
+}
+
 void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Stretch16& stretch) {
     add_break(packet, 0.0f);
     if (any(seen.distance < light.reach)) {
@@ -261,13 +277,7 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
         const Stretch16 even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
         add_break(packet, even.low), add_break(packet, even.high);
     }
-    // Behind the light e^-2σs falls without an end in the angle: pieces that end after a few optical depths.
-    const Floats start = max(stretch.low, 0.0f);
-    const float depth = 1 / packet.fog.extinction();
-    for (const float share : {0.3f, 1.0f, 3.0f}) {
-        const Floats at = start + share * depth;
-        if (any((at < stretch.high) & (stretch.high > stretch.low))) add_break(packet, at);
-    }
+    add_decay_breaks(packet, seen, stretch);
 }
 
 // Light of a local light at the nodes of one piece.
@@ -282,10 +292,11 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
     for (const QuadratureNode& node : gauss_legendre(count)) {
         const float at = static_cast<float>(node.at), weight = static_cast<float>(node.weight);
         Floats s = angles.place(at);
-        if (has_cap) s = select(capped, fused(length, at, piece.low), s);
+        if (has_cap) s = select(capped, angles.cubic(at), s);
         const Floats square = max(fused(s, s, seen.squared), 1e-30f), inverse = 1.0f / sqrt(square);
         const Floats distance = square * inverse, t = seen.nearest + s;
-        Floats amount = whole * weight * strength(packet, light, seen, s, distance, inverse);
+        const Floats share = has_cap ? select(capped, 3 * at * at * weight, weight) : Floats(weight);
+        Floats amount = whole * share * strength(packet, light, seen, s, distance, inverse);
         if (!inverse_square) amount = amount * select(capped, light.reach * light.reach, square);
         const Vec3s point = packet.at(t);
         const Floats depth =

@@ -97,13 +97,13 @@ HWY_INLINE Stretch16 inside_wedge(const SeenRays& seen, float cosine, float sine
 // With far the end of larger |s|, u = θ(far) - θ: s = (far cos u - d² sin(u)/d) / (cos u + far sin(u)/d), which holds
 // for d = 0 too.
 struct AnglePiece {
-    Floats sign, far, squared;
+    Floats sign, near, far, squared;
     Floats angle, per_distance; // the whole angle, and over the distance: ∫ ds/r²
 
     HWY_INLINE AnglePiece(const Stretch16& piece, const SeenRays& seen) : squared(seen.squared) {
         sign = select(piece.low + piece.high < 0.0f, -1.0f, 1.0f);
-        const Floats a = abs(piece.low), b = abs(piece.high), near = min(a, b);
-        far = max(a, b);
+        const Floats a = abs(piece.low), b = abs(piece.high);
+        near = min(a, b), far = max(a, b);
         const Floats length = piece.high - piece.low, x = max(fused(far, near, squared), 1e-30f);
         const Floats y = seen.distance * length;
         angle = angle_of(y, x);
@@ -115,6 +115,8 @@ struct AnglePiece {
         const Floats sine = per_distance * share * sinc;
         return sign * fused(sine, -squared, far * cosine) / fused(sine, far, cosine);
     }
+    // Instead, closer together next to the nearest point: ds = 3 share² · length · dshare.
+    HWY_INLINE Floats cubic(float share) const { return sign * fused(far - near, share * share * share, near); }
 };
 }
 HWY_AFTER_NAMESPACE();

@@ -116,7 +116,7 @@ TEST(Billboard, IsAboutAsBrightAsTheLightInTheFog) {
 
 TEST(Billboard, DoesNotPopOnAnOrbit) {
     const HoleInWall hole;
-    for (const CardFacing facing : {CardFacing::axis, CardFacing::cross}) {
+    for (const CardFacing facing : {CardFacing::axis, CardFacing::camera, CardFacing::cross}) {
         Settings settings;
         settings.billboard.facing = facing;
         double before = 0;
@@ -132,6 +132,33 @@ TEST(Billboard, DoesNotPopOnAnOrbit) {
             before = now;
         }
     }
+}
+
+// Three posts 1 m wide and 4 m high along z on a floor, 2 m apart, and a sun at 45 degrees across them.
+TEST(Billboard, InTheOpenCardsStandInGapsBeforeAVeil) {
+    Scene scene;
+    add_quad(scene, {-10, 0, -10}, {20, 0, 0}, {0, 0, 20});
+    for (const float z : {-3.5f, -0.5f, 2.5f}) add_quad(scene, {0, 0, z}, {0, 4, 0}, {0, 0, 1});
+    Snapshot snapshot = scene_of({even_fog(0.02f, {vec3(-10, 0, -10), vec3(10, 8, 10)})}, {sun({1, -1, 0}, 10)});
+    snapshot.scene = &scene;
+    snapshot.occluders = Occluders::make(scene, 0, nullptr);
+    snapshot.bounds.grow(snapshot.occluders->bounds());
+    std::vector<float> open;
+    const std::vector<BeamCard> cards = place_cards(snapshot, Settings{}.billboard, &open);
+    EXPECT_GT(open[0], 0.3f);
+    ASSERT_FALSE(cards.empty());
+    for (const BeamCard& card : cards) {
+        EXPECT_NEAR(std::abs(card.from.z), 1.5, 0.9); // between posts
+        EXPECT_NEAR(card.from.x, 0, 1.5);
+        EXPECT_NEAR(card.to.y, 0, 0.2);
+    }
+    // Beside all cards a ray still sees fog in the sun, less than if all were lit.
+    const View view = view_from({-5, 1, 9}, {-5, 1, 0});
+    const Ray ray{{-5, 1, 9}, {0, 0, -1}, 18};
+    const float veil = run_mode("billboard", view, snapshot, {}, {ray})[0].radiance.x;
+    const float lit = marched(snapshot, exact_settings(), std::vector{ray})[0].radiance.x;
+    EXPECT_GT(veil, 0.1f * lit);
+    EXPECT_LT(veil, 0.7f * lit);
 }
 
 TEST(Billboard, SpotsWithNothingBeforeThemHaveOneCard) {
