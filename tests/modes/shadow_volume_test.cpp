@@ -124,17 +124,6 @@ std::vector<Light> all_lights() {
 const Camera cameras[] = {look_at({2.5f, 1.5f, 5}, {0, 1.5f, 0}, {0, 1, 0}, 0.9f),
                           look_at({-0.5f, 0.6f, -0.2f}, {1, 1.2f, 1}, {0, 1, 0}, 1.3f)}; // the second in a shadow
 
-TEST(GaussLegendre, IntegratesPolynomialsExactly) {
-    for (const int count : {1, 2, 4, 7, 16, 64}) {
-        const std::vector<GaussNode> nodes = gauss_legendre(count);
-        for (int power = 0; power < 2 * count; power += 2) {
-            double sum = 0;
-            for (const GaussNode& node : nodes) sum += node.weight * std::pow(node.at, power);
-            EXPECT_NEAR(sum * (power + 1) / 2, 1, 1e-12) << count << ' ' << power;
-        }
-    }
-}
-
 TEST(ShadowVolume, SunUnderARoofByHand) {
     // Without light-side dimming (the sun is level with the roof's end of the fog) half the path is lit.
     const Box thin{vec3(-4, -0.001f, -1), vec3(4, 0.001f, 1)};
