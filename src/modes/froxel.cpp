@@ -23,7 +23,7 @@ struct FroxelFrame {
 };
 
 // The scene as the settings see it.
-void set_scene(const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
+void set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const MarchSettings& terms = settings.march;
     scene.snapshot = stylised(snapshot, settings.style);
     scene.settings = settings.froxel, scene.style = settings.style;
@@ -34,7 +34,7 @@ void set_scene(const Snapshot& snapshot, const Settings& settings, FroxelScene& 
     }
     if (!terms.ambient) scene.snapshot.ambient = vec3(0);
     for (const Light& light : scene.snapshot.lights) {
-        scene.depths.push_back(make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution));
+        scene.depths.push_back(make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view));
         scene.depths.back().scale = settings.style.light_depth;
         scene.cones.push_back(cone_falloff(light));
     }
@@ -96,7 +96,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     auto frame = std::make_shared<FroxelFrame>();
     if (history) frame->frame = follow(*history, view, snapshot, settings);
     if (settings.froxel.history == 0) frame->frame = 0;
-    set_scene(snapshot, settings, frame->scene);
+    set_scene(view, snapshot, settings, frame->scene);
 
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;

@@ -41,6 +41,13 @@ struct FroxelGrid {
     }
 };
 
+// As camera_ray(), without its tangent.
+inline Ray line_ray(const FroxelGrid& grid, vec2 pixel) {
+    const vec3 step = grid.line_step(pixel);
+    const float length = glm::length(step);
+    return {grid.point(pixel, 0), step / length, grid.camera.far * length};
+}
+
 // The tiles of a picture; slices follow with set_slices().
 FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile);
 

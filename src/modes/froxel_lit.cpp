@@ -58,6 +58,59 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, Stretch stretc
     }
 }
 
+// A light on the lines of one tile.
+struct TileLight {
+    const FroxelScene& scene;
+    const FroxelGrid& grid;
+    const FroxelTiles& tiles;
+    ivec2 at;
+    size_t light;
+    const uint32_t* index; // of the point of a soft light; null = its centre
+    uint32_t seed;
+};
+
+// Adds the light on one line of the tile: sums over the line of amounts and of points times amounts, and its length in
+// each slice.
+void add_line(const TileLight& tile, size_t ray, FroxelArrival* sums, std::vector<double>& lengths) {
+    static thread_local LightAlong along;
+    static thread_local std::vector<Moments> moments;
+    const FroxelGrid& grid = tile.grid;
+    const Light& light = tile.scene.snapshot.lights[tile.light];
+    Ray line = line_ray(grid, grid.pixel_of(vec2(tile.at) + tile.tiles.offsets[ray]));
+    const double per_metre = glm::dot(line.direction, grid.camera.forward), start = grid.faces.front() / per_metre;
+    const float surface = tile.tiles.depth[grid.tile_index(tile.at) * tile.tiles.rays() + ray];
+    const double end = std::min(grid.faces.back(), surface) / per_metre;
+    line.t_max = static_cast<float>(end);
+    const LightPoint point = tile.index ? light_point(light, line, *tile.index, tile.seed) : center_of(light);
+    find_light(light, point, line, &tile.scene.slices, {}, along);
+    moments.assign(lengths.size(), {});
+    for (const Stretch& s : along.lit) add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
+    for (size_t k = 0; k < lengths.size(); ++k) {
+        const double length = std::min<double>(grid.faces[k + 1] / per_metre, end) - grid.faces[k] / per_metre;
+        if (!(length > 0)) break;
+        lengths[k] += length;
+        if (!(moments[k].amount > 0)) continue;
+        const auto amount = static_cast<float>(moments[k].amount);
+        sums[k].amount += amount;
+        sums[k].point += amount * line.at(static_cast<float>(moments[k].first / moments[k].amount));
+    }
+}
+
+// The edge of a narrow cone runs through froxels: all lines of the tile tell how much of it is lit. Elsewhere one does.
+void light_tile(const TileLight& tile, size_t ray, FroxelArrival* arrivals) {
+    static thread_local std::vector<double> lengths;
+    lengths.assign(static_cast<size_t>(tile.grid.slices()), 0);
+    if (tile.scene.snapshot.lights[tile.light].kind == LightKind::spot)
+        for (size_t each = 0; each < tile.tiles.rays(); ++each) add_line(tile, each, arrivals, lengths);
+    else
+        add_line(tile, ray, arrivals, lengths);
+    for (size_t k = 0; k < lengths.size(); ++k) {
+        if (!(arrivals[k].amount > 0)) continue;
+        arrivals[k].point /= arrivals[k].amount;
+        arrivals[k].amount /= static_cast<float>(lengths[k]);
+    }
+}
+
 // One line of a froxel as a light near it sees it.
 struct NearLine {
     vec3 start, direction;
@@ -113,33 +166,19 @@ FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, cons
     FroxelLit lit;
     lit.lights = lights.size(), lit.slices = static_cast<size_t>(grid.slices());
     lit.arrivals.assign(16 * lit.lights * lit.slices, {});
-    LightAlong along;
-    std::vector<Moments> moments;
     for (size_t lane = 0; lane < 16; ++lane) {
         if (lanes[lane].x >= grid.size.x || lanes[lane].y >= grid.size.y) continue;
-        const size_t tile = grid.tile_index(lanes[lane]);
-        Ray line = camera_ray(grid.camera, grid.picture, grid.pixel_of(vec2(lanes[lane]) + tiles.offsets[ray]));
-        const double per_metre = glm::dot(line.direction, grid.camera.forward);
-        const double end = std::min(grid.faces.back(), tiles.depth[tile * tiles.rays() + ray]) / per_metre;
-        const double start = grid.faces.front() / per_metre;
-        line.t_max = static_cast<float>(end);
         // Other points for each 4×4 tiles: the same ones again would show as a pattern.
         const auto block = static_cast<uint32_t>((lanes[lane].y >> 2) * grid.size.x + (lanes[lane].x >> 2));
         for (size_t i = 0; i < lights.size(); ++i) {
-            const LightPoint point =
-                indices ? light_point(lights[i], line, indices[lane], hash(block, static_cast<uint32_t>(i)))
-                        : center_of(lights[i]);
-            find_light(lights[i], point, line, &scene.slices, {}, along);
-            moments.assign(lit.slices, {});
-            for (const Stretch& s : along.lit)
-                add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
-            for (size_t k = 0; k < lit.slices; ++k) {
-                if (!(moments[k].amount > 0)) continue;
-                const double length = std::min<double>(grid.faces[k + 1] / per_metre, end) - grid.faces[k] / per_metre;
-                FroxelArrival& arrival = lit.arrivals[(lane * lit.lights + i) * lit.slices + k];
-                arrival.amount = length > 0 ? static_cast<float>(moments[k].amount / length) : 0.0f;
-                arrival.point = line.at(static_cast<float>(moments[k].first / moments[k].amount));
-            }
+            const TileLight light{scene,
+                                  grid,
+                                  tiles,
+                                  lanes[lane],
+                                  i,
+                                  indices ? &indices[lane] : nullptr,
+                                  hash(block, static_cast<uint32_t>(i))};
+            light_tile(light, ray, &lit.arrivals[(lane * lit.lights + i) * lit.slices]);
         }
     }
     return lit;

@@ -18,9 +18,9 @@ struct FroxelLit {
     }
 };
 
-// The lit stretches of the lines, integrated with the light's strength along them. Each line sees one point of a soft
-// light, picked by `indices` (one per lane; null: its centre). Tiles outside the grid are
-// left out.
+// The lit stretches of the lines, integrated with the light's strength along them; of a spot, on all rays of each tile.
+// Each line sees one point of a soft light, picked by `indices` (one per lane; null: its centre). Tiles outside the
+// grid are left out.
 FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,
                           const ivec2* lanes, size_t ray, const uint32_t* indices);
 

@@ -18,7 +18,7 @@ std::vector<vec2> ray_offsets(int tile) {
 }
 
 Ray eye_ray(const FroxelGrid& grid, vec2 pixel, float& along) {
-    Ray ray = camera_ray(grid.camera, grid.picture, pixel);
+    Ray ray = line_ray(grid, pixel);
     along = glm::dot(ray.direction, grid.camera.forward);
     ray.origin = ray.at(grid.camera.near / along), ray.t_max -= grid.camera.near / along;
     return ray;
@@ -90,7 +90,7 @@ float scene_depth(const FroxelGrid& grid, const Box& bounds) {
 
 void add_ray(const FroxelGrid& grid, const Snapshot& snapshot, vec2 pixel, float surface, float scene,
              FogDepths& depths) {
-    const Ray ray = camera_ray(grid.camera, grid.picture, pixel);
+    const Ray ray = line_ray(grid, pixel);
     const float along = glm::dot(ray.direction, grid.camera.forward);
     const float end = std::min(ray.t_max, surface / along);
     for (const Medium& medium : snapshot.media) {

@@ -79,7 +79,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(
-            make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution));
+            make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
         if (light.kind != LightKind::sun) march->near_points.push_back(light.position);

@@ -26,9 +26,13 @@ void append_march_rows(std::vector<SettingRow>& rows) {
                               "in shadow_map.*, slices = exact: only lit stretches are "
                               "integrated, as exactly as the fog allows",
                               TYNDALL_FIELD(march.visibility)));
-    rows.push_back(choice_row("march.light", {"off", "average", "grid", "marched"}, "fog between light and fog",
-                              TYNDALL_FIELD(march.light)));
-    rows.push_back(number_row("march.light_resolution", "cells", 4, 1024, "cells across the fog in the light's grid",
+    rows.push_back(
+        choice_row("march.light", {"off", "average", "froxel", "grid", "marched"},
+                   "fog between light and fog; froxel = looked up in a grid before the camera, grid = in one "
+                   "before each light, marched = exact at every point",
+                   TYNDALL_FIELD(march.light)));
+    rows.push_back(number_row("march.light_resolution", "cells", 4, 1024,
+                              "cells across the fog in the light's grid; with froxel, across the picture and in depth",
                               TYNDALL_FIELD(march.light_resolution)));
     rows.push_back(
         number_row("march.light_points", "", 1, 256,

@@ -24,8 +24,8 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.bias", "texels", 0, 64,
                               "moves surfaces away from the light; fog needs none, and light leaks by as much",
                               TYNDALL_FIELD(shadow_map.bias)));
-    rows.push_back(choice_row("shadow_map.light", {"off", "average", "grid", "marched"},
-                              "fog between light and fog; cells of the grid: march.light_resolution",
+    rows.push_back(choice_row("shadow_map.light", {"off", "average", "froxel", "grid", "marched"},
+                              "fog between light and fog, as march.light; cells: march.light_resolution",
                               TYNDALL_FIELD(shadow_map.light)));
     rows.push_back(choice_row("shadow_map.picture", picture_shares,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "

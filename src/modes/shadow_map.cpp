@@ -141,8 +141,8 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     march->detail = fog_detail(march->snapshot.media);
     march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
     for (const Light& light : march->snapshot.lights) {
-        march->depths.push_back(
-            make_light_depth(march->snapshot, light, settings.shadow_map.light, settings.march.light_resolution));
+        march->depths.push_back(make_light_depth(march->snapshot, light, settings.shadow_map.light,
+                                                 settings.march.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
     }

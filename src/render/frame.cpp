@@ -142,7 +142,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             task.tracer.light_depths.push_back(
-                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
+                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution, &view));
     if (view.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
     return task;
 }

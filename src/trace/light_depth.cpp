@@ -4,6 +4,7 @@
 #include <hwy/foreach_target.h>
 
 #include "base/random.h"
+#include "trace/light_froxels.h"
 #include "trace/light_grid.h"
 
 #include "trace/light_depth_simd.h"
@@ -55,7 +56,9 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 }
 }
 
-LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution) {
+LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
+                            const View* view) {
+    if (method == LightTransmittance::froxel && !view) method = LightTransmittance::grid;
     LightDepth depth;
     depth.method = method;
     depth.light = light;
@@ -63,7 +66,11 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
     std::vector<const Medium*> bricks;
     for (const Medium& medium : snapshot.media)
         (medium.kind == DensityKind::bricks ? bricks : depth.analytic).push_back(&medium);
-    if (method == LightTransmittance::marched) {
+    if (method == LightTransmittance::froxel && !bricks.empty()) {
+        depth.froxels = fitted_froxels(*view, snapshot.bounds, resolution);
+        if (depth.froxels.size.x > 0) fill_froxels(bricks, light, depth.froxels);
+    }
+    if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {
         depth.marched = std::move(bricks);
         return depth;
     }

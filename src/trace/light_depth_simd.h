@@ -113,6 +113,20 @@ HWY_INLINE Ints cell_of(const Floats& coordinate, int size, Floats& share) {
     return cell;
 }
 
+HWY_INLINE Floats trilinear16(const std::vector<float>& values, ivec3 size, const Vec3s& at) {
+    Floats share_u, share_v, share_w;
+    const Ints i = cell_of(at.x, size.x, share_u), j = cell_of(at.y, size.y, share_v);
+    const Ints k = cell_of(at.z, size.z, share_w);
+    const int row = size.x, layer = size.x * size.y;
+    const Ints corner = (k * size.y + j) * row + i;
+    const auto across = [&](const float* from) HWY_ATTR {
+        Floats a, b, c, d;
+        gather_pairs(from, corner, a, b), gather_pairs(from + row, corner, c, d);
+        return mixed(mixed(a, b, share_u), mixed(c, d, share_u), share_v);
+    };
+    return mixed(across(values.data()), across(values.data() + layer), share_w);
+}
+
 // Depth of the brick media from the grid: 0 before the fog and beside it, all of it behind.
 HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
     Mask16 valid = Floats(0.0f) < Floats(1.0f);
@@ -125,18 +139,27 @@ HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
             (v <= static_cast<float>(grid.size.y - 1) + slack) & (w > 0.0f);
     if (!any(valid)) return 0.0f;
 
-    Floats share_u, share_v, share_w;
-    const Ints i = cell_of(u, grid.size.x, share_u), j = cell_of(v, grid.size.y, share_v);
-    const Ints k = cell_of(w, grid.size.z, share_w);
-    const int row = grid.size.x, layer = grid.size.x * grid.size.y;
-    const Ints corner = (k * grid.size.y + j) * row + i;
-    const float* depth = grid.depth.data();
-    const auto across = [&](const float* from) HWY_ATTR {
-        Floats a, b, c, d;
-        gather_pairs(from, corner, a, b), gather_pairs(from + row, corner, c, d);
-        return mixed(mixed(a, b, share_u), mixed(c, d, share_u), share_v);
-    };
-    return zero_unless(valid, mixed(across(depth), across(depth + layer), share_w));
+    return zero_unless(valid, trilinear16(grid.depth, grid.size, {u, v, w}));
+}
+
+// Corner numbers of points among the froxels; `inside` loses those beyond them.
+HWY_INLINE Vec3s froxel_coordinates(const LightDepthFroxels& froxels, const Vec3s& point, Mask16& inside) {
+    const Camera& camera = froxels.camera;
+    const Vec3s offset = point - splat(camera.position);
+    const Floats z = dot(offset, splat(camera.forward));
+    const Floats inverse = camera.ortho_height > 0 ? Floats(1.0f) : 1.0f / max(z, 1e-20f);
+    const Floats u = fused(dot(offset, splat(camera.right)) * inverse, froxels.scale.x, froxels.offset.x);
+    const Floats v = fused(dot(offset, splat(camera.up)) * inverse, froxels.scale.y, froxels.offset.y);
+    // The root of a s + (1 - a) s² = share, without cancellation.
+    const float a = froxels.first;
+    const Floats share = (z - froxels.near) * (1 / (froxels.far - froxels.near));
+    const Floats root = sqrt(max(fused(share, 4 * (1 - a), a * a), 0.0f));
+    const Floats w = share * 2.0f / (root + a) * static_cast<float>(froxels.size.z - 1);
+    const auto within = [](const Floats& x, int size)
+                            HWY_ATTR { return (x >= 0.0f) & (x <= static_cast<float>(size - 1)); };
+    constexpr float slack = 1e-4f; // of the whole depth: the ends belong to the froxels
+    inside = within(u, froxels.size.x) & within(v, froxels.size.y) & (share >= -slack) & (share <= 1 + slack);
+    return {u, v, w};
 }
 
 // Brick media integrated point by point; too long to be worth inlining.
@@ -149,6 +172,17 @@ HWY_INLINE Floats marched_depth16(const LightDepth& depth, const Vec3s& point, c
     return load(result);
 }
 
+// Brick media from the froxels; marched for points outside them.
+HWY_INLINE Floats froxel_depth16(const LightDepth& depth, const Vec3s& point, const Mask16& active) {
+    if (depth.froxels.empty()) return marched_depth16(depth, point, active);
+    Mask16 inside;
+    const Vec3s at = froxel_coordinates(depth.froxels, point, inside);
+    Floats found = 0.0f;
+    if (any(inside & active)) found = zero_unless(inside, trilinear16(depth.froxels.depth, depth.froxels.size, at));
+    const Mask16 outside = active & !inside;
+    return any(outside) ? found + marched_depth16(depth, point, outside) : found;
+}
+
 // Optical depth between 16 points and a light; 0 where not active.
 HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, const Mask16& active) {
     if (depth.method == LightTransmittance::off) return 0.0f;
@@ -159,7 +193,7 @@ HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, con
         for (const Medium* medium : depth.analytic) sum = sum + analytic_depth16(*medium, paths);
     }
     if (!depth.grid.empty()) sum = sum + grid_depth16(depth.grid, point);
-    if (!depth.marched.empty()) sum = sum + marched_depth16(depth, point, active);
+    if (!depth.marched.empty()) sum = sum + froxel_depth16(depth, point, active);
     return zero_unless(active, sum * depth.scale);
 }
 }

@@ -1,19 +1,13 @@
 // From a ray and a light to lit stretches. All geometry in double; vertices are the floats Embree has.
-#include "trace/shadow_slices.h"
+#include "trace/shadow_slice.h"
 
 namespace tyndall {
 namespace {
 constexpr double farthest = 1e9; // metres
 constexpr double reach = 0.9999; // of the way to a local light: where shadow rays end
 
-// The plane through ray and light, with the ray as its x axis and the light at y > 0. A light on the line of the ray is
-// moved off it by a hair: then the plane is any that holds the ray.
-struct Slice {
-    dvec3 origin, x, y, normal;
-    double light_x, light_y; // place of the light; of a sun its direction
-    bool far;
-    double x_max, per_metre; // where the ray ends; x per unit of t: directions are unit to float rounding only
-};
+using Point = ShadowSlice::Point;
+using Slice = ShadowSlice;
 
 Slice make_slice(const Ray& ray, const LightPoint& light) {
     Slice slice;
@@ -35,69 +29,6 @@ Slice make_slice(const Ray& ray, const LightPoint& light) {
     }
     slice.normal = glm::cross(slice.x, slice.y);
     return slice;
-}
-
-struct Point {
-    double x, y;
-};
-
-Point between(Point a, Point b, double share) { return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)}; }
-
-// Half spaces that hold everything between ray and light: the plane itself from both sides, and in it the fan that the
-// light spans with the ray.
-struct HalfSpace {
-    dvec3 normal, spread;
-    double least;
-};
-struct Fan {
-    HalfSpace sides[6];
-    int count = 0;
-
-    void add(const Slice& slice, dvec3 normal, dvec3 point) {
-        normal = glm::normalize(normal);
-        const double slack = 1e-9 * (1 + glm::length(point));
-        sides[count++] = {normal, glm::abs(normal), glm::dot(normal, slice.origin + point) - slack};
-    }
-    bool meets(const ShadowSlices::Node& node) const {
-        const dvec3 center = 0.5 * (dvec3(node.low) + dvec3(node.high)), half = dvec3(node.high) - center;
-        for (int i = 0; i < count; ++i)
-            if (glm::dot(sides[i].normal, center) + glm::dot(sides[i].spread, half) < sides[i].least) return false;
-        return true;
-    }
-};
-
-Fan make_fan(const Slice& s) {
-    Fan fan;
-    fan.add(s, s.normal, dvec3(0)), fan.add(s, -s.normal, dvec3(0));
-    fan.add(s, s.y, dvec3(0));
-    if (!s.far) fan.add(s, -s.y, s.light_y * s.y);
-    const double back_x = s.far ? s.light_x : s.light_x - s.x_max; // from the ray's end to the light
-    fan.add(s, s.light_y * s.x - s.light_x * s.y, dvec3(0));
-    fan.add(s, back_x * s.y - s.light_y * s.x, s.x_max * s.x);
-    return fan;
-}
-
-// The segment in which a triangle crosses the plane. A corner in the plane counts as above it, and points on edges are
-// worked out from the upper end: neighbours agree on them to the last bit, so no light leaks between.
-bool cut(const Slice& slice, const ShadowSlices::Triangle& triangle, Point& a, Point& b) {
-    double height[3];
-    dvec3 corner[3];
-    for (int i = 0; i < 3; ++i) {
-        corner[i] = dvec3(triangle.corners[i]) - slice.origin;
-        height[i] = glm::dot(slice.normal, corner[i]);
-    }
-    const bool above[3] = {height[0] >= 0, height[1] >= 0, height[2] >= 0};
-    if (above[0] == above[1] && above[1] == above[2]) return false;
-
-    const int lone = above[1] == above[2] ? 0 : above[0] == above[2] ? 1 : 2;
-    const auto crossing = [&](int i, int j) {
-        if (!above[i]) std::swap(i, j);
-        const Point up{glm::dot(slice.x, corner[i]), glm::dot(slice.y, corner[i])};
-        const Point down{glm::dot(slice.x, corner[j]), glm::dot(slice.y, corner[j])};
-        return between(up, down, height[i] / (height[i] - height[j]));
-    };
-    a = crossing(lone, (lone + 1) % 3), b = crossing(lone, (lone + 2) % 3);
-    return true;
 }
 
 // Appends the stretch that a segment shadows: the point (x, y) lies on the way from t to the light when
@@ -146,30 +77,6 @@ void append_outside(const Slice& slice, const Ball& ball, Point a, Point b, std:
     if (inside.high < 1) append_shadow(slice, between(a, b, inside.high), b, shadows);
 }
 
-void append_shadows(const ShadowSlices& slices, const Slice& slice, const Ball& ball, std::vector<Stretch>& shadows) {
-    const Fan fan = make_fan(slice);
-    uint32_t stack[64];
-    int waiting = 0;
-    stack[waiting++] = 0;
-    while (waiting > 0) {
-        const uint32_t at = stack[--waiting];
-        const ShadowSlices::Node& node = slices.nodes[at];
-        if (!fan.meets(node)) continue;
-        if (node.count == 0) {
-            stack[waiting++] = node.first, stack[waiting++] = at + 1;
-            continue;
-        }
-        for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-            Point a, b;
-            if (!cut(slice, slices.triangles[i], a, b)) continue;
-            if (ball.squared_radius > 0)
-                append_outside(slice, ball, a, b, shadows);
-            else
-                append_shadow(slice, a, b, shadows);
-        }
-    }
-}
-
 // What of 0..t_max no shadow covers. Gaps below rounding are none.
 void append_gaps(std::vector<Stretch>& shadows, double t_max, std::vector<Stretch>& lit) {
     std::sort(shadows.begin(), shadows.end(), [](Stretch a, Stretch b) { return a.low < b.low; });
@@ -200,14 +107,20 @@ void add_stretch(Stretch added, std::vector<Stretch>& lit) {
 
 void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Stretch>& lit) {
     static thread_local std::vector<Stretch> shadows;
+    static thread_local std::vector<ShadowSlice::Segment> segments;
     lit.clear();
     if (!(ray.t_max > 0) || !is_finite(ray.origin) || !is_finite(ray.direction)) return;
     const Slice slice = make_slice(ray, light);
     const double t_max = slice.x_max / slice.per_metre;
     if (slices.nodes.empty()) return lit.push_back({0, t_max});
     const Ball ball = ball_in(slice, light);
-    shadows.clear();
-    append_shadows(slices, slice, ball, shadows);
+    shadows.clear(), segments.clear();
+    append_segments(slices, slice, segments);
+    for (const auto& [a, b] : segments)
+        if (ball.squared_radius > 0)
+            append_outside(slice, ball, a, b, shadows);
+        else
+            append_shadow(slice, a, b, shadows);
     append_gaps(shadows, t_max, lit);
     if (ball.squared_radius > 0) {
         const Stretch inside = in_ball({0, 0}, {slice.per_metre, 0}, ball.center, ball.squared_radius);

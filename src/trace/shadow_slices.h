@@ -17,11 +17,14 @@ struct ShadowSlices {
         uint32_t first = 0; // of its triangles; of an inner node the second child (the first one follows it)
         uint32_t count = 0; // 0 = inner node
     };
-    struct Triangle {
-        vec3 corners[3];
-    };
-    std::vector<Node> nodes; // the root first; empty when nothing casts shadows
-    std::vector<Triangle> triangles;
+    static constexpr uint32_t most = 8; // triangles of a leaf
+    std::vector<Node> nodes;            // the root first; empty when nothing casts shadows
+    std::vector<float> corners[9];      // of the triangles: [3 · corner + axis][triangle], and `most` more
+
+    size_t triangles() const { return nodes.empty() ? 0 : corners[0].size() - most; }
+    vec3 corner(uint32_t triangle, size_t i) const {
+        return {corners[3 * i][triangle], corners[3 * i + 1][triangle], corners[3 * i + 2][triangle]};
+    }
 };
 ShadowSlices make_shadow_slices(const std::vector<ShadowTriangle>& triangles); // those with alpha are left out
 

@@ -50,7 +50,7 @@ TEST(Settings, BadAssignmentsSayWhatWouldDo) {
                 testing::HasSubstr("march.step_depth: expected a number from 1e-04 to 10"));
     EXPECT_THAT(refusal("march.step_depth=nan"), testing::HasSubstr("got 'nan'"));
     EXPECT_THAT(refusal("march.max_steps=1.5"), testing::HasSubstr("whole number"));
-    EXPECT_THAT(refusal("march.light=gird"), testing::HasSubstr("off, average, grid, marched"));
+    EXPECT_THAT(refusal("march.light=gird"), testing::HasSubstr("off, average, froxel, grid, marched"));
     EXPECT_THAT(refusal("march.light"), testing::HasSubstr("row=value"));
     EXPECT_THAT(refusal("march.step_depth="), testing::HasSubstr("got ''"));
 }

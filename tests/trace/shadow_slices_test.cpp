@@ -191,7 +191,7 @@ TEST(ShadowSlices, TrianglesWithAlphaAreLeftToShadowRays) {
     ASSERT_EQ(triangles.size(), 8u);
     const bool expected[] = {false, true, false, true}; // a sheet of alpha 1 without a texture is opaque
     for (size_t i = 0; i < 8; ++i) EXPECT_EQ(triangles[i].has_alpha, expected[i / 2]) << i;
-    EXPECT_EQ(make_shadow_slices(triangles).triangles.size(), 4u);
+    EXPECT_EQ(make_shadow_slices(triangles).triangles(), 4u);
 }
 
 TEST(ShadowSlices, TrianglesThatEmbreeLeavesOutAreLeftOut) {
@@ -199,7 +199,7 @@ TEST(ShadowSlices, TrianglesThatEmbreeLeavesOutAreLeftOut) {
     bad.positions[3] = bad.positions[2]; // the second triangle has no area
     Mesh worse = bad;
     worse.positions[1] = worse.positions[2]; // neither has the first
-    EXPECT_EQ(stage_of({bad, worse}).slices.triangles.size(), 1u);
+    EXPECT_EQ(stage_of({bad, worse}).slices.triangles(), 1u);
 }
 
 // Probes along random rays on which slices and shadow rays disagree further than `near` from an end.
