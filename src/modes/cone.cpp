@@ -2,7 +2,7 @@
 #include "modes/cone.h"
 
 #include "modes/fog_picture.h"
-
+#include "modes/limits.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
@@ -118,11 +118,7 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
         if (medium.kind == DensityKind::bricks) cone.grids.push_back(medium.bricks->bounds);
     seen.media = even_media(seen.media);
     cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
-    for (const Medium& medium : seen.media) {
-        const Optics& optics = medium.optics;
-        const vec3 emission = optics.extinction > 0 ? optics.emission / optics.extinction : vec3(0);
-        cone.glow.push_back(optics.albedo * seen.ambient + emission);
-    }
+    for (const Medium& medium : seen.media) cone.glow.push_back(glow_per_extinction(medium.optics, seen.ambient));
     for (const Light& light : seen.lights) cone.lights.push_back(cone_light(light, seen, cone));
     return cone;
 }
@@ -152,9 +148,7 @@ std::vector<Limit> cone_limits(const View&, const Snapshot& snapshot, const Sett
         if (medium.kind == DensityKind::bricks)
             limits.push_back({Severity::degraded, "medium " + medium.name,
                               "drawn as even fog of its mean density in the grid's bounds"});
-    if (!snapshot.media.empty()) limits.push_back({Severity::info, "media", "light scatters once only"});
-    if (max_component(snapshot.ambient) > 0)
-        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+    add_single_scattering_limits(snapshot, limits);
     return limits;
 }
 

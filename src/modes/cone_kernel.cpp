@@ -5,6 +5,7 @@
 #include "modes/cone.h"
 
 #include "base/simd.h"
+#include "modes/batch_simd.h"
 #include "modes/cone_simd.h"
 #include "modes/gauss_legendre.h"
 #include "trace/light_depth_simd.h"
@@ -395,13 +396,6 @@ Vec3s taken_sums(const Packet& packet, const std::vector<vec3>* colors, vec3 int
     return light;
 }
 
-void store_per_light(const Vec3s& light, size_t index, size_t lights, const RayBatch& batch) {
-    alignas(64) float rgb[3][16];
-    store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
-    for (size_t lane = 0; lane < batch.rays.size(); ++lane)
-        batch.per_light[lane * lights + index] += vec3(rgb[0][lane], rgb[1][lane], rgb[2][lane]);
-}
-
 // Emission and ambient light: of one medium ∫ σ e^-τ dt = 1 - e^-τ, whatever its density.
 Vec3s glow_light(Packet& packet, const Floats& depth) {
     const Cone& cone = packet.cone;
@@ -438,7 +432,7 @@ void cone_packet_kernel(const Cone& cone, const RayBatch& batch, std::span<Scatt
         const Vec3s added = taken_sums(packet, nullptr, light.light.intensity * light.light.volume_scale);
         radiance = radiance + added;
         if (cone.casts && light.light.shadows) unshadowed = unshadowed + added.x + added.y + added.z;
-        if (!batch.per_light.empty()) store_per_light(added, l, cone.lights.size(), batch);
+        add_per_light(added, l, cone.lights.size(), batch);
     }
 
     alignas(64) float rgbt[5][16];

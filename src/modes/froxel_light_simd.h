@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/simd.h"
 #include "trace/light_depth_simd.h"
+#include "trace/light_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -20,33 +21,6 @@ struct FroxelLanes {
     Floats width2;       // squared radius of the disc as large as the froxel is across
     Mask16 active;
 };
-
-// Irradiance of a light with nothing in the way.
-struct Arriving {
-    Vec3s to_light; // unit
-    Floats distance;
-    Floats amount; // multiplies the light's intensity
-};
-
-// As arrival() of scene/light.h, at the lanes' points.
-HWY_INLINE Arriving arriving_at_points(const Light& light, const ConeFalloff& cone, const FroxelLanes& lanes) {
-    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
-    const Vec3s offset = splat(light.position) - lanes.point;
-    const float reach = std::max(light.radius, smallest_radius);
-    const Floats squared = dot(offset, offset);
-    const Floats distance = max(sqrt(squared), 1e-12f);
-    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
-    if (!std::isinf(light.range)) {
-        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
-        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
-    }
-    if (light.kind == LightKind::spot) {
-        const Floats cosine = -dot(result.to_light, splat(light.direction));
-        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-        result.amount = result.amount * edge * edge;
-    }
-    return result;
-}
 
 // Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
 // points of a soft light; null = its centre.

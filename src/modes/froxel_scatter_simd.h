@@ -39,7 +39,7 @@ Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes
 
 LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const Arriving plain = arriving_at_points(light, fill.scene.cones[index], lanes);
+    const Arriving plain = arriving(light, fill.scene.cones[index], lanes.point);
     alignas(64) float v[4][16], wanted[16], near[16], traced[16] = {}, visible[16];
     store(lanes.point.x, v[0]), store(lanes.point.y, v[1]), store(lanes.point.z, v[2]), store(plain.amount, v[3]);
     store(select(lit, 1.0f, 0.0f), wanted);
@@ -78,13 +78,13 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
 // Light of one kind scattered towards the eye, per metre.
 Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const LaneArrivals arriving = arrivals(fill, index, lanes, lit, job);
-    const Mask16 reached = arriving.amount > 0.0f;
+    const LaneArrivals arrived = arrivals(fill, index, lanes, lit, job);
+    const Mask16 reached = arrived.amount > 0.0f;
     if (!any(reached)) return splat(vec3(0));
 
     Floats cosine = dot(splat(-light.direction), lanes.toward);
     if (light.kind != LightKind::sun) {
-        const Vec3s offset = splat(light.position) - arriving.point;
+        const Vec3s offset = splat(light.position) - arrived.point;
         cosine = dot(offset, lanes.toward) / max(sqrt(dot(offset, offset)), 1e-12f);
     }
     Vec3s scattering = splat(vec3(0));
@@ -93,8 +93,8 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
         const Floats weight = load(job.extinction[m]) * phase_value(optics.phase, cosine);
         scattering = fused(splat(optics.albedo), weight, scattering);
     }
-    const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arriving.point, reached));
-    const Floats amount = zero_unless(reached, arriving.amount * dimmed);
+    const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arrived.point, reached));
+    const Floats amount = zero_unless(reached, arrived.amount * dimmed);
     return scattering * amount * splat(light.intensity * light.volume_scale);
 }
 
@@ -102,8 +102,7 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
 Vec3s glow_of(const Snapshot& snapshot, const float (*extinction)[16]) {
     Vec3s glow = splat(vec3(0));
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const Optics& optics = snapshot.media[m].optics;
-        const vec3 each = optics.albedo * snapshot.ambient + optics.emission / optics.extinction;
+        const vec3 each = glow_per_extinction(snapshot.media[m].optics, snapshot.ambient);
         glow = fused(splat(each), load(extinction[m]), glow);
     }
     return glow;

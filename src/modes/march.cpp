@@ -1,12 +1,11 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
+#include "modes/limits.h"
 #include "modes/march_kernel.h"
 #include "modes/march_slices.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -14,34 +13,16 @@ void simplify(Medium& medium, const MarchSettings& settings) {
     if (!settings.phase) medium.optics.phase.kind = PhaseKind::isotropic;
     if (!settings.emission) medium.optics.emission = vec3(0);
 }
-
-std::string number_text(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-// How thick a medium can be at most across its own bounds, as optical depth.
-float thickness(const Medium& medium, const Box& scene_bounds) {
-    Box box = medium.world_bounds;
-    box.low = glm::max(box.low, scene_bounds.low), box.high = glm::min(box.high, scene_bounds.high);
-    return box.empty() ? 0 : medium.majorant() * glm::length(box.size());
-}
 }
 
 std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     const MarchSettings& march = settings.march;
     std::vector<Limit> limits;
-    for (const Medium& medium : snapshot.media) {
-        const float scattered = thickness(medium, snapshot.bounds) * max_component(medium.optics.albedo);
-        if (scattered > 0.5f)
-            limits.push_back({scattered > 2 ? Severity::degraded : Severity::info, "medium " + medium.name,
-                              "light scatters once only; up to " + number_text("%.2g", scattered) +
-                                  " optical depths of scattering make real fog this thick brighter and softer"});
+    add_single_scattering_limits(snapshot, limits);
+    for (const Medium& medium : snapshot.media)
         if (!march.heterogeneity && medium.kind == DensityKind::bricks)
             limits.push_back(
                 {Severity::wrong, "medium " + medium.name, "march.heterogeneity is off: drawn as even fog"});
-    }
     for (const Light& light : snapshot.lights)
         if (march.visibility == Visibility::off && light.shadows)
             limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
@@ -55,8 +36,6 @@ std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, cons
             {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
     if (!snapshot.media.empty() && march.light == LightTransmittance::average)
         limits.push_back({Severity::degraded, "lights", "march.light is average: every point is dimmed the same"});
-    if (max_component(snapshot.ambient) > 0)
-        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
     for (const Material& material : snapshot.scene ? snapshot.scene->materials : std::vector<Material>{})
         if (max_component(material.emission) > 0) {
             limits.push_back({Severity::info, "material " + material.name, "glows, but lights nothing else"});

@@ -6,8 +6,10 @@
 
 #include "base/random.h"
 #include "base/simd.h"
+#include "modes/batch_simd.h"
 #include "modes/style_simd.h"
 #include "trace/light_depth_simd.h"
+#include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
@@ -110,32 +112,6 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
     return points;
 }
 
-// Irradiance of a light at the points with nothing in the way, as arrival() of scene/light.h.
-struct Arriving {
-    Vec3s to_light; // unit
-    Floats distance;
-    Floats amount; // multiplies the light's intensity
-};
-
-Arriving arriving(const Light& light, const ConeFalloff& cone, const Points& points) {
-    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
-    const Vec3s offset = splat(light.position) - points.position;
-    const float reach = std::max(light.radius, smallest_radius);
-    const Floats squared = dot(offset, offset);
-    const Floats distance = max(sqrt(squared), 1e-12f);
-    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
-    if (!std::isinf(light.range)) {
-        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
-        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
-    }
-    if (light.kind == LightKind::spot) {
-        const Floats cosine = -dot(result.to_light, splat(light.direction));
-        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-        result.amount = result.amount * edge * edge;
-    }
-    return result;
-}
-
 // Turns the shadow rays to random points of a soft light, another set for each `k`.
 void aim_at_points(const Light& light, const RayBatch& batch, size_t step, size_t light_index, uint32_t k,
                    Occluders::ShadowRays& rays) {
@@ -184,7 +160,7 @@ Floats visible_share(const March& march, const Light& light, const Points& point
 Vec3s scattered_from(const March& march, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
     const Light& light = march.snapshot.lights[light_index];
-    const Arriving light_at = arriving(light, march.cones[light_index], points);
+    const Arriving light_at = arriving(light, march.cones[light_index], points.position);
     Mask16 wanted = points.active & (light_at.amount > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
     const Floats share = visible_share(march, light, points, light_at, wanted, batch, step, light_index);
@@ -220,18 +196,10 @@ Floats extinction_at(const March& march, const Points& points, const Packet& pac
 Vec3s glow_at(const March& march, const Packet& packet) {
     Vec3s glow = splat(vec3(0));
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
-        const Optics& optics = march.snapshot.media[m].optics;
-        const vec3 per_extinction = optics.albedo * march.snapshot.ambient + optics.emission / optics.extinction;
-        glow = fused(splat(per_extinction), packet.extinction(m), glow);
+        const vec3 each = glow_per_extinction(march.snapshot.media[m].optics, march.snapshot.ambient);
+        glow = fused(splat(each), packet.extinction(m), glow);
     }
     return glow;
-}
-
-void store_per_light(const Vec3s& light, size_t light_index, size_t light_count, const RayBatch& batch) {
-    alignas(64) float rgb[3][16];
-    store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
-    for (size_t lane = 0; lane < batch.rays.size(); ++lane)
-        batch.per_light[lane * light_count + light_index] += vec3(rgb[0][lane], rgb[1][lane], rgb[2][lane]);
 }
 
 void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
@@ -242,9 +210,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
     place_steps(march, batch, packet);
 
     alignas(64) float jitter[16];
-    for (size_t lane = 0; lane < 16; ++lane) {
-        jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
-    }
+    for (size_t lane = 0; lane < 16; ++lane) jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
 
     const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
     Totals totals{splat(vec3(0)), 0.0f, 1.0f};
@@ -274,7 +240,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;
             totals.radiance = totals.radiance + added;
-            if (!batch.per_light.empty()) store_per_light(added, light, light_count, batch);
+            add_per_light(added, light, light_count, batch);
         }
         totals.depth = totals.depth + depth;
         totals.transmittance = exp(-totals.depth);

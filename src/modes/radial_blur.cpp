@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/shrink.h"
 #include "modes/even_fog.h"
 #include "modes/fog_picture.h"
 #include "modes/style.h"
@@ -133,23 +134,6 @@ template<class T> Image<T> blurred(const RadialBlur& blur, const Image<T>& black
     return result;
 }
 
-// Mean of the pixels that each pixel of a smaller picture covers.
-Image<vec3> shrunk(const Image<vec3>& image, ivec2 size, float threshold) {
-    Image<vec3> result(size);
-    parallel_for(size.y, [&](int64_t row) {
-        const int y = static_cast<int>(row);
-        for (int x = 0; x < size.x; ++x) {
-            const ivec2 low = ivec2(x, y) * image.size / size;
-            const ivec2 high = glm::max((ivec2(x, y) + 1) * image.size / size, low + 1);
-            vec3 sum(0);
-            for (int j = low.y; j < high.y; ++j)
-                for (int i = low.x; i < high.x; ++i) sum += image.at(i, j) * luminance_above(image.at(i, j), threshold);
-            result.at(x, y) = sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
-        }
-    });
-    return result;
-}
-
 // Bright sky around the light where nothing stands before it; BLEND surfaces let their share through.
 Image<float> occlusion_buffer(const RadialBlur& blur, const BlurLight& light, ivec2 size) {
     Image<float> mask(size);
@@ -211,7 +195,8 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
 
     Image<vec3> highlights;
     if (blur.settings.source == BlurSource::highlights)
-        highlights = shrunk(picture.color, size, blur.settings.threshold);
+        highlights = shrunk(picture.color, size,
+                            [&](vec3 color) { return color * luminance_above(color, blur.settings.threshold); });
     for (const BlurLight& light : blur.lights) {
         const vec2 center = light.position * vec2(size) / vec2(full);
         const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(full.y);

@@ -73,9 +73,7 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     const Snapshot& snapshot = packet.march.snapshot;
     result.radiance = vec3(0);
     for (size_t m = 0; m < packet.media(); ++m) {
-        const Optics& optics = snapshot.media[m].optics;
-        const vec3 glow = optics.albedo * snapshot.ambient + optics.emission / optics.extinction;
-        result.radiance += glow * packet.scratch.glowing[m][lane];
+        result.radiance += glow_per_extinction(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
     }
     for (size_t i = 0; i < packet.lights(); ++i) {
         vec3 part(0);

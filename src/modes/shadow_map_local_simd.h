@@ -13,29 +13,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// What arrives from a local light with no surface in the way, as arrival() of scene/light.h.
-struct Arriving {
-    Vec3s to_light; // unit
-    Floats amount;  // multiplies the light's intensity
-};
-
-HWY_INLINE Arriving arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
-    const Vec3s offset = splat(light.position) - position;
-    const float reach = std::max(light.radius, smallest_radius);
-    const Floats squared = dot(offset, offset), distance = max(sqrt(squared), 1e-12f);
-    Arriving result{offset * (1.0f / distance), 1.0f / max(squared, reach * reach)};
-    if (!std::isinf(light.range)) {
-        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
-        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
-    }
-    if (light.kind == LightKind::spot) {
-        const Floats cosine = -dot(result.to_light, splat(light.direction));
-        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-        result.amount = result.amount * edge * edge;
-    }
-    return result;
-}
-
 // Optical depth from the eye to increasing t: linear between the borders of the rays' steps.
 struct DepthAlong {
     const Packet& packet;

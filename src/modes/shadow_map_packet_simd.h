@@ -11,6 +11,7 @@
 #include "modes/shadow_map_kernel.h"
 #include "modes/style_simd.h"
 #include "trace/light_depth_simd.h"
+#include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"

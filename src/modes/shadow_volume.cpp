@@ -1,6 +1,7 @@
 // Shadow volumes: exact shafts without noise.
 #include "modes/shadow_volume.h"
 
+#include "modes/limits.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
@@ -28,16 +29,8 @@ void add_fog_limits(const Snapshot& snapshot, const Settings& settings, std::vec
             limits.push_back({Severity::info, where,
                               "sampled in " + std::to_string(settings.shadow_volume.steps) +
                                   " steps a ray: detail finer than a step is smoothed (shadow_volume.steps)"});
-        Box box = medium.world_bounds;
-        box.low = glm::max(box.low, snapshot.bounds.low), box.high = glm::min(box.high, snapshot.bounds.high);
-        const float thickness = box.empty() ? 0 : medium.majorant() * glm::length(box.size());
-        const float scattered = thickness * max_component(medium.optics.albedo);
-        if (scattered > 0.5f)
-            limits.push_back({scattered > 2 ? Severity::degraded : Severity::info, where,
-                              "light scatters once only: real fog this thick is brighter and softer"});
     }
-    if (max_component(snapshot.ambient) > 0)
-        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+    add_single_scattering_limits(snapshot, limits);
 }
 }
 

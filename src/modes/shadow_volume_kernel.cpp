@@ -206,8 +206,7 @@ void find_depths(Packet& packet, float (&depth)[16]) {
 vec3 even_glow(const ShadowVolumeFrame& frame) {
     vec3 common(0);
     for (const Medium& medium : frame.snapshot.media) {
-        const Optics& optics = medium.optics;
-        const vec3 own = optics.albedo * frame.snapshot.ambient + optics.emission / optics.extinction;
+        const vec3 own = glow_per_extinction(medium.optics, frame.snapshot.ambient);
         if (&medium != &frame.snapshot.media.front() && own != common) return vec3(-1);
         common = own;
     }

@@ -10,6 +10,7 @@
 #include "base/simd.h"
 #include "modes/shadow_volume.h"
 #include "trace/light_depth_simd.h"
+#include "trace/light_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
 
@@ -46,42 +47,21 @@ struct Packet {
     int asked[16] = {};
 };
 
-// What reaches each point of a light with nothing in the way, as arrival() of scene/light.h.
-HWY_INLINE Floats arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position, Vec3s& to_light) {
-    if (light.kind == LightKind::sun) return to_light = splat(-light.direction), 1.0f;
-    const Vec3s offset = splat(light.position) - position;
-    const float reach = std::max(light.radius, smallest_radius);
-    const Floats squared = dot(offset, offset), distance = max(sqrt(squared), 1e-12f);
-    to_light = offset * (1.0f / distance);
-    Floats amount = 1.0f / max(squared, reach * reach);
-    if (!std::isinf(light.range)) {
-        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
-        amount = amount * max(min(1.0f - fourth, 1.0f), 0.0f);
-    }
-    if (light.kind == LightKind::spot) {
-        const Floats cosine = -dot(to_light, splat(light.direction));
-        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-        amount = amount * edge * edge;
-    }
-    return amount;
-}
-
 // Light of one light scattered towards the eye per metre.
 HWY_INLINE Vec3s scattered(const ShadowVolumeFrame& frame, size_t index, const Vec3s& position,
                            const Vec3s& direction) {
     const Light& light = frame.snapshot.lights[index];
-    Vec3s to_light;
-    const Floats amount = arriving(light, frame.cones[index], position, to_light);
+    const Arriving light_at = arriving(light, frame.cones[index], position);
     const Vec3s color = splat(light.intensity * light.volume_scale);
-    const Floats cosine = dot(to_light, direction);
+    const Floats cosine = dot(light_at.to_light, direction);
     Vec3s scattering = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Floats extinction = density16(medium, position) * medium.optics.extinction;
         scattering =
             fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
     }
-    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, amount > 0.0f));
-    return scattering * (amount * dimmed) * color;
+    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, light_at.amount > 0.0f));
+    return scattering * (light_at.amount * dimmed) * color;
 }
 
 // Emission and ambient light per metre.

@@ -14,6 +14,11 @@ Medium at_mean_density(const Medium& medium) {
     even.bricks = nullptr;
     return even;
 }
+
+// A snapshot's media all take light away.
+void drop_clear(std::vector<Medium>& media) {
+    std::erase_if(media, [](const Medium& medium) { return !(medium.optics.extinction > 0); });
+}
 }
 
 bool is_stylised(const Settings& settings) {
@@ -28,6 +33,7 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
         medium.optics.extinction *= style.density;
         medium.optics.emission *= style.density * style.tint;
     }
+    drop_clear(result.media);
     for (Light& light : result.lights) light.intensity *= style.tint;
     result.ambient *= style.tint;
     return result;
@@ -36,6 +42,7 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
 std::vector<Medium> even_media(std::span<const Medium> media) {
     std::vector<Medium> result;
     for (const Medium& medium : media) result.push_back(at_mean_density(medium));
+    drop_clear(result);
     return result;
 }
 }

@@ -1,27 +1,12 @@
 #include "render/contact_sheet.h"
 
+#include "base/shrink.h"
 #include "render/lettering.h"
 #include "render/png.h"
 
 namespace tyndall {
 namespace {
 constexpr int widest_tile = 640, gap = 4;
-
-// Mean of the linear pixels that each pixel of the smaller picture covers.
-Image<vec3> shrunk(const Image<vec3>& image, ivec2 size) {
-    if (size == image.size) return image;
-    Image<vec3> result(size);
-    for (int y = 0; y < size.y; ++y)
-        for (int x = 0; x < size.x; ++x) {
-            const ivec2 low = ivec2(x, y) * image.size / size;
-            const ivec2 high = glm::max((ivec2(x, y) + 1) * image.size / size, low + 1);
-            vec3 sum(0);
-            for (int j = low.y; j < high.y; ++j)
-                for (int i = low.x; i < high.x; ++i) sum += image.at(i, j);
-            result.at(x, y) = sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
-        }
-    return result;
-}
 
 void put(const Image<glm::u8vec3>& tile, ivec2 corner, Image<glm::u8vec3>& sheet) {
     for (int y = 0; y < tile.size.y; ++y)
@@ -42,7 +27,8 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, floa
     Image<glm::u8vec3> sheet({columns * (tile.x + gap) + gap, rows * (tile.y + strip + gap) + gap}, glm::u8vec3(24));
     for (int i = 0; i < count; ++i) {
         const ivec2 corner = ivec2(i % columns, i / columns) * (tile + ivec2(gap, strip + gap)) + gap;
-        put(display_codes(shrunk(pictures[i].color, tile), exposure), corner, sheet);
+        const auto same = [](vec3 color) { return color; };
+        put(display_codes(shrunk(pictures[i].color, tile, same), exposure), corner, sheet);
         draw_text(sheet, corner + ivec2(2 * scale, tile.y + 2 * scale), scale, pictures[i].title, glm::u8vec3(235));
         draw_text(sheet, corner + ivec2(2 * scale, tile.y + (2 + letter_height) * scale), scale, pictures[i].remark,
                   glm::u8vec3(150));

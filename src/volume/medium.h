@@ -16,6 +16,11 @@ struct Optics {
     vec3 emission{0}; // radiance per metre at density 1
 };
 
+// What fog sends on of emission and even light from all around, per unit of its extinction, which is not 0.
+inline vec3 glow_per_extinction(const Optics& optics, vec3 ambient) {
+    return optics.albedo * ambient + optics.emission / optics.extinction;
+}
+
 enum class DensityKind { homogeneous, height, bricks };
 
 struct Medium {

@@ -1,6 +1,6 @@
 // Artist's controls against the closed forms they bend.
 #include "modes/style.h"
-#include "tiny_scenes.h"
+#include "run_mode.h"
 
 #include <gtest/gtest.h>
 
@@ -78,6 +78,21 @@ TEST_P(Styles, RangeFades) {
     styled.style.range = 2.5f;
     EXPECT_NEAR(light(styled) / plain, (2 + 0.25) / 5, 2e-3);
     EXPECT_TRUE(is_stylised(styled));
+}
+
+TEST(Style, FogWithoutDensityIsGone) {
+    Slab slab;
+    slab.snapshot.media.front().optics.emission = vec3(3);
+    slab.snapshot.ambient = vec3(1);
+    Settings styled;
+    styled.style.density = 0;
+    View view;
+    view.camera.position = slab.ray.origin, view.size = ivec2(64);
+    for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume", "cone", "billboard"}) {
+        const Scatter seen = run_mode(mode, view, slab.snapshot, styled, {slab.ray}).front();
+        EXPECT_EQ(seen.radiance, vec3(0)) << mode;
+        EXPECT_EQ(seen.transmittance, 1) << mode;
+    }
 }
 
 TEST(Style, EvenMediaKeepTheirMeanDensity) {

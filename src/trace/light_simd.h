@@ -1,0 +1,42 @@
+// Lights as sixteen points of fog see them (see base/simd.h for how such files are compiled).
+#if defined(TYNDALL_TRACE_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_TRACE_LIGHT_SIMD_H
+#undef TYNDALL_TRACE_LIGHT_SIMD_H
+#else
+#define TYNDALL_TRACE_LIGHT_SIMD_H
+#endif
+
+#include "base/simd.h"
+#include "scene/light.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+// Irradiance of a light with nothing in the way.
+struct Arriving {
+    Vec3s to_light; // unit
+    Floats distance;
+    Floats amount; // multiplies the light's intensity
+};
+
+// As arrival() of scene/light.h. `cone`: the light's cone_falloff().
+HWY_INLINE Arriving arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
+    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
+    const Vec3s offset = splat(light.position) - position;
+    const float reach = std::max(light.radius, smallest_radius);
+    const Floats squared = dot(offset, offset);
+    const Floats distance = max(sqrt(squared), 1e-12f);
+    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
+    if (!std::isinf(light.range)) {
+        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
+        result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
+    }
+    if (light.kind == LightKind::spot) {
+        const Floats cosine = -dot(result.to_light, splat(light.direction));
+        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+        result.amount = result.amount * edge * edge;
+    }
+    return result;
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif
