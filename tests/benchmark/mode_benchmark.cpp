@@ -3,6 +3,8 @@
 //
 //     tyndall_benchmark --benchmark_filter=fog_of_picture/froxel
 //     TYNDALL_MODES=froxel,march TYNDALL_SCENE=scenes/pillars.json TYNDALL_SET=froxel.tile=4 tyndall_benchmark ...
+//     TYNDALL_ISA=avx512 tyndall_benchmark ...
+#include "base/isa.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
 #include "scene/scene.h"
@@ -119,6 +121,7 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
 
 const bool registered = [] {
     flush_denormals();
+    set_isa(option("TYNDALL_ISA", "auto"));
     for (const std::string& name : parts_of(option("TYNDALL_MODES", "froxel,march"), ','))
         for (const bool keep : {false, true})
             benchmark::RegisterBenchmark(("fog_of_picture/" + name + (keep ? "/history" : "")).c_str(), fog_of_picture,
