@@ -58,31 +58,47 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, Stretch stretc
     }
 }
 
-// A light on the lines of one tile.
-struct TileLight {
-    const FroxelScene& scene;
-    const FroxelGrid& grid;
-    const FroxelTiles& tiles;
-    ivec2 at;
-    size_t light;
-    const uint32_t* index; // of the point of a soft light; null = its centre
-    uint32_t seed;
+// A line through a tile as a light sees it.
+struct LitLine {
+    size_t lane;
+    double per_metre; // of planar depth, per metre of the line
 };
 
-// Adds the light on one line of the tile: sums over the line of amounts and of points times amounts, and its length in
+// The lines of up to 16 tiles, side by side: of a spot all rays of each tile, as the edge of a narrow cone runs through
+// froxels; elsewhere one.
+struct LitLines {
+    std::vector<LitLine> lines;
+    std::vector<Ray> rays; // up to the surface
+    std::vector<LightPoint> points;
+};
+
+void find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& light, uint32_t light_index,
+                const ivec2* lanes, size_t ray, const uint32_t* indices, LitLines& found) {
+    found.lines.clear(), found.rays.clear(), found.points.clear();
+    const bool all = light.kind == LightKind::spot;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        const ivec2 at = lanes[lane];
+        if (at.x >= grid.size.x || at.y >= grid.size.y) continue;
+        for (size_t i = all ? 0 : ray; i < (all ? tiles.rays() : ray + 1); ++i) {
+            Ray line = line_ray(grid, grid.pixel_of(vec2(at) + tiles.offsets[i]));
+            const double per_metre = glm::dot(line.direction, grid.camera.forward);
+            const float surface = tiles.depth[grid.tile_index(at) * tiles.rays() + i];
+            line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / per_metre);
+            // Other points for each 4×4 tiles: the same ones again would show as a pattern.
+            const auto block = static_cast<uint32_t>((at.y >> 2) * grid.size.x + (at.x >> 2));
+            found.points.push_back(indices ? light_point(light, line, indices[lane], hash(block, light_index))
+                                           : center_of(light));
+            found.lines.push_back({lane, per_metre}), found.rays.push_back(line);
+        }
+    }
+}
+
+// Adds the light on one line of a tile: sums over the line of amounts and of points times amounts, and its length in
 // each slice.
-void add_line(const TileLight& tile, size_t ray, FroxelArrival* sums, std::vector<double>& lengths) {
-    static thread_local LightAlong along;
+void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, FroxelArrival* sums,
+              std::vector<double>& lengths) {
     static thread_local std::vector<Moments> moments;
-    const FroxelGrid& grid = tile.grid;
-    const Light& light = tile.scene.snapshot.lights[tile.light];
-    Ray line = line_ray(grid, grid.pixel_of(vec2(tile.at) + tile.tiles.offsets[ray]));
-    const double per_metre = glm::dot(line.direction, grid.camera.forward), start = grid.faces.front() / per_metre;
-    const float surface = tile.tiles.depth[grid.tile_index(tile.at) * tile.tiles.rays() + ray];
-    const double end = std::min(grid.faces.back(), surface) / per_metre;
-    line.t_max = static_cast<float>(end);
-    const LightPoint point = tile.index ? light_point(light, line, *tile.index, tile.seed) : center_of(light);
-    find_light(light, point, line, &tile.scene.slices, {}, along);
+    const double start = grid.faces.front() / per_metre, end = line.t_max;
     moments.assign(lengths.size(), {});
     for (const Stretch& s : along.lit) add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
     for (size_t k = 0; k < lengths.size(); ++k) {
@@ -96,14 +112,8 @@ void add_line(const TileLight& tile, size_t ray, FroxelArrival* sums, std::vecto
     }
 }
 
-// The edge of a narrow cone runs through froxels: all lines of the tile tell how much of it is lit. Elsewhere one does.
-void light_tile(const TileLight& tile, size_t ray, FroxelArrival* arrivals) {
-    static thread_local std::vector<double> lengths;
-    lengths.assign(static_cast<size_t>(tile.grid.slices()), 0);
-    if (tile.scene.snapshot.lights[tile.light].kind == LightKind::spot)
-        for (size_t each = 0; each < tile.tiles.rays(); ++each) add_line(tile, each, arrivals, lengths);
-    else
-        add_line(tile, ray, arrivals, lengths);
+// Sums of a tile's lines to what arrives on average.
+void settle(const std::vector<double>& lengths, FroxelArrival* arrivals) {
     for (size_t k = 0; k < lengths.size(); ++k) {
         if (!(arrivals[k].amount > 0)) continue;
         arrivals[k].point /= arrivals[k].amount;
@@ -166,19 +176,23 @@ FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, cons
     FroxelLit lit;
     lit.lights = lights.size(), lit.slices = static_cast<size_t>(grid.slices());
     lit.arrivals.assign(16 * lit.lights * lit.slices, {});
-    for (size_t lane = 0; lane < 16; ++lane) {
-        if (lanes[lane].x >= grid.size.x || lanes[lane].y >= grid.size.y) continue;
-        // Other points for each 4×4 tiles: the same ones again would show as a pattern.
-        const auto block = static_cast<uint32_t>((lanes[lane].y >> 2) * grid.size.x + (lanes[lane].x >> 2));
-        for (size_t i = 0; i < lights.size(); ++i) {
-            const TileLight light{scene,
-                                  grid,
-                                  tiles,
-                                  lanes[lane],
-                                  i,
-                                  indices ? &indices[lane] : nullptr,
-                                  hash(block, static_cast<uint32_t>(i))};
-            light_tile(light, ray, &lit.arrivals[(lane * lit.lights + i) * lit.slices]);
+    static thread_local LitLines found;
+    static thread_local LightAlong along;
+    static thread_local std::vector<double> lengths;
+    for (size_t i = 0; i < lights.size(); ++i) {
+        find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices, found);
+        if (found.lines.empty()) continue;
+        const ShadowSlices near =
+            lights[i].shadows ? near_rays(scene.slices, found.rays, found.points) : ShadowSlices{};
+        lengths.assign(lit.slices, 0);
+        for (size_t k = 0; k < found.lines.size(); ++k) {
+            const auto [lane, per_metre] = found.lines[k];
+            FroxelArrival* arrivals = &lit.arrivals[(lane * lit.lights + i) * lit.slices];
+            find_light(lights[i], found.points[k], found.rays[k], &near, {}, along);
+            add_line(grid, found.rays[k], per_metre, along, arrivals, lengths);
+            if (k + 1 < found.lines.size() && found.lines[k + 1].lane == lane) continue;
+            settle(lengths, arrivals);
+            lengths.assign(lit.slices, 0);
         }
     }
     return lit;

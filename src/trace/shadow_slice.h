@@ -22,6 +22,20 @@ inline ShadowSlice::Point between(ShadowSlice::Point a, ShadowSlice::Point b, do
     return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
 }
 
+// Half spaces: x·p.x + y·p.y + z·p.z >= least. Those not used hold everything.
+struct ShadowFan {
+    alignas(64) double x[8] = {}, y[8] = {}, z[8] = {}, least[8] = {};
+};
+
+// What holds everything between a ray and its light: the plane itself from both sides, and in it the fan that the light
+// spans with the ray.
+ShadowFan make_fan(const ShadowSlice& slice);
+
+// Appends the leaves that a fan meets.
+void append_leaves(const ShadowSlices& slices, const ShadowFan& fan, std::vector<ShadowSlices::Node>& leaves);
+
+ShadowSlice make_slice(const Ray& ray, const LightPoint& light);
+
 // Appends the segments in which the triangles between ray and light cross the plane.
 void append_segments(const ShadowSlices& slices, const ShadowSlice& slice, std::vector<ShadowSlice::Segment>& segments);
 }

@@ -3,33 +3,10 @@
 
 namespace tyndall {
 namespace {
-constexpr double farthest = 1e9; // metres
 constexpr double reach = 0.9999; // of the way to a local light: where shadow rays end
 
 using Point = ShadowSlice::Point;
 using Slice = ShadowSlice;
-
-Slice make_slice(const Ray& ray, const LightPoint& light) {
-    Slice slice;
-    slice.origin = dvec3(ray.origin), slice.far = light.far;
-    slice.per_metre = glm::length(dvec3(ray.direction));
-    slice.x = dvec3(ray.direction) / slice.per_metre;
-    slice.x_max = std::min<double>(ray.t_max, farthest) * slice.per_metre;
-    const dvec3 towards = light.far ? light.at : light.at - slice.origin;
-    dvec3 across = towards - glm::dot(towards, slice.x) * slice.x;
-    across -= glm::dot(across, slice.x) * slice.x; // what rounding left along the ray, felt when `across` is small
-    const dvec3 size = glm::abs(slice.origin);
-    const double hair = 1e-9 * glm::length(towards) + (light.far ? 0 : 1e-12 * std::max({size.x, size.y, size.z, 1.0}));
-    slice.light_x = glm::dot(towards, slice.x), slice.light_y = glm::length(across);
-    if (slice.light_y > hair) {
-        slice.y = across / slice.light_y;
-    } else {
-        const dvec3 other = std::abs(slice.x.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-        slice.y = glm::normalize(glm::cross(slice.x, other)), slice.light_y = hair;
-    }
-    slice.normal = glm::cross(slice.x, slice.y);
-    return slice;
-}
 
 // Appends the stretch that a segment shadows: the point (x, y) lies on the way from t to the light when
 // t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 else, and 0 < y < ly.

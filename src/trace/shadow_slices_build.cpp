@@ -24,9 +24,8 @@ void append_node(std::vector<Triangle>& triangles, uint32_t first, uint32_t end,
     const auto begin = triangles.begin();
     std::nth_element(begin + first, begin + half, begin + end,
                      [&](const Triangle& a, const Triangle& b) { return middle(a)[axis] < middle(b)[axis]; });
-    append_node(triangles, first, half, slices);
+    append_node(triangles, first, half, slices), append_node(triangles, half, end, slices);
     slices.nodes[at].first = static_cast<uint32_t>(slices.nodes.size()), slices.nodes[at].count = 0;
-    append_node(triangles, half, end, slices);
 }
 }
 
@@ -37,11 +36,14 @@ ShadowSlices make_shadow_slices(const std::vector<ShadowTriangle>& triangles) {
     ShadowSlices slices;
     if (opaque.empty()) return slices;
     append_node(opaque, 0, static_cast<uint32_t>(opaque.size()), slices);
+    auto corners = std::make_shared<ShadowSlices::Corners>();
     for (size_t i = 0; i < 9; ++i) {
-        slices.corners[i].reserve(opaque.size() + ShadowSlices::most);
-        for (const Triangle& t : opaque) slices.corners[i].push_back(t.corners[i / 3][static_cast<int>(i % 3)]);
-        slices.corners[i].resize(opaque.size() + ShadowSlices::most);
+        std::vector<float>& values = corners->values[i];
+        values.reserve(opaque.size() + ShadowSlices::most);
+        for (const Triangle& t : opaque) values.push_back(t.corners[i / 3][static_cast<int>(i % 3)]);
+        values.resize(opaque.size() + ShadowSlices::most);
     }
+    slices.corners = std::move(corners);
     return slices;
 }
 }

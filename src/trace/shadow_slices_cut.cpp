@@ -17,44 +17,31 @@ using Doubles = hn::CappedTag<double, 8>;
 using Halves = hn::Rebind<float, Doubles>;
 constexpr size_t double_lanes = hn::MaxLanes(Doubles());
 
-// Half spaces that hold everything between ray and light: the plane itself from both sides, and in it the fan that the
-// light spans with the ray. Those not used hold everything.
-struct Fan {
-    alignas(64) double x[8] = {}, y[8] = {}, z[8] = {}, least[8] = {};
-    int count = 0;
-
-    void add(const ShadowSlice& slice, dvec3 normal, dvec3 point) {
-        normal = glm::normalize(normal);
-        const double slack = 1e-9 * (1 + glm::length(point));
-        x[count] = normal.x, y[count] = normal.y, z[count] = normal.z;
-        least[count++] = glm::dot(normal, slice.origin + point) - slack;
+// Whether every half space holds some corner of the box.
+HWY_INLINE bool meets(const ShadowFan& fan, const ShadowSlices::Node& node) {
+    const Doubles d;
+    for (size_t i = 0; i < 8; i += double_lanes) {
+        const auto highest = [&](const double* normal, double low, double high) HWY_ATTR {
+            const auto n = hn::Load(d, normal + i);
+            return hn::Max(hn::Mul(n, hn::Set(d, low)), hn::Mul(n, hn::Set(d, high)));
+        };
+        const auto sum =
+            hn::Add(hn::Add(highest(fan.x, node.low.x, node.high.x), highest(fan.y, node.low.y, node.high.y)),
+                    highest(fan.z, node.low.z, node.high.z));
+        if (!hn::AllFalse(d, hn::Lt(sum, hn::Load(d, fan.least + i)))) return false;
     }
+    return true;
+}
 
-    // Whether every half space holds some corner of the box.
-    HWY_INLINE bool meets(const ShadowSlices::Node& node) const {
-        const Doubles d;
-        for (size_t i = 0; i < 8; i += double_lanes) {
-            const auto highest = [&](const double* normal, double low, double high) HWY_ATTR {
-                const auto n = hn::Load(d, normal + i);
-                return hn::Max(hn::Mul(n, hn::Set(d, low)), hn::Mul(n, hn::Set(d, high)));
-            };
-            const auto sum = hn::Add(hn::Add(highest(x, node.low.x, node.high.x), highest(y, node.low.y, node.high.y)),
-                                     highest(z, node.low.z, node.high.z));
-            if (!hn::AllFalse(d, hn::Lt(sum, hn::Load(d, least + i)))) return false;
-        }
-        return true;
+// Goes through the leaves that the fan meets.
+template<class Visit> HWY_INLINE void visit_leaves(const ShadowSlices& slices, const ShadowFan& fan, Visit visit) {
+    const auto end = static_cast<uint32_t>(slices.nodes.size());
+    for (uint32_t at = 0; at < end;) {
+        const ShadowSlices::Node& node = slices.nodes[at];
+        const bool met = meets(fan, node);
+        if (met && node.count > 0) visit(node);
+        at = met || node.count > 0 ? at + 1 : node.first;
     }
-};
-
-Fan make_fan(const ShadowSlice& s) {
-    Fan fan;
-    fan.add(s, s.normal, dvec3(0)), fan.add(s, -s.normal, dvec3(0));
-    fan.add(s, s.y, dvec3(0));
-    if (!s.far) fan.add(s, -s.y, s.light_y * s.y);
-    const double back_x = s.far ? s.light_x : s.light_x - s.x_max; // from the ray's end to the light
-    fan.add(s, s.light_y * s.x - s.light_x * s.y, dvec3(0));
-    fan.add(s, back_x * s.y - s.light_y * s.x, s.x_max * s.x);
-    return fan;
 }
 
 // Heights of a leaf's corners above the plane.
@@ -62,7 +49,8 @@ struct Heights {
     alignas(64) double corners[3][8];
     uint32_t cut = 0; // bits of the triangles with corners on both sides
 };
-HWY_INLINE void set_heights(const ShadowSlices& slices, const ShadowSlice& slice, uint32_t first, Heights& heights) {
+HWY_INLINE void set_heights(const ShadowSlices::Corners& corners, const ShadowSlice& slice, uint32_t first,
+                            Heights& heights) {
     const Doubles d;
     uint32_t all = 0xff, some = 0;
     for (size_t corner = 0; corner < 3; ++corner) {
@@ -70,7 +58,7 @@ HWY_INLINE void set_heights(const ShadowSlices& slices, const ShadowSlice& slice
         for (size_t i = 0; i < 8; i += double_lanes) {
             auto sum = hn::Zero(d);
             for (int axis = 0; axis < 3; ++axis) {
-                const float* values = slices.corners[3 * corner + static_cast<size_t>(axis)].data() + first + i;
+                const float* values = corners.values[3 * corner + static_cast<size_t>(axis)].data() + first + i;
                 const auto value = hn::PromoteTo(d, hn::LoadU(Halves(), values));
                 const auto offset = hn::Sub(value, hn::Set(d, slice.origin[axis]));
                 sum = hn::MulAdd(hn::Set(d, slice.normal[axis]), offset, sum);
@@ -87,13 +75,13 @@ HWY_INLINE void set_heights(const ShadowSlices& slices, const ShadowSlice& slice
 
 // The segment in which a cut triangle crosses the plane. A corner in the plane counts as above it, and points on edges
 // are worked out from the upper end: neighbours agree on them to the last bit, so no light leaks between.
-void append_segment(const ShadowSlices& slices, const ShadowSlice& slice, uint32_t triangle, const double height[3],
-                    std::vector<ShadowSlice::Segment>& segments) {
+void append_segment(const ShadowSlices::Corners& corners, const ShadowSlice& slice, uint32_t triangle,
+                    const double height[3], std::vector<ShadowSlice::Segment>& segments) {
     const bool above[3] = {height[0] >= 0, height[1] >= 0, height[2] >= 0};
     const int lone = above[1] == above[2] ? 0 : above[0] == above[2] ? 1 : 2;
     ShadowSlice::Point points[3];
     for (size_t i = 0; i < 3; ++i) {
-        const dvec3 corner = dvec3(slices.corner(triangle, i)) - slice.origin;
+        const dvec3 corner = dvec3(corners.of(triangle, i)) - slice.origin;
         points[i] = {glm::dot(slice.x, corner), glm::dot(slice.y, corner)};
     }
     const auto crossing = [&](int i, int j) {
@@ -105,27 +93,20 @@ void append_segment(const ShadowSlices& slices, const ShadowSlice& slice, uint32
 
 void append_segments_kernel(const ShadowSlices& slices, const ShadowSlice& slice,
                             std::vector<ShadowSlice::Segment>& segments) {
-    const Fan fan = make_fan(slice);
-    uint32_t stack[64];
-    int waiting = 0;
-    stack[waiting++] = 0;
-    while (waiting > 0) {
-        const uint32_t at = stack[--waiting];
-        const ShadowSlices::Node& node = slices.nodes[at];
-        if (!fan.meets(node)) continue;
-        if (node.count == 0) {
-            stack[waiting++] = node.first, stack[waiting++] = at + 1;
-            continue;
-        }
+    visit_leaves(slices, make_fan(slice), [&](const ShadowSlices::Node& leaf) HWY_ATTR {
         Heights heights;
-        set_heights(slices, slice, node.first, heights);
-        const uint32_t here = heights.cut & ((1u << node.count) - 1);
+        set_heights(*slices.corners, slice, leaf.first, heights);
+        const uint32_t here = heights.cut & ((1u << leaf.count) - 1);
         for (uint32_t left = here; left; left &= left - 1) {
             const auto i = static_cast<uint32_t>(std::countr_zero(left));
             const double height[] = {heights.corners[0][i], heights.corners[1][i], heights.corners[2][i]};
-            append_segment(slices, slice, node.first + i, height, segments);
+            append_segment(*slices.corners, slice, leaf.first + i, height, segments);
         }
-    }
+    });
+}
+
+void append_leaves_kernel(const ShadowSlices& slices, const ShadowFan& fan, std::vector<ShadowSlices::Node>& leaves) {
+    visit_leaves(slices, fan, [&](const ShadowSlices::Node& leaf) HWY_ATTR { leaves.push_back(leaf); });
 }
 }
 }
@@ -134,9 +115,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(append_segments_kernel);
+HWY_EXPORT(append_leaves_kernel);
 void append_segments(const ShadowSlices& slices, const ShadowSlice& slice,
                      std::vector<ShadowSlice::Segment>& segments) {
     HWY_DYNAMIC_DISPATCH(append_segments_kernel)(slices, slice, segments);
+}
+void append_leaves(const ShadowSlices& slices, const ShadowFan& fan, std::vector<ShadowSlices::Node>& leaves) {
+    HWY_DYNAMIC_DISPATCH(append_leaves_kernel)(slices, fan, leaves);
 }
 }
 #endif

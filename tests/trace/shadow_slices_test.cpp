@@ -267,6 +267,37 @@ TEST(ShadowSlices, AgreeWithShadowRaysInRandomSoups) {
     }
 }
 
+// Bundles of rays of one origin, each with a point of its own of the light.
+TEST(ShadowSlices, LeavesNearSomeRaysAnswerAsAllDo) {
+    const Stage stage = stage_of({soup(4000, 7, 0.05f)});
+    const Box box{vec3(-1.5f), vec3(1.5f)};
+    const size_t leaves = std::ranges::count_if(stage.slices.nodes, [](const auto& node) { return node.count > 0; });
+    for (const float spread : {0.0f, 0.02f, 0.3f, 3.0f}) {
+        size_t kept = 0;
+        for (int i = 0; i < 60; ++i) {
+            const vec3 origin = random_point(i, 31, box), ahead = random_direction(i, 32);
+            const LightPoint light = i % 2 ? sun_from(random_direction(i, 33)) : lamp_at(random_point(i, 34, box));
+            std::vector<Ray> rays;
+            std::vector<LightPoint> points;
+            for (int k = 0; k < 16; ++k) {
+                const vec3 aside = spread * random_point(16 * i + k, 35, {vec3(-1), vec3(1)});
+                rays.push_back({origin, glm::normalize(ahead + aside), i % 5 ? 0.1f + 0.2f * k : infinity});
+                points.push_back(light);
+                points.back().at += 0.1 * dvec3(aside);
+                if (light.far) points.back().at = glm::normalize(points.back().at);
+            }
+            const ShadowSlices near = near_rays(stage.slices, rays, points);
+            kept += near.nodes.size();
+            for (size_t k = 0; k < 16; ++k) {
+                std::vector<Stretch> lit;
+                find_lit(near, rays[k], points[k], lit);
+                expect_lit(lit, stage.lit(rays[k], points[k]), 0);
+            }
+        }
+        EXPECT_LT(kept, 60 * leaves / (spread < 0.1f ? 4 : 1)) << spread;
+    }
+}
+
 TEST(ShadowSlices, AgreeWithShadowRaysInTheExampleScenes) {
     for (const char* name : {"window", "spotlight", "pillars", "lantern"}) {
         Stage stage;
