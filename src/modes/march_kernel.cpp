@@ -8,6 +8,7 @@
 #include "base/simd.h"
 #include "modes/batch_simd.h"
 #include "modes/style_simd.h"
+#include "scene/cone.h"
 #include "trace/light_depth_simd.h"
 #include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"
@@ -44,7 +45,7 @@ struct Totals {
 struct Points {
     Vec3s position;
     Floats length; // of the step, 0 in lanes that are done
-    Mask16 active; // lanes with fog here
+    Mask16 active;      // lanes with fog here
 };
 
 // The stretch of a ray from first to last fog.
@@ -58,13 +59,32 @@ Interval fog_stretch(const March& march, const Ray& ray) {
     return stretch;
 }
 
+// The parts of a piece of a ray inside the cones of spots, from its start.
+void find_beams(const March& march, const Ray& ray, Interval piece, std::vector<Step>& beams) {
+    beams.clear();
+    for (const Light& light : march.snapshot.lights) {
+        if (light.kind != LightKind::spot) continue;
+        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
+        const float low = std::max(static_cast<float>(cone.low), piece.low) - piece.low;
+        const float high = std::min(static_cast<float>(cone.high), piece.high) - piece.low;
+        if (!cone.empty() && low < high) beams.push_back({low, high});
+    }
+}
+
 // Steps of one piece of a ray, as long as the settings allow on a piece of that length.
 void append_piece(const March& march, const Ray& ray, Interval piece, std::vector<Step>& steps) {
     if (piece.empty()) return;
     const MarchSettings& settings = march.settings;
-    const StepRule rule{
-        settings.step_depth, settings.step_voxels, std::min(settings.step_length, settings.step_share * piece.length()),
-        settings.max_steps,  march.near_points,    settings.near_light};
+    static thread_local std::vector<Step> beams;
+    find_beams(march, ray, piece, beams);
+    const StepRule rule{settings.step_depth,
+                        settings.step_voxels,
+                        std::min(settings.step_length, settings.step_share * piece.length()),
+                        settings.max_steps,
+                        march.near_points,
+                        settings.near_light,
+                        beams,
+                        8 / settings.near_light};
     const size_t first = steps.size();
     append_steps({ray.at(piece.low), ray.direction, piece.length()}, march.snapshot.media, rule, steps);
     for (size_t i = first; i < steps.size(); ++i) steps[i].low += piece.low, steps[i].high += piece.low;

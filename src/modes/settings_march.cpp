@@ -14,7 +14,8 @@ void append_march_rows(std::vector<SettingRow>& rows) {
                               "longest step as a share of the ray's stretch through fog",
                               TYNDALL_FIELD(march.step_share)));
     rows.push_back(number_row("march.near_light", "", 0.005, 10,
-                              "a step is at most this share of the distance to a local light",
+                              "a step is at most this share of the distance to a local light, and an eighth "
+                              "of it of the way through the beam of a spot",
                               TYNDALL_FIELD(march.near_light)));
     rows.push_back(number_row("march.max_steps", "", 1, 1e6,
                               "most steps per ray; they get longer beyond (slices take all they need)",

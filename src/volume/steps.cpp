@@ -44,17 +44,27 @@ void collect_spans(const Ray& ray, std::span<const Medium> media, const StepRule
     }
 }
 
-// Cuts the spans where a local light asks for smaller steps.
+void refine(Scratch& scratch) {
+    if (scratch.more.empty()) return;
+    scratch.merged.clear();
+    overlay(scratch.spans, scratch.more, false, scratch.merged);
+    std::swap(scratch.spans, scratch.merged);
+}
+
+// Cuts the spans where a local light or its beam asks for smaller steps.
 void refine_near(const Ray& ray, const StepRule& rule, const Rates& rates, Scratch& scratch) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Span& span : scratch.spans) lowest = std::min(lowest, rates.of(span));
     for (const vec3 point : rule.near_points) {
         scratch.more.clear();
         append_near_spans(ray, point, rule.near_ratio, 1 / lowest, scratch.more);
-        if (scratch.more.empty()) continue;
-        scratch.merged.clear();
-        overlay(scratch.spans, scratch.more, false, scratch.merged);
-        std::swap(scratch.spans, scratch.merged);
+        refine(scratch);
+    }
+    for (const Step& beam : rule.beams) {
+        const double low = beam.low, high = beam.high, rate = rule.beam_steps / (high - low);
+        scratch.more.clear();
+        if (high > low && rate > lowest) scratch.more.push_back({low, high, 0, rate});
+        refine(scratch);
     }
 }
 
@@ -118,7 +128,7 @@ void append_steps(const Ray& ray, std::span<const Medium> media, const StepRule&
     static thread_local Scratch scratch;
     collect_spans(ray, media, rule, scratch);
     const Rates rates(rule);
-    if (!rule.near_points.empty()) refine_near(ray, rule, rates, scratch);
+    if (!rule.near_points.empty() || !rule.beams.empty()) refine_near(ray, rule, rates, scratch);
     find_runs(rates, scratch);
 
     const size_t most = static_cast<size_t>(rule.most), runs = scratch.runs.size();

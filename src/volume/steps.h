@@ -17,6 +17,8 @@ struct StepRule {
     int most = 4096;                   // steps a ray may take; longer steps beyond
     std::span<const vec3> near_points; // positions of local lights ...
     float near_ratio = 0.25f;          // ... a step is at most this share of the distance to each (counted as >= 1 mm)
+    std::span<const Step> beams{};     // stretches of the ray that need steps of their own ...
+    float beam_steps = 8;              // ... at least so many, of equal length
 };
 
 // Appends the steps of the ray 0..t_max, ascending and disjoint; together they cover all fog. Steps are equal shares of

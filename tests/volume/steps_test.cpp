@@ -222,6 +222,25 @@ TEST(Steps, ShrinkTowardsLocalLights) {
     EXPECT_EQ(steps_of(ray, fog, rule).size(), 12u);
 }
 
+// Two beams that overlap, one that is wider than its steps are anyway, and one outside the fog.
+TEST(Steps, BeamsGetStepsOfTheirOwn) {
+    const Medium fog = homogeneous(0.01f, {vec3(0, -1, -1), vec3(20, 1, 1)});
+    const Step beams[] = {{3, 3.2f}, {3.1f, 3.5f}, {4, 16}, {30, 31}};
+    StepRule rule;
+    rule.length = 1, rule.optical_depth = 10, rule.beams = beams, rule.beam_steps = 8;
+    const auto steps = steps_of(Ray{vec3(0), vec3(1, 0, 0), 60}, fog, rule);
+    for (const Step& step : steps) {
+        EXPECT_LE(step.high - step.low, 1.0001f);
+        // Shares of the local bounds added up: a step inside one bound is no longer than that.
+        const float longest = step.high <= 3.2f ? 0.2f / 8 : 0.4f / 8;
+        if (step.low >= 3 && step.high <= 3.5f && (step.high <= 3.2f || step.low >= 3.2f)) {
+            EXPECT_LE(step.high - step.low, longest * 1.0001f) << step.low;
+        }
+    }
+    // 8 in the first beam, 6 in what the second has beyond it, 19.5 elsewhere.
+    EXPECT_EQ(steps.size(), 34u);
+}
+
 TEST(Steps, RayThroughALightStaysFinite) {
     const vec3 light(7, 0, 0);
     StepRule rule;
