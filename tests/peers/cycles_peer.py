@@ -1,10 +1,11 @@
 """Runs inside Blender: blender -b --factory-startup --python-exit-code 3 -P cycles_peer.py -- JOB.json
 A job renders a scene with Cycles ({scene, vdb, voxel_size, orders, samples, step_rate, seeds, output}: the picture
-OUTPUT#.npy per seed) or turns EXR files into arrays ({exr: [paths]}: a .npy beside each)."""
+OUTPUT#.exr and .npy per seed, and OUTPUT#.seconds) or turns EXR files into arrays ({exr: [paths]}: a .npy beside each)."""
 import json
 import math
 import pathlib
 import sys
+import time
 import types
 
 try:
@@ -15,7 +16,7 @@ except ImportError:
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from scenes import ALL_ORDERS, HEIGHT, WIDTH  # noqa: E402
+from scenes import ALL_ORDERS  # noqa: E402
 
 
 def z_up(v):
@@ -119,7 +120,7 @@ def add_camera(camera):
     bpy.context.scene.camera = eye
 
 
-def set_up(orders, samples, step_rate):
+def set_up(orders, samples, step_rate, size):
     """Cycles without its biases: no clamping, no roulette on weak lights, a box filter, fine steps in grids."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -137,7 +138,7 @@ def set_up(orders, samples, step_rate):
     cycles.volume_step_rate = step_rate
     cycles.volume_max_steps = 65536
     scene.world = None
-    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = WIDTH, HEIGHT, 100
+    scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = *size, 100
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
     scene.view_settings.view_transform = "Raw"
@@ -152,11 +153,13 @@ def render(job):
     add_fog(world.fog, job.vdb, job.voxel_size)
     add_light(world.light)
     add_camera(world.camera)
-    set_up(job.orders, job.samples, job.step_rate)
+    set_up(job.orders, job.samples, job.step_rate, world.size)
     for seed in job.seeds:
         bpy.context.scene.cycles.seed = seed
         bpy.context.scene.render.filepath = f"{job.output}{seed}.exr"
+        start = time.time()
         bpy.ops.render.render(write_still=True)
+        pathlib.Path(f"{job.output}{seed}.seconds").write_text(f"{time.time() - start:.3f}\n")
         np.save(f"{job.output}{seed}.npy", pixels(bpy.context.scene.render.filepath))
 
 

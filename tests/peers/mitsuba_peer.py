@@ -8,7 +8,7 @@ except ImportError:
     sys.exit("mitsuba_peer.py: mitsuba is missing (pip install mitsuba)")
 import numpy as np
 
-from scenes import ALL_ORDERS, HEIGHT, WIDTH
+from scenes import ALL_ORDERS
 
 mi.set_variant("scalar_rgb")
 
@@ -44,7 +44,7 @@ def load(scene, orders, voxels):
         "integrator": {"type": "volpath", "max_depth": -1 if orders == ALL_ORDERS else orders + 1, "rr_depth": 64},
         "sensor": {"type": "perspective", "fov": camera.vertical_fov, "fov_axis": "y",
                    "to_world": mi.ScalarTransform4f().look_at(camera.position, camera.target, (0, 1, 0)),
-                   "film": {"type": "hdrfilm", "width": WIDTH, "height": HEIGHT, "rfilter": {"type": "box"}}},
+                   "film": {"type": "hdrfilm", "width": scene.size[0], "height": scene.size[1], "rfilter": {"type": "box"}}},
         "fog": {"type": "cube", "to_world": box_to_world(low, high), "bsdf": {"type": "null"}, "interior": fog},
     }
     if light.kind == "sun":

@@ -8,8 +8,6 @@ import math
 
 import numpy as np
 
-from scenes import HEIGHT, WIDTH
-
 STEPS, LIGHT_STEPS = 64, 24
 
 
@@ -17,15 +15,16 @@ def unit(v):
     return np.array(v) / np.linalg.norm(v)
 
 
-def camera_rays(camera, random):
+def camera_rays(camera, size, random):
     """One ray through a random point of every pixel."""
     forward = unit(np.subtract(camera.target, camera.position))
     right = unit(np.cross(forward, (0, 1, 0)))
     up = np.cross(right, forward)
-    x, y = np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT))
+    width, height = size
+    x, y = np.meshgrid(np.arange(width), np.arange(height))
     half = math.tan(math.radians(camera.vertical_fov) / 2)
-    u = (2 * (x + random.random(x.shape)) / WIDTH - 1) * half * WIDTH / HEIGHT
-    v = (1 - 2 * (y + random.random(y.shape)) / HEIGHT) * half
+    u = (2 * (x + random.random(x.shape)) / width - 1) * half * width / height
+    v = (1 - 2 * (y + random.random(y.shape)) / height) * half
     direction = (forward + u[..., None] * right + v[..., None] * up).reshape(-1, 3)
     return np.array(camera.position, float), direction / np.linalg.norm(direction, axis=1, keepdims=True)
 
@@ -120,7 +119,7 @@ def render(scene, voxels, seed):
     """One picture [y, x, rgb]."""
     random = np.random.default_rng(seed)
     fog, bounds = scene.fog, bounds_of(scene.fog, voxels)
-    origin, direction = camera_rays(scene.camera, random)
+    origin, direction = camera_rays(scene.camera, scene.size, random)
     surface, normal, color = first_hit(scene.boxes, origin, direction)
     enter, leave, _ = clip(*bounds, origin, direction)
     enter = np.minimum(np.maximum(enter, 0), surface)
@@ -140,4 +139,4 @@ def render(scene, voxels, seed):
     to_light, irradiance = lit(scene, voxels, bounds, points, random)
     cosine = np.maximum((to_light * normal[hit]).sum(-1), 0)
     picture[hit] += color[hit] / math.pi * (np.exp(-depth[hit]) * irradiance * cosine)[:, None]
-    return picture.reshape(HEIGHT, WIDTH, 3)
+    return picture.reshape(scene.size[1], scene.size[0], 3)

@@ -5,8 +5,6 @@ import struct
 import subprocess
 import sys
 
-from scenes import HEIGHT, WIDTH
-
 FACES = [(4, 5, 7, 6), (1, 0, 2, 3), (5, 1, 3, 7), (0, 4, 6, 2), (6, 7, 3, 2), (0, 1, 5, 4)]  # +z -z +x -x +y -y
 NORMALS = [(0, 0, 1), (0, 0, -1), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)]
 
@@ -57,7 +55,7 @@ def write_scene(scene, folder, program):
         medium |= {"type": "vdb", "file": f"{scene.name}.vdb"}
     else:
         medium |= {"type": "homogeneous", "bounds": {"low": list(fog.low), "high": list(fog.high)}}
-    document = {"tyndall": 1, "resolution": [WIDTH, HEIGHT], "media": [medium],
+    document = {"tyndall": 1, "resolution": list(scene.size), "media": [medium],
                 "camera": {"position": list(camera.position), "target": list(camera.target),
                            "vertical_fov": camera.vertical_fov},
                 "lights": [{"name": "light", "type": light.kind, "intensity": light.intensity,
