@@ -72,15 +72,15 @@ void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, 
 
 // Where the count of volumes around a ray changes.
 struct ShadowCrossing {
-    double t = 0;      // from the eye; from the plane of `place` when rays are parallel
-    double behind = 0; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
+    double t = 0;     // from the eye; from the plane of `place` when rays are parallel
+    float behind = 0; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
     int change = 0;
 };
 
 // Up to 16 rays of a view: their p (see RayProduct), and how far crossings are wanted.
 struct ShadowRays {
     alignas(64) double p[3][16] = {};
-    double end[16] = {};
+    alignas(64) double end[16] = {};
     uint32_t active = 0; // bits
     int tile = -1;       // that all of them lie in; -1 = unknown
     bool edges = true;   // whether crossings tell how far behind an edge they lie
