@@ -71,8 +71,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
-    for (const QuadratureNode& node : gauss_legendre(frame->sampled ? 2 : own.nodes))
-        frame->nodes.push_back({2 * node.at - 1, 2 * node.weight});
+    frame->nodes = gauss_legendre(own.nodes);
 
     std::shared_ptr<const ShadowMesh> mesh;
     for (const Light& light : frame->snapshot.lights) {

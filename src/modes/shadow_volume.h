@@ -23,15 +23,20 @@ struct ShadowVolumeFrame {
     std::vector<Box> uneven; // fog that is not what it is taken for
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
-    std::vector<ShadowCaster> casters; // one per light; without mesh where it casts no shadows
-    std::vector<QuadratureNode> nodes; // on -1..1
+    std::vector<ShadowCaster> casters;     // one per light; without mesh where it casts no shadows
+    std::span<const QuadratureNode> nodes; // on a piece of even fog
 };
 
-// Where a ray is cut: between cuts the fog is smooth, or a step long.
+// Where rays are cut: between cuts the fog is smooth, or a step long.
 struct FogCuts {
-    std::vector<double> at; // ascending; empty without fog
+    std::vector<float> at; // [cut·16 + ray], ascending; the last repeated where other rays have more
+    int pieces[16];        // between the cuts of each ray; 0 without fog
+    int most = 0;          // of any ray
+
+    float low(size_t ray) const { return at[ray]; }
+    float high(size_t ray) const { return at[16 * static_cast<size_t>(pieces[ray]) + ray]; }
 };
-void find_cuts(const ShadowVolumeFrame& frame, const Ray& ray, FogCuts& cuts);
+void find_cuts(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts);
 
 // Fog along up to 16 rays.
 void shadow_volume_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results);
