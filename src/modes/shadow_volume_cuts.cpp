@@ -57,9 +57,10 @@ void divide(const ShadowVolumeFrame& frame, const Ray& ray, double low, double h
 }
 
 // Where fog is smooth but for these kinks.
-void find_even_cuts(const ShadowVolumeFrame& frame, const Ray& ray, double end, std::vector<double>& cuts) {
+void find_even_cuts(const ShadowVolumeFrame& frame, const Ray& ray, std::vector<double>& cuts) {
     static thread_local std::vector<double> kinks;
     kinks.clear();
+    const double end = std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media));
     for (const Medium& medium : frame.snapshot.media) {
         const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, end});
         if (inside.empty()) continue;
@@ -74,40 +75,58 @@ void find_even_cuts(const ShadowVolumeFrame& frame, const Ray& ray, double end, 
         if (kinks[i] > kinks[i - 1]) divide(frame, ray, kinks[i - 1], kinks[i], cuts);
 }
 
-// Steps; the most where the scene is when fog reaches far beyond it.
-void find_steps(const ShadowVolumeFrame& frame, const Ray& ray, float end, std::vector<double>& cuts) {
+// The fog of a ray in three: the most steps are where the scene is when fog reaches far beyond it.
+struct Thirds {
+    float at[4] = {};
+};
+Thirds divide_fog(const ShadowVolumeFrame& frame, const Ray& ray) {
+    const float end = static_cast<float>(std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media)));
     Interval fog{infinity, 0};
     for (const Medium& medium : frame.snapshot.media) {
         const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
         if (!inside.empty()) fog.low = std::min(fog.low, inside.low), fog.high = std::max(fog.high, inside.high);
     }
-    if (fog.empty()) return;
-    const auto add = [&](float low, float high, int count) {
-        const float step = (high - low) / static_cast<float>(count);
-        for (int i = 1; i < count && step > 0; ++i) cuts.push_back(low + step * static_cast<float>(i));
-        if (step > 0) cuts.push_back(high);
-    };
-    cuts.push_back(fog.low);
-    const int steps = frame.settings.steps, few = std::max(steps / 4, 1);
+    if (fog.empty()) return {};
     const Interval scene = clip(frame.snapshot.bounds, ray.origin, ray.direction, fog);
-    if (scene.empty() || fog.length() < 2 * scene.length()) return add(fog.low, fog.high, steps);
-    add(fog.low, scene.low, few), add(scene.low, scene.high, steps), add(scene.high, fog.high, few);
+    if (scene.empty() || fog.length() < 2 * scene.length()) return {{fog.low, fog.low, fog.high, fog.high}};
+    return {{fog.low, scene.low, scene.high, fog.high}};
+}
+
+void find_steps(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts) {
+    float low[3][16] = {}, length[3][16] = {};
+    bool used[3] = {};
+    for (size_t ray = 0; ray < rays.size(); ++ray) {
+        const Thirds thirds = divide_fog(frame, rays[ray]);
+        for (int i = 0; i < 3; ++i) {
+            low[i][ray] = thirds.at[i], length[i][ray] = thirds.at[i + 1] - thirds.at[i];
+            used[i] |= length[i][ray] > 0;
+        }
+    }
+    const int steps = frame.settings.steps, few = std::max(steps / 4, 1);
+    const int counts[3] = {used[0] ? few : 0, used[1] ? steps : 0, used[2] ? few : 0};
+    cuts.most = counts[0] + counts[1] + counts[2];
+    cuts.at.resize(16 * (static_cast<size_t>(cuts.most) + 1));
+    float* at = cuts.at.data();
+    for (int ray = 0; ray < 16; ++ray) at[ray] = low[0][ray], cuts.pieces[ray] = cuts.most;
+    for (int part = 0; part < 3; ++part)
+        for (int k = 1; k <= counts[part]; ++k) {
+            const float share = static_cast<float>(k) / static_cast<float>(counts[part]);
+            at += 16;
+            for (int ray = 0; ray < 16; ++ray) at[ray] = low[part][ray] + length[part][ray] * share;
+        }
+    for (int ray = 0; ray < 16; ++ray)
+        if (!(at[ray] > low[0][ray])) cuts.pieces[ray] = 0;
 }
 }
 
 void find_cuts(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts) {
+    if (frame.sampled) return find_steps(frame, rays, cuts);
     static thread_local std::vector<double> own;
     cuts.most = 0;
     for (size_t ray = 0; ray < 16; ++ray) {
         own.clear();
-        if (ray < rays.size()) {
-            const double end = std::min<double>(rays[ray].t_max, horizon(rays[ray], frame.snapshot.media));
-            if (frame.sampled)
-                find_steps(frame, rays[ray], static_cast<float>(end), own);
-            else
-                find_even_cuts(frame, rays[ray], end, own);
-        }
-        if (cuts.at.size() < 16 * std::max<size_t>(own.size(), 1)) cuts.at.resize(16 * std::max<size_t>(own.size(), 1));
+        if (ray < rays.size()) find_even_cuts(frame, rays[ray], own);
+        if (cuts.at.size() < 16 * (own.size() + 1)) cuts.at.resize(16 * (own.size() + 1));
         cuts.pieces[ray] = std::max(static_cast<int>(own.size()) - 1, 0);
         cuts.most = std::max(cuts.most, cuts.pieces[ray]);
         cuts.at[ray] = 0;

@@ -42,19 +42,17 @@ double turns_of(double from, double to, double widest) {
     return std::ceil((std::atan(to) - std::atan(from)) / widest);
 }
 
-// The rule for a part of sampled fog. The soft edge of a spot is a polynomial of fourth degree across the beam.
-std::span<const QuadratureNode> sampled_rule(const Part& part, double from, double to) {
-    if (part.soft) return gauss_legendre(3);
-    return gauss_legendre((to - from) * 3 > 1 + std::min(from * from, to * to) ? 2 : 1);
+// The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
+std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
+    return packet.frame.sampled ? gauss_legendre(part.soft ? 3 : 2) : packet.frame.nodes;
 }
 
 void push_turning(Packet& packet, const Part& part) {
-    const bool sampled = packet.frame.sampled;
+    const std::span<const QuadratureNode> rule = rule_for(packet, part);
     const double nearest = packet.scratch.along[part.ray].nearest, away = packet.away[part.ray];
-    const double end = (part.high - nearest) / away, widest = sampled ? 1 : widest_turn(packet.frame);
+    const double end = (part.high - nearest) / away, widest = packet.frame.sampled ? 1 : widest_turn(packet.frame);
     for (double x = (part.low - nearest) / away; x < end;) {
         const double next = std::min(next_bound(x), end), turns = turns_of(x, next, widest);
-        const std::span<const QuadratureNode> rule = sampled ? sampled_rule(part, x, next) : packet.frame.nodes;
         for (double i = 0; i < turns; ++i)
             for (const QuadratureNode& node : rule)
                 push_node(packet, part.light, part.ray, part.cut, x * away, next * away, (i + node.at) / turns,
