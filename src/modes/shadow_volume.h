@@ -41,8 +41,8 @@ void find_cuts(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCut
 // Fog along up to 16 rays.
 void shadow_volume_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results);
 
-// What each ray crosses of the volumes of a light, up to the ends of `reached`, by the ray's own t; `dark` = the count
-// before. Rays whose stretch is empty are left out.
+// What rays cross of the volumes of a light, up to the ends of `reached`; `dark` = the counts before. Rays whose
+// stretch is empty are left out.
 void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
-                  std::vector<ShadowCrossing> (&crossings)[16], int (&dark)[16]);
+                  std::vector<ShadowCrossing>& crossings, int (&dark)[16]);
 }

@@ -51,15 +51,17 @@ void add_light(Packet& packet, size_t index) {
     find_shadows(frame, index, packet.batch, reached, scratch.crossings, dark);
     packet.spread = shells ? Spread::points : sun ? Spread::length : Spread::angle;
     const int name = static_cast<int>(index);
+    if (shells) {
+        for (size_t i = 0; i < count; ++i)
+            if (!reached[i].empty()) push_shells(packet, name, i, dark[i], reached[i]);
+        return add_nodes(packet, name);
+    }
+    for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
+    append_lit(dark, scratch.crossings, reached, scratch.lit);
     for (size_t i = 0; i < count; ++i) {
         if (reached[i].empty()) continue;
-        if (shells) {
-            push_shells(packet, name, i, dark[i], reached[i]);
-            continue;
-        }
-        scratch.lit.clear();
-        append_lit(dark[i], scratch.crossings[i], reached[i], scratch.lit);
-        push_lit(packet, name, i, scratch.lit, sun ? std::span(&reached[i], 1) : std::span(scratch.along[i].lit));
+        const std::span<const Stretch> parts = sun ? std::span(&reached[i], 1) : std::span(scratch.along[i].lit);
+        push_lit(packet, name, i, scratch.lit[i], parts);
     }
     add_nodes(packet, name);
 }

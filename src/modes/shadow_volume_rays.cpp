@@ -24,42 +24,37 @@ int tile_of(const ShadowView& view, std::span<const vec2> positions, float margi
     return tile.y * view.tiles.x + tile.x;
 }
 
-void find_in_view(const ShadowView& view, ShadowRays& rays, const double (&origin)[16],
-                  std::vector<ShadowCrossing> (&crossings)[16], int (&dark)[16]) {
+void find_in_view(const ShadowView& view, ShadowRays& rays, std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
     find_crossings(view, rays, crossings);
-    for (int i = 0; i < 16; ++i) {
-        if (!(rays.active >> i & 1)) continue;
-        dark[i] = view.dark;
-        for (ShadowCrossing& crossing : crossings[i]) crossing.t -= origin[i];
-    }
+    for (int i = 0; i < 16; ++i)
+        if (rays.active >> i & 1) dark[i] = view.dark;
 }
 }
 
 void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
-                  std::vector<ShadowCrossing> (&crossings)[16], int (&dark)[16]) {
+                  std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
     const ShadowCaster& caster = frame.casters[light];
+    crossings.clear(), std::fill(dark, dark + 16, 0);
+    if (!caster.volumes.mesh) return;
     ShadowRays rays;
     rays.edges = frame.settings.draw == ShadowDraw::shells;
-    double origin[16] = {};
     for (size_t i = 0; i < batch.rays.size(); ++i) {
-        crossings[i].clear(), dark[i] = 0;
-        if (!caster.volumes.mesh || reached[i].empty()) continue;
+        if (reached[i].empty()) continue;
         const Ray ray{batch.rays[i].origin, batch.rays[i].direction,
                       std::nextafter(static_cast<float>(reached[i].high), infinity)};
         const int lane = static_cast<int>(i);
         if (comes_from(caster.view, frame.camera, ray)) {
-            origin[i] = place_ray(caster.view, ray, lane, rays);
+            place_ray(caster.view, ray, lane, rays);
         } else { // not a ray of the camera: its origin is an eye of its own
             ShadowRays alone;
             alone.edges = rays.edges;
             const ShadowView view = view_from(caster.volumes, dvec3(ray.origin));
-            double start[16] = {};
-            start[i] = place_ray(view, ray, lane, alone);
-            find_in_view(view, alone, start, crossings, dark);
+            place_ray(view, ray, lane, alone);
+            find_in_view(view, alone, crossings, dark);
         }
     }
     if (!rays.active) return;
     rays.tile = tile_of(caster.view, batch.positions, frame.margin);
-    find_in_view(caster.view, rays, origin, crossings, dark);
+    find_in_view(caster.view, rays, crossings, dark);
 }
 }

@@ -36,8 +36,8 @@ struct Nodes {
 struct Scratch {
     FogCuts cuts;
     std::vector<float> depth; // of sampled fog: optical depth from the eye to each cut
-    std::vector<ShadowCrossing> crossings[16];
-    std::vector<Stretch> lit;
+    std::vector<ShadowCrossing> crossings;
+    std::vector<Stretch> lit[16];
     LightAlong along[16]; // of local lights
     Nodes nodes;
 };

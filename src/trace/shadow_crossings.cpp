@@ -38,7 +38,7 @@ struct Crossing16 {
     const ShadowView& view;
     const ShadowRays& rays;
     Scratch& scratch;
-    std::vector<ShadowCrossing> (&found)[16];
+    std::vector<ShadowCrossing>& found;
 
     // Calls `each` with a place among the rays and the products of as many of them as a register holds.
     template<class Each> HWY_INLINE void products(const RayProduct& f, const Each& each) const {
@@ -89,23 +89,27 @@ struct Crossing16 {
 
     // Not beyond the end, nor where lines of sight and light part.
     void add_side(const ShadowView::Side& side) const {
-        uint32_t left = crossed(side.edge);
-        if (!left) return;
+        const uint32_t there = crossed(side.edge);
+        if (!there) return;
         const DoubleTag d;
         const ShadowView::Edge& edge = view.edges[side.edge];
-        alignas(64) double t[16];
+        ShadowCrossing& row = found.emplace_back();
         uint32_t seen = 0;
         products(side.across, [&](size_t i, auto across) HWY_ATTR {
+            const uint8_t bits[8] = {static_cast<uint8_t>(there >> i)};
             const auto start = hn::Set(d, edge.start);
             const auto at = view.parallel ? hn::Div(across, start) : hn::Div(start, hn::Neg(across));
-            auto reached = hn::Lt(at, hn::Load(d, rays.end + i));
+            auto reached = hn::And(hn::LoadMaskBits(d, bits), hn::Lt(at, hn::Load(d, rays.end + i)));
             if (!view.parallel) reached = hn::And(reached, hn::Ge(at, hn::Zero(d)));
-            hn::Store(at, d, t + i), seen |= bits_of(reached, i);
+            const auto t = hn::IfThenElse(reached, hn::Sub(at, hn::Load(d, rays.start + i)), hn::Set(d, infinity));
+            hn::Store(hn::DemoteTo(hn::Rebind<float, DoubleTag>(), t), hn::Rebind<float, DoubleTag>(), row.t + i);
+            seen |= bits_of(reached, i);
         });
-        for (left &= seen; left; left &= left - 1) {
+        if (!seen) return found.pop_back();
+        std::fill(row.change, row.change + 16, static_cast<float>(side.change));
+        for (uint32_t left = rays.edges ? seen : 0; left; left &= left - 1) {
             const int ray = std::countr_zero(left);
-            const double behind = rays.edges ? behind_edge(edge, ray, t[ray]) : 0;
-            found[ray].push_back({t[ray], static_cast<float>(behind), side.change});
+            row.behind[ray] = static_cast<float>(behind_edge(edge, ray, row.t[ray] + rays.start[ray]));
         }
     }
 
@@ -131,6 +135,10 @@ struct Crossing16 {
         const auto twos = [](const uint32_t(&v)[3]) { return (v[0] & v[1]) | (v[1] & v[2]) | (v[2] & v[0]); };
         const int offset = cap.dark - cap.opposite;
         uint32_t any = offset ? rays.active : (ones(up) ^ ones(down)) | (twos(up) ^ twos(down));
+        if (!any) return;
+        ShadowCrossing& row = found.emplace_back();
+        std::fill(row.t, row.t + 16, infinity);
+        bool seen = false;
         for (; any; any &= any - 1) {
             const int ray = std::countr_zero(any);
             int left_over = offset;
@@ -141,8 +149,11 @@ struct Crossing16 {
             double t = view.parallel ? (cap.height - glm::dot(cap.normal, p)) / glm::dot(cap.normal, view.forward)
                                      : cap.height / glm::dot(cap.normal, p);
             if (!view.parallel) t = std::max(t, 0.0);
-            if (t < rays.end[ray]) found[ray].push_back({t, 0, -left_over});
+            if (!(t < rays.end[ray])) continue;
+            seen = true;
+            row.t[ray] = static_cast<float>(t - rays.start[ray]), row.change[ray] = static_cast<float>(-left_over);
         }
+        if (!seen) found.pop_back();
     }
 
     // The faces of the rays' tile that are near enough for any of them; all when the tile is unknown.
@@ -159,7 +170,7 @@ struct Crossing16 {
     }
 };
 
-void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&found)[16]) {
+void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& found) {
     static thread_local Scratch scratch;
     scratch.begin(view);
     double end = -double(infinity);
@@ -180,21 +191,8 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(find_crossings_kernel);
 
-void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&crossings)[16]) {
+void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& crossings) {
     HWY_DYNAMIC_DISPATCH(find_crossings_kernel)(view, rays, crossings);
-}
-
-void append_lit(int dark, std::vector<ShadowCrossing>& crossings, Stretch range, std::vector<Stretch>& lit) {
-    std::sort(crossings.begin(), crossings.end(),
-              [](const ShadowCrossing& a, const ShadowCrossing& b) { return a.t < b.t; });
-    const double smallest = 1e-9 * (1 + std::abs(range.high)); // what rounding leaves between faces that meet
-    double from = range.low;
-    for (const ShadowCrossing& crossing : crossings) {
-        const double t = std::min(crossing.t, range.high);
-        if (dark <= 0 && t > from + smallest) lit.push_back({from, t});
-        dark += crossing.change, from = std::max(from, t);
-    }
-    if (dark <= 0 && range.high > from + smallest) lit.push_back({from, range.high});
 }
 }
 #endif
