@@ -71,7 +71,6 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
-    frame->nodes = gauss_legendre(own.nodes);
 
     std::shared_ptr<const ShadowMesh> mesh;
     for (const Light& light : frame->snapshot.lights) {

@@ -23,8 +23,7 @@ struct ShadowVolumeFrame {
     std::vector<Box> uneven; // fog that is not what it is taken for
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
-    std::vector<ShadowCaster> casters;     // one per light; without mesh where it casts no shadows
-    std::span<const QuadratureNode> nodes; // on a piece of even fog
+    std::vector<ShadowCaster> casters; // one per light; without mesh where it casts no shadows
 };
 
 // Where rays are cut: between cuts the fog is smooth, or a step long.

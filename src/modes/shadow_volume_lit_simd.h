@@ -44,7 +44,8 @@ double turns_of(double from, double to, double widest) {
 
 // The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
-    return packet.frame.sampled ? gauss_legendre(part.soft ? 3 : 2) : packet.frame.nodes;
+    if (packet.frame.sampled) return gauss_legendre(part.soft ? 3 : 2);
+    return gauss_legendre(packet.frame.settings.nodes + (part.soft ? 2 : 0));
 }
 
 void push_turning(Packet& packet, const Part& part) {
@@ -64,7 +65,7 @@ void push_turning(Packet& packet, const Part& part) {
 void push_part(Packet& packet, const Part& part) {
     if (packet.spread == Spread::angle) return push_turning(packet, part);
     if (packet.frame.sampled) return push_node(packet, part.light, part.ray, part.cut, part.low, part.high, 0.5, 1);
-    for (const QuadratureNode& node : packet.frame.nodes)
+    for (const QuadratureNode& node : rule_for(packet, part))
         push_node(packet, part.light, part.ray, part.cut, part.low, part.high, node.at, node.weight);
 }
 

@@ -149,7 +149,7 @@ TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
             const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
             const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, {});
             EXPECT_GT(mean_of(expected), 1e-4);
-            EXPECT_LT(rmse(found, expected) / mean_of(expected), 1e-3) << light.name;
+            EXPECT_LT(rmse(found, expected) / mean_of(expected), 1e-4) << light.name;
             for (size_t i = 0; i < found.size(); ++i) {
                 EXPECT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5);
                 EXPECT_GE(found[i].radiance.x, 0);

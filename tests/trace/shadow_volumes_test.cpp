@@ -154,8 +154,10 @@ TEST(ShadowVolumes, CountsTrianglesByHand) {
     const Ray level{{-4, 0, 0.1f}, {1, 0, 0}, 8};
     Counted counted = crossings_of(view_from(roof.volumes, dvec3(level.origin)), level);
     ASSERT_EQ(counted.crossings.size(), 4u); // in at 3 and 4, out of both at 5
-    for (const ShadowCrossing& crossing : counted.crossings)
-        if (crossing.t[lane] < 4.5f) EXPECT_NEAR(crossing.behind[lane], crossing.t[lane] < 3.5f ? 1 : 2, 1e-6);
+    for (const ShadowCrossing& crossing : counted.crossings) {
+        if (crossing.t[lane] > 4.5f) continue;
+        EXPECT_NEAR(crossing.behind[lane], crossing.t[lane] < 3.5f ? 1 : 2, 1e-6);
+    }
     const std::vector<Stretch> lit = counted.lit({0, 8});
     ASSERT_EQ(lit.size(), 2u);
     EXPECT_NEAR(lit[0].high, 3, 1e-6);
