@@ -143,7 +143,7 @@ void shadow_volume_kernel(const ShadowVolumeFrame& frame, const RayBatch& batch,
     store(exp(-depth), transmittance);
 
     vec3 total[16];
-    if (frame.settings.draw == ShadowDraw::exact) add_glow(packet, depth);
+    add_glow(packet, depth);
     std::copy(packet.radiance, packet.radiance + 16, total);
     for (size_t light = 0; light < lights; ++light) {
         std::fill(packet.radiance, packet.radiance + 16, vec3(0));

@@ -251,6 +251,24 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
 }
 
+TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
+    const vec3 ambient(0.1f, 0.2f, 0.3f);
+    const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
+    const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
+    Settings shells, measured;
+    shells.shadow_volume.draw = measured.shadow_volume.draw = ShadowDraw::shells;
+    const Box& bounds = stage.snapshot.bounds;
+    measured.shadow_volume.shell_length = 0.5f * glm::distance(bounds.low, bounds.high);
+    const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, shells);
+    EXPECT_EQ(rmse(found, drawn("shadow-volume", picture, stage.snapshot, measured)), 0);
+
+    shells.shadow_volume.shell_intensity = 0;
+    const std::vector<Scatter> dark = drawn("shadow-volume", picture, stage.snapshot, shells);
+    for (size_t i = 0; i < dark.size(); ++i) // albedo 1: what the fog takes away, of the ambient light
+        EXPECT_NEAR(dark[i].radiance.z, ambient.z * (1 - dark[i].transmittance), 1e-6f);
+    EXPECT_GT(mean_of(found), mean_of(dark));
+}
+
 TEST(ShadowVolume, LimitsNameSoftLightsAndAlpha) {
     Light soft = sun({0, -1, 0});
     soft.angle = 0.01f;
