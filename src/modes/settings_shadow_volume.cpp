@@ -17,8 +17,9 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_volume.light_resolution", "cells", 4, 1024,
                               "cells across the fog in the light's grid where fog is sampled",
                               TYNDALL_FIELD(shadow_volume.light_resolution)));
-    rows.push_back(number_row("shadow_volume.shell_length", "m", 1e-3, 1e6,
-                              "distance behind the occluder at which a shell has faded out",
+    rows.push_back(number_row("shadow_volume.shell_length", "m", 0, 1e6,
+                              "distance behind the occluder at which a shell has faded out; 0 = half the scene's "
+                              "diagonal",
                               TYNDALL_FIELD(shadow_volume.shell_length)));
     rows.push_back(number_row("shadow_volume.shell_intensity", "", 0, 1e3,
                               "a shell is as bright as this share of shell_length of lit fog",

@@ -15,6 +15,11 @@ bool samples_fog(const Snapshot& snapshot, const ShadowVolumeSettings& settings)
     return settings.fog == ShadowFog::sampled || (settings.fog == ShadowFog::automatic && has_grid(snapshot));
 }
 
+float half_diagonal(const Box& scene) {
+    const float length = 0.5f * glm::distance(scene.low, scene.high);
+    return std::isfinite(length) && length > 0 ? length : 1;
+}
+
 bool casts(const Light& light, const Snapshot& snapshot) {
     return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
 }
@@ -66,13 +71,12 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     frame->settings = own, frame->style = settings.style, frame->camera = view.camera;
     frame->margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
     frame->sampled = samples_fog(snapshot, own);
+    if (frame->settings.shell_length <= 0) frame->settings.shell_length = half_diagonal(snapshot.bounds);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
-    for (const QuadratureNode& node : gauss_legendre(frame->sampled ? 2 : own.nodes))
-        frame->nodes.push_back({2 * node.at - 1, 2 * node.weight});
 
     std::shared_ptr<const ShadowMesh> mesh;
     for (const Light& light : frame->snapshot.lights) {

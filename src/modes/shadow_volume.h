@@ -24,20 +24,24 @@ struct ShadowVolumeFrame {
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
     std::vector<ShadowCaster> casters; // one per light; without mesh where it casts no shadows
-    std::vector<QuadratureNode> nodes; // on -1..1
 };
 
-// Where a ray is cut: between cuts the fog is smooth, or a step long.
+// Where rays are cut: between cuts the fog is smooth, or a step long.
 struct FogCuts {
-    std::vector<double> at; // ascending; empty without fog
+    std::vector<float> at; // [cut·16 + ray], ascending; the last repeated where other rays have more
+    int pieces[16];        // between the cuts of each ray; 0 without fog
+    int most = 0;          // of any ray
+
+    float low(size_t ray) const { return at[ray]; }
+    float high(size_t ray) const { return at[16 * static_cast<size_t>(pieces[ray]) + ray]; }
 };
-void find_cuts(const ShadowVolumeFrame& frame, const Ray& ray, FogCuts& cuts);
+void find_cuts(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts);
 
 // Fog along up to 16 rays.
 void shadow_volume_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results);
 
-// What each ray crosses of the volumes of a light, up to the ends of `reached`, by the ray's own t; `dark` = the count
-// before. Rays whose stretch is empty are left out.
+// What rays cross of the volumes of a light, up to the ends of `reached`; `dark` = the counts before. Rays whose
+// stretch is empty are left out.
 void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
-                  std::vector<ShadowCrossing> (&crossings)[16], int (&dark)[16]);
+                  std::vector<ShadowCrossing>& crossings, int (&dark)[16]);
 }

@@ -8,43 +8,59 @@
 #endif
 
 #include "base/simd.h"
+#include "modes/angles_simd.h"
 #include "modes/shadow_volume.h"
+#include "modes/style_simd.h"
 #include "trace/light_depth_simd.h"
 #include "trace/light_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
-
-#include <array>
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr int no_light = -1;
 
-// Points at which the integrand is asked for, sixteen at once, whichever rays they are on.
+// Places on stretches of rays, sixteen at once, whichever rays they are on. Stretches count from where their ray passes
+// the light (see Spread).
 struct Nodes {
-    alignas(64) float t[16], weight[16], depth[16]; // optical depth from the ray's origin; of sampled fog only
-    alignas(64) float origin[3][16], direction[3][16];
-    int lane[16];
+    alignas(64) float low[16], high[16];
+    alignas(64) float share[16];  // of the stretch that lies before the node
+    alignas(64) float weight[16]; // in the sum over the stretch
+    alignas(64) int32_t ray[16];
+    alignas(64) int32_t cut[16]; // the last before the stretch: cut·16 + ray
     int count = 0;
 };
 
 // Memory that a thread keeps from packet to packet.
 struct Scratch {
-    FogCuts cuts[16];
-    std::vector<std::array<float, 16>> at, depth; // the cuts of all rays, and the optical depth there: of sampled fog
-    std::vector<ShadowCrossing> crossings[16];
-    std::vector<Stretch> lit;
-    LightAlong along[16];
+    FogCuts cuts;
+    std::vector<float> depth; // of sampled fog: optical depth from the eye to each cut
+    std::vector<ShadowCrossing> crossings;
+    std::vector<Stretch> lit[16];
+    LightAlong along[16]; // of local lights
     Nodes nodes;
 };
+
+// How nodes share a stretch: by its length; by the angle it is seen under from a local light, in which 1/r² is constant
+// (Kulla & Fajardo 2012, section 4.1); or not at all, as points with a weight of their own.
+enum class Spread { length, angle, points };
 
 struct Packet {
     const ShadowVolumeFrame& frame;
     const RayBatch& batch;
     Scratch& scratch;
-    vec3 radiance[16]; // of the current light
+    alignas(64) float origin[3][16], direction[3][16];
+    Spread spread = Spread::length;
+    alignas(64) float nearest[16] = {}, away[16] = {}; // where the rays pass the light, and how near; 0 unless `angle`
+    vec3 radiance[16] = {};                            // of the current light
     int asked[16] = {};
+
+    // Of each ray, or of the ray of each node.
+    HWY_INLINE static Vec3s rays(const float (&v)[3][16]) { return {load(v[0]), load(v[1]), load(v[2])}; }
+    HWY_INLINE static Vec3s rays(const float (&v)[3][16], const Ints& ray) {
+        return {gather(v[0], ray), gather(v[1], ray), gather(v[2], ray)};
+    }
 };
 
 // Light of one light scattered towards the eye per metre.
@@ -81,53 +97,66 @@ HWY_INLINE Floats closed_depth(const ShadowVolumeFrame& frame, const LightPaths&
     return depth;
 }
 
+// Where the waiting nodes lie on their rays, and the lengths they stand for.
+struct Placed {
+    Floats t, length;
+};
+HWY_INLINE Placed place_nodes(const Packet& packet, const Nodes& nodes, const Ints& ray) {
+    const Floats low = load(nodes.low), high = load(nodes.high), share = load(nodes.share);
+    const Floats weight = load(nodes.weight);
+    if (packet.spread == Spread::points) return {low, weight};
+    if (packet.spread == Spread::length) return {fused(share, high - low, low), weight * (high - low)};
+    const Floats away = gather(packet.away, ray), from = low / away, to = high / away;
+    const Floats angle = angle_between(from, to), further = tan(share * angle);
+    const Floats slope = max(min((from + further) / max(1.0f - from * further, 1e-20f), to), from);
+    return {fused(slope, away, gather(packet.nearest, ray)), weight * angle * away * fused(slope, slope, 1.0f)};
+}
+
+// Optical depth from the eye to the nodes: between cuts of sampled fog it grows evenly.
+HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const LightPaths& to_nodes) {
+    if (!packet.frame.sampled) return closed_depth(packet.frame, to_nodes);
+    const float *at = packet.scratch.cuts.at.data(), *depth = packet.scratch.depth.data();
+    const Ints cut = load(nodes.cut);
+    const Floats before = gather(at, cut), depth_before = gather(depth, cut);
+    const Floats share = (to_nodes.length - before) / max(gather(at + 16, cut) - before, 1e-12f);
+    return fused(gather(depth + 16, cut) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
+}
+
 // Adds the waiting nodes to their rays.
 void add_nodes(Packet& packet, int light) {
     const ShadowVolumeFrame& frame = packet.frame;
     Nodes& nodes = packet.scratch.nodes;
     if (nodes.count == 0) return;
     for (int i = nodes.count; i < 16; ++i) {
-        nodes.t[i] = nodes.weight[i] = nodes.depth[i] = 0;
-        for (int axis = 0; axis < 3; ++axis)
-            nodes.origin[axis][i] = nodes.origin[axis][0], nodes.direction[axis][i] = nodes.direction[axis][0];
+        nodes.low[i] = nodes.high[i] = nodes.low[0], nodes.share[i] = nodes.weight[i] = 0;
+        nodes.ray[i] = nodes.ray[0], nodes.cut[i] = nodes.cut[0];
     }
-    const Vec3s origin{load(nodes.origin[0]), load(nodes.origin[1]), load(nodes.origin[2])};
-    const Vec3s direction{load(nodes.direction[0]), load(nodes.direction[1]), load(nodes.direction[2])};
-    const Floats t = load(nodes.t);
-    const Vec3s position = fused(direction, t, origin);
-    const Floats depth = frame.sampled ? load(nodes.depth) : closed_depth(frame, {origin, direction, t});
-    Floats weight = load(nodes.weight) * exp(-depth * frame.style.view_depth);
-    if (frame.style.range < StyleSettings().range) {
-        const Vec3s away = position - splat(frame.camera.position);
-        const Floats share = (frame.style.range - sqrt(dot(away, away))) * (5 / frame.style.range);
-        weight = weight * max(min(share, 1.0f), 0.0f);
-    }
+    const Ints ray = load(nodes.ray);
+    const Placed placed = place_nodes(packet, nodes, ray);
+    const Vec3s origin = Packet::rays(packet.origin, ray), direction = Packet::rays(packet.direction, ray);
+    const Vec3s position = fused(direction, placed.t, origin);
+    const Floats depth = depth_at(packet, nodes, {origin, direction, placed.t});
+    Floats weight = placed.length * exp(-depth * frame.style.view_depth);
+    if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
     const Vec3s source =
         light == no_light ? glow(frame, position) : scattered(frame, static_cast<size_t>(light), position, direction);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     for (int i = 0; i < nodes.count; ++i) {
-        packet.radiance[nodes.lane[i]] += vec3(r[i], g[i], b[i]);
-        ++packet.asked[nodes.lane[i]];
+        packet.radiance[nodes.ray[i]] += vec3(r[i], g[i], b[i]);
+        ++packet.asked[nodes.ray[i]];
     }
     nodes.count = 0;
 }
 
-// `cut`: the piece between cuts in which t lies.
-void push_node(Packet& packet, int light, size_t lane, size_t cut, double t, double weight) {
+// A node on low..high, counted along the ray, behind the cut-th cut.
+HWY_INLINE void push_node(Packet& packet, int light, size_t ray, int cut, double low, double high, double share,
+                          double weight) {
     Nodes& nodes = packet.scratch.nodes;
-    const Ray& ray = packet.batch.rays[lane];
     const int i = nodes.count++;
-    nodes.t[i] = static_cast<float>(t), nodes.weight[i] = static_cast<float>(weight);
-    nodes.lane[i] = static_cast<int>(lane), nodes.depth[i] = 0;
-    if (packet.frame.sampled) {
-        const std::vector<double>& at = packet.scratch.cuts[lane].at;
-        const float share = static_cast<float>((t - at[cut]) / (at[cut + 1] - at[cut]));
-        const float from = packet.scratch.depth[cut][lane], to = packet.scratch.depth[cut + 1][lane];
-        nodes.depth[i] = from + share * (to - from);
-    }
-    for (int axis = 0; axis < 3; ++axis)
-        nodes.origin[axis][i] = ray.origin[axis], nodes.direction[axis][i] = ray.direction[axis];
+    nodes.low[i] = static_cast<float>(low), nodes.high[i] = static_cast<float>(high);
+    nodes.share[i] = static_cast<float>(share), nodes.weight[i] = static_cast<float>(weight);
+    nodes.ray[i] = static_cast<int32_t>(ray), nodes.cut[i] = 16 * cut + static_cast<int32_t>(ray);
     if (nodes.count == 16) add_nodes(packet, light);
 }
 }

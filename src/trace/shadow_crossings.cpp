@@ -16,34 +16,50 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DoubleTag = hn::ScalableTag<double>;
 constexpr size_t double_lanes = HWY_LANES(double);
 
-// Memory that a thread keeps: on which side of each ray a corner lies, as bits, valid where the stamp is `now`.
+// Memory that a thread keeps: for each corner the rays it lies to the left of, for each edge those that cross below it;
+// as bits, valid where the stamp is `now`.
 struct Scratch {
-    struct CornerSide {
-        uint32_t stamp = 0, left = 0;
+    struct Bits {
+        uint32_t stamp = 0, rays = 0;
     };
-    std::vector<CornerSide> corners;
+    std::vector<Bits> corners, edges;
     uint32_t now = 0;
+
+    void begin(const ShadowView& view) {
+        if (corners.size() < view.corners.size()) corners.resize(view.corners.size());
+        if (edges.size() < view.edges.size()) edges.resize(view.edges.size());
+        if (++now > 0) return;
+        std::fill(corners.begin(), corners.end(), Bits{}), std::fill(edges.begin(), edges.end(), Bits{});
+        ++now;
+    }
 };
 
 struct Crossing16 {
     const ShadowView& view;
     const ShadowRays& rays;
     Scratch& scratch;
-    std::vector<ShadowCrossing> (&found)[16];
+    std::vector<ShadowCrossing>& found;
 
-    // Bits of the rays whose product is not negative.
-    HWY_INLINE uint32_t not_negative(const RayProduct& f) const {
+    // Calls `each` with a place among the rays and the products of as many of them as a register holds.
+    template<class Each> HWY_INLINE void products(const RayProduct& f, const Each& each) const {
         const DoubleTag d;
         const auto x = hn::Set(d, f.x), y = hn::Set(d, f.y), z = hn::Set(d, f.z), w = hn::Set(d, f.w);
-        uint32_t bits = 0;
         for (size_t i = 0; i < 16; i += double_lanes) {
             auto sum = hn::MulAdd(x, hn::Load(d, rays.p[0] + i), w);
             sum = hn::MulAdd(y, hn::Load(d, rays.p[1] + i), sum);
-            sum = hn::MulAdd(z, hn::Load(d, rays.p[2] + i), sum);
-            uint8_t part[8] = {};
-            hn::StoreMaskBits(d, hn::Ge(sum, hn::Zero(d)), part);
-            bits |= static_cast<uint32_t>(part[0]) << i;
+            each(i, hn::MulAdd(z, hn::Load(d, rays.p[2] + i), sum));
         }
+    }
+    template<class Mask> HWY_INLINE static uint32_t bits_of(Mask mask, size_t first) {
+        uint8_t part[8] = {};
+        hn::StoreMaskBits(DoubleTag(), mask, part);
+        return static_cast<uint32_t>(part[0]) << first;
+    }
+
+    // Bits of the rays whose product is not negative.
+    HWY_INLINE uint32_t not_negative(const RayProduct& f) const {
+        uint32_t bits = 0;
+        products(f, [&](size_t i, auto sum) HWY_ATTR { bits |= bits_of(hn::Ge(sum, hn::Zero(DoubleTag())), i); });
         return bits;
     }
 
@@ -52,38 +68,53 @@ struct Crossing16 {
     }
 
     HWY_INLINE uint32_t left_of(uint32_t corner) const {
-        Scratch::CornerSide& side = scratch.corners[corner];
-        if (side.stamp != scratch.now) side = {scratch.now, not_negative(view.corners[corner])};
-        return side.left;
+        Scratch::Bits& known = scratch.corners[corner];
+        if (known.stamp != scratch.now) known = {scratch.now, not_negative(view.corners[corner])};
+        return known.rays;
     }
 
-    // Rays that cross the edge's plane ahead, on the edge's stretch of it ...
-    HWY_INLINE uint32_t crossed_ahead(const ShadowView::Edge& edge) const {
+    // Rays that cross the edge's plane ahead, on the edge's stretch of it, and behind the edge as the light sees it.
+    HWY_INLINE uint32_t find_crossed(const ShadowView::Edge& edge) const {
         const uint32_t a = left_of(edge.a), b = left_of(edge.b);
-        return (edge.start > 0 ? a & ~b : b & ~a) & rays.active;
-    }
-    // ... and behind the edge as the light sees it.
-    HWY_INLINE uint32_t crossed(const ShadowView::Edge& edge) const {
-        const uint32_t ahead = crossed_ahead(edge);
+        const uint32_t ahead = (edge.start > 0 ? a & ~b : b & ~a) & rays.active;
         if (!ahead) return 0;
         const uint32_t positive = not_negative(edge.before);
         return ahead & (edge.start > 0 ? ~positive : positive);
     }
+    HWY_INLINE uint32_t crossed(uint32_t edge) const {
+        Scratch::Bits& known = scratch.edges[edge];
+        if (known.stamp != scratch.now) known = {scratch.now, find_crossed(view.edges[edge])};
+        return known.rays;
+    }
 
+    // Not beyond the end, nor where lines of sight and light part.
     void add_side(const ShadowView::Side& side) const {
+        const uint32_t there = crossed(side.edge);
+        if (!there) return;
+        const DoubleTag d;
         const ShadowView::Edge& edge = view.edges[side.edge];
-        for (uint32_t left = crossed(edge); left; left &= left - 1) {
+        ShadowCrossing& row = found.emplace_back();
+        uint32_t seen = 0;
+        products(side.across, [&](size_t i, auto across) HWY_ATTR {
+            const uint8_t bits[8] = {static_cast<uint8_t>(there >> i)};
+            const auto start = hn::Set(d, edge.start);
+            const auto at = view.parallel ? hn::Div(across, start) : hn::Div(start, hn::Neg(across));
+            auto reached = hn::And(hn::LoadMaskBits(d, bits), hn::Lt(at, hn::Load(d, rays.end + i)));
+            if (!view.parallel) reached = hn::And(reached, hn::Ge(at, hn::Zero(d)));
+            const auto t = hn::IfThenElse(reached, hn::Sub(at, hn::Load(d, rays.start + i)), hn::Set(d, infinity));
+            hn::Store(hn::DemoteTo(hn::Rebind<float, DoubleTag>(), t), hn::Rebind<float, DoubleTag>(), row.t + i);
+            seen |= bits_of(reached, i);
+        });
+        if (!seen) return found.pop_back();
+        std::fill(row.change, row.change + 16, static_cast<float>(side.change));
+        for (uint32_t left = rays.edges ? seen : 0; left; left &= left - 1) {
             const int ray = std::countr_zero(left);
-            const double across = product(side.across, ray);
-            const double t = view.parallel ? across / edge.start : edge.start / -across;
-            // Beyond the end, or where lines of sight and light part.
-            if (!(t < rays.end[ray]) || (!view.parallel && !(t >= 0))) continue;
-            found[ray].push_back({t, rays.edges ? behind(edge, ray, t) : 0, side.change});
+            row.behind[ray] = static_cast<float>(behind_edge(edge, ray, row.t[ray] + rays.start[ray]));
         }
     }
 
     // How far behind an edge, along the light, a ray is at t.
-    double behind(const ShadowView::Edge& edge, int ray, double t) const {
+    double behind_edge(const ShadowView::Edge& edge, int ray, double t) const {
         const double share =
             product(edge.before, ray) / (product(view.corners[edge.b], ray) - product(view.corners[edge.a], ray));
         if (view.light.far) return share;
@@ -93,25 +124,36 @@ struct Crossing16 {
 
     // What a triangle's sides leave over is crossed at the triangle itself.
     void add_cap(const ShadowView::Cap& cap) const {
-        uint32_t sides[3], any = cap.dark || cap.opposite ? rays.active : 0;
-        int change[3];
+        uint32_t up[3], down[3]; // rays whose count each side raises, and lowers
         for (int k = 0; k < 3; ++k) {
-            const ShadowView::Edge& edge = view.edges[cap.edges[k]];
-            any |= sides[k] = crossed(edge);
-            change[k] = (edge.start > 0) == cap.left[k] ? -1 : 1;
+            const uint32_t rays_there = crossed(cap.edges[k]);
+            const bool lowers = (view.edges[cap.edges[k]].start > 0) == cap.left[k];
+            up[k] = lowers ? 0 : rays_there, down[k] = lowers ? rays_there : 0;
         }
+        // Whether as many sides raise it as lower it, ray by ray, in two binary digits.
+        const auto ones = [](const uint32_t(&v)[3]) { return v[0] ^ v[1] ^ v[2]; };
+        const auto twos = [](const uint32_t(&v)[3]) { return (v[0] & v[1]) | (v[1] & v[2]) | (v[2] & v[0]); };
+        const int offset = cap.dark - cap.opposite;
+        uint32_t any = offset ? rays.active : (ones(up) ^ ones(down)) | (twos(up) ^ twos(down));
+        if (!any) return;
+        ShadowCrossing& row = found.emplace_back();
+        std::fill(row.t, row.t + 16, infinity);
+        bool seen = false;
         for (; any; any &= any - 1) {
             const int ray = std::countr_zero(any);
-            int left_over = cap.dark - cap.opposite;
+            int left_over = offset;
             for (int k = 0; k < 3; ++k)
-                if (sides[k] >> ray & 1) left_over += change[k];
+                left_over += static_cast<int>(up[k] >> ray & 1) - static_cast<int>(down[k] >> ray & 1);
             if (left_over == 0) continue;
             const dvec3 p(rays.p[0][ray], rays.p[1][ray], rays.p[2][ray]);
             double t = view.parallel ? (cap.height - glm::dot(cap.normal, p)) / glm::dot(cap.normal, view.forward)
                                      : cap.height / glm::dot(cap.normal, p);
             if (!view.parallel) t = std::max(t, 0.0);
-            if (t < rays.end[ray]) found[ray].push_back({t, 0, -left_over});
+            if (!(t < rays.end[ray])) continue;
+            seen = true;
+            row.t[ray] = static_cast<float>(t - rays.start[ray]), row.change[ray] = static_cast<float>(-left_over);
         }
+        if (!seen) found.pop_back();
     }
 
     // The faces of the rays' tile that are near enough for any of them; all when the tile is unknown.
@@ -128,11 +170,9 @@ struct Crossing16 {
     }
 };
 
-void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&found)[16]) {
+void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& found) {
     static thread_local Scratch scratch;
-    if (scratch.corners.size() < view.corners.size()) scratch.corners.resize(view.corners.size());
-    if (++scratch.now == 0)
-        std::fill(scratch.corners.begin(), scratch.corners.end(), Scratch::CornerSide{}), ++scratch.now;
+    scratch.begin(view);
     double end = -double(infinity);
     for (int ray = 0; ray < 16; ++ray)
         if (rays.active >> ray & 1) end = std::max(end, rays.end[ray]);
@@ -151,21 +191,8 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(find_crossings_kernel);
 
-void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&crossings)[16]) {
+void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& crossings) {
     HWY_DYNAMIC_DISPATCH(find_crossings_kernel)(view, rays, crossings);
-}
-
-void append_lit(int dark, std::vector<ShadowCrossing>& crossings, Stretch range, std::vector<Stretch>& lit) {
-    std::sort(crossings.begin(), crossings.end(),
-              [](const ShadowCrossing& a, const ShadowCrossing& b) { return a.t < b.t; });
-    const double smallest = 1e-9 * (1 + std::abs(range.high)); // what rounding leaves between faces that meet
-    double from = range.low;
-    for (const ShadowCrossing& crossing : crossings) {
-        const double t = std::min(crossing.t, range.high);
-        if (dark <= 0 && t > from + smallest) lit.push_back({from, t});
-        dark += crossing.change, from = std::max(from, t);
-    }
-    if (dark <= 0 && range.high > from + smallest) lit.push_back({from, range.high});
 }
 }
 #endif

@@ -143,7 +143,7 @@ ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 s
     return view;
 }
 
-double place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays) {
+void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays) {
     const dvec3 origin = dvec3(ray.origin) - view.place, direction(ray.direction);
     const double along = glm::dot(origin, direction) / glm::dot(direction, direction);
     dvec3 p = view.parallel ? origin - along * direction : direction;
@@ -158,7 +158,6 @@ double place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& r
         p += 2 * hair * (1e-3 + glm::length(across)) * glm::normalize(glm::cross(other, axis));
     }
     for (int k = 0; k < 3; ++k) rays.p[k][lane] = p[k];
-    rays.end[lane] = along + ray.t_max, rays.active |= 1u << lane;
-    return along;
+    rays.start[lane] = along, rays.end[lane] = along + ray.t_max, rays.active |= 1u << lane;
 }
 }

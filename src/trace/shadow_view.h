@@ -70,29 +70,34 @@ ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 s
 // Sorts sides and caps into the picture's tiles.
 void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin, ShadowView& view);
 
-// Where the count of volumes around a ray changes.
+// A face that some of sixteen rays cross: where, by each ray's own t (infinite on rays that do not cross it), and by
+// how much the count of volumes around the ray changes there.
 struct ShadowCrossing {
-    double t = 0;      // from the eye; from the plane of `place` when rays are parallel
-    double behind = 0; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
-    int change = 0;
+    alignas(64) float t[16] = {};
+    alignas(64) float change[16] = {};
+    alignas(
+        64) float behind[16] = {}; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
 };
 
-// Up to 16 rays of a view: their p (see RayProduct), and how far crossings are wanted.
+// Up to 16 rays of a view.
 struct ShadowRays {
-    alignas(64) double p[3][16] = {};
-    double end[16] = {};
-    uint32_t active = 0; // bits
-    int tile = -1;       // that all of them lie in; -1 = unknown
-    bool edges = true;   // whether crossings tell how far behind an edge they lie
+    alignas(64) double p[3][16] = {};  // see RayProduct
+    alignas(64) double start[16] = {}; // of each ray: from the eye, or from the plane of `place` when rays are parallel
+    alignas(64) double end[16] = {};   // how far crossings are wanted, counted as `start`
+    uint32_t active = 0;               // bits
+    int tile = -1;                     // that all of them lie in; -1 = unknown
+    bool edges = true;                 // whether crossings tell how far behind an edge they lie
 };
 
-// Makes a ray that the view's eye sees the lane-th of `rays`, up to its t_max. Returns where on it, as crossings count,
-// the ray's origin lies. A ray along or through the light is turned off it by a hair.
-double place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays);
+// Makes a ray that the view's eye sees the lane-th of `rays`, up to its t_max. A ray along or through the light is
+// turned off it by a hair.
+void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays);
 
-// Appends the crossings of each active ray up to its end, in no order.
-void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing> (&crossings)[16]);
+// Appends the crossings of the active rays up to their ends, in no order.
+void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& crossings);
 
-// Sorts the crossings and appends the stretches of low..high in no volume; `dark`: the count before all crossings.
-void append_lit(int dark, std::vector<ShadowCrossing>& crossings, Stretch range, std::vector<Stretch>& lit);
+// Sorts the crossings of each ray (but not `behind`) and appends its stretches of low..high in no volume; `dark`: the
+// counts before all crossings.
+void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Stretch (&ranges)[16],
+                std::vector<Stretch> (&lit)[16]);
 }
