@@ -6,6 +6,7 @@
 #define TYNDALL_MODES_BILLBOARD_REACH_SIMD_H
 #endif
 
+#include "base/reduce_simd.h"
 #include "base/simd.h"
 #include "modes/billboard_card_simd.h"
 
@@ -17,13 +18,6 @@ struct Spread {
     vec3 center, half;
     float farthest;
 };
-
-HWY_INLINE float least(const Floats& a) {
-    float result = infinity;
-    for (size_t i = 0; i < parts; ++i) result = std::min(result, hn::GetLane(hn::MinOfLanes(FloatTag(), a.part[i])));
-    return result;
-}
-HWY_INLINE float most(const Floats& a) { return -least(-a); }
 
 HWY_INLINE Spread spread_of(const Packet& packet, const Camera& camera) {
     const Vec3s place = packet.origin - splat(camera.position);
