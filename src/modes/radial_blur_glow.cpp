@@ -14,36 +14,44 @@ float share_above(vec3 color, float threshold) {
     const float bright = luminance(color);
     return bright > threshold ? (bright - threshold) / bright : 0;
 }
+
+// A camera ray, to the light's planar depth.
+void set_ray(Occluders::ShadowRays& rays, int i, const Camera& camera, const Ray& ray, float depth) {
+    rays.ox[i] = ray.origin.x, rays.oy[i] = ray.origin.y, rays.oz[i] = ray.origin.z;
+    rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
+    const float along = std::max(glm::dot(ray.direction, camera.forward), 1e-6f);
+    rays.t_min[i] = camera.near / along, rays.t_max[i] = depth / along;
+    rays.active[i] = -1;
+}
+
+void see_through(const Snapshot& snapshot, const Occluders::ShadowRays& rays, float share[16]) {
+    const Occluders* occluders = snapshot.occluders.get();
+    if (occluders && !occluders->empty()) return occluders->transmission(rays, share);
+    std::fill_n(share, 16, 1.0f);
+}
 }
 
 Glow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
     Glow glow(size, 1);
-    const Occluders* occluders = snapshot.occluders.get();
     const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
     const vec2 center = light.position * vec2(size) / vec2(view.size);
     parallel_for(size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x0 = 0; x0 < size.x; x0 += 16) {
-            Occluders::ShadowRays rays;
-            alignas(64) float share[16], falloff[16];
+            Occluders::ShadowRays rays{};
+            alignas(64) float falloff[16] = {}, share[16];
             bool any = false;
-            for (int i = 0; i < 16; ++i) {
-                const vec2 position = vec2(std::min(x0 + i, size.x - 1), y) + 0.5f;
+            for (int i = 0; i < std::min(16, size.x - x0); ++i) {
+                const vec2 position = vec2(x0 + i, y) + 0.5f;
                 const float off = 1 - squared_length(position - center) / (radius * radius);
-                falloff[i] = share[i] = off > 0 ? off * off : 0;
-                const Ray ray = camera_ray(view.camera, size, position);
-                rays.ox[i] = ray.origin.x, rays.oy[i] = ray.origin.y, rays.oz[i] = ray.origin.z;
-                rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
-                const float along = std::max(glm::dot(ray.direction, view.camera.forward), 1e-6f);
-                rays.t_min[i] = view.camera.near / along, rays.t_max[i] = light.depth / along;
-                rays.active[i] = falloff[i] > 0 ? -1 : 0;
-                any |= falloff[i] > 0;
+                if (!(off > 0)) continue;
+                falloff[i] = off * off, any = true;
+                set_ray(rays, i, view.camera, camera_ray(view.camera, size, position), light.depth);
             }
-            if (any && occluders && !occluders->empty()) {
-                occluders->transmission(rays, share);
-                for (int i = 0; i < 16; ++i) share[i] *= falloff[i];
-            }
-            for (int i = 0; i < 16 && x0 + i < size.x; ++i) glow.row(0, y)[x0 + i] = rays.active[i] ? share[i] : 0;
+            if (!any) continue;
+            see_through(snapshot, rays, share);
+            for (int i = 0; i < std::min(16, size.x - x0); ++i)
+                glow.row(0, y)[x0 + i] = rays.active[i] ? share[i] * falloff[i] : 0;
         }
     });
     return glow;
