@@ -26,7 +26,9 @@ void fit_ellipse(const LightView& view, const std::vector<int>& cells, vec3 cent
     half.y = 2 * std::sqrt(std::max(s * s * uu - 2 * c * s * uv + c * c * vv, grain));
 }
 
-BeamCard card_of(const LightView& view, const std::vector<Cell>& cells, const std::vector<int>& opening) {
+BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
+    const LightView& view = openings.view;
+    const std::vector<Cell>& cells = openings.cells;
     vec3 place(0);
     double from = 0, to = 0, edge = 0;
     int edges = 0;
@@ -43,10 +45,10 @@ BeamCard card_of(const LightView& view, const std::vector<Cell>& cells, const st
     const Light& light = *view.light;
     const bool sun = light.kind == LightKind::sun;
     const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
-    // The beam begins where the surfaces around the opening are.
+    // The beam begins where the surfaces around the opening are; cells of gaps in the open begin there themselves.
     const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
     float start = fog;
-    if (edges > 0) start = std::max(start, static_cast<float>(edge / edges));
+    if (edges > 0 && !(openings.open > 0)) start = std::max(start, static_cast<float>(edge / edges));
     start = std::min(start, glm::mix(fog, end, 0.8f));
     const vec3 origin = sun ? center : light.position;
     card.from = origin + start * axis, card.to = origin + end * axis;
@@ -80,30 +82,29 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
     const bool blocked = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
     if (settings.cards == 0 || (!blocked && light.kind != LightKind::spot)) return;
     const Openings openings = find_openings(light, snapshot, settings);
-    const LightView& view = openings.view;
-    const std::vector<Cell>& cells = openings.cells;
     open = openings.open;
     const auto add = [&](BeamCard card) {
         if (!(glm::length(card.to - card.from) > 1e-4f)) return;
         card.light = index, card.name = "beam " + std::to_string(cards.size() + 1) + " of " + light.name;
+        if (open > 0) card.tint = vec3(settings.gaps);
         card.seed = hash(static_cast<uint32_t>(index), static_cast<uint32_t>(cards.size()));
         cards.push_back(card);
     };
     if (light.kind == LightKind::spot) {
         size_t in_cone = 0, largest = 0;
-        for (const Cell& cell : cells) in_cone += cell.hit > 0;
+        for (const Cell& cell : openings.cells) in_cone += cell.hit > 0;
         for (const auto& opening : openings.found) largest = std::max(largest, opening.size());
-        if (10 * largest > 6 * in_cone) return add(cone_card(view, cells));
+        if (10 * largest > 6 * in_cone) return add(cone_card(openings.view, openings.cells));
     }
     std::vector<std::vector<int>> parts;
     for (const auto& opening : openings.found) {
         const int count = 1 + static_cast<int>(std::min(static_cast<float>(opening.size()) / openings.large, 63.0f));
-        const auto pieces = cut(view, opening, count);
+        const auto pieces = cut(openings.view, opening, count);
         parts.insert(parts.end(), pieces.begin(), pieces.end());
     }
     std::stable_sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
     parts.resize(std::min(parts.size(), static_cast<size_t>(settings.cards)));
-    for (const auto& part : parts) add(card_of(view, cells, part));
+    for (const auto& part : parts) add(card_of(openings, part));
 }
 
 void place_by_hand(const Snapshot& snapshot, std::vector<BeamCard>& cards) {
