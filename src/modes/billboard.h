@@ -25,6 +25,9 @@ struct BeamCard {
 std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
                                   std::vector<float>* open = nullptr);
 
+// How far a point is from the beam's axis, in half widths of the beam there; infinite before and behind it.
+float off_axis(const BeamCard& card, vec3 point);
+
 // A card as this camera sees it.
 struct CardQuad {
     int card = 0, light = 0;
@@ -40,13 +43,21 @@ struct CardQuad {
     bool crossed = false; // one of two that stand still
 };
 
+// Sixteen quads side by side, to leave out those that a packet of rays cannot meet. A ray is (right, up, forward) of
+// its direction, or (right, up, 1) of its place in an orthographic picture.
+struct CardGroup {
+    float edges[4][3][16] = {}; // products with rays that meet the quad are not negative
+    float nearest[16];          // planar depth of the nearest corner
+};
+
 struct Billboards {
     BillboardSettings settings;
     StyleSettings style;
     Snapshot snapshot; // stylised, fog made even
     std::vector<CardQuad> quads;
-    std::vector<float> veils; // per light: share of the unshadowed light that an open sun leaves in all fog
-    vec3 eye{0};
+    std::vector<CardGroup> groups; // of the quads
+    std::vector<float> veils;      // per light: share of the unshadowed light that an open sun leaves in all fog
+    Camera camera;
     float pixel = 0; // width of a pixel one metre away
     float seconds = 0;
 };

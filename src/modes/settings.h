@@ -102,7 +102,9 @@ struct BillboardSettings {
     int cards = 64; // most per light, largest openings first
     int rays = 128; // across the light's view that looks for openings
     CardFacing facing = CardFacing::axis;
-    float brightness = 1;    // factor on all cards
+    float brightness = 1;    // factor on all cards and veils
+    float veil = 0.5f;       // share of the open air's fog that is taken for lit
+    float gaps = 4;          // factor on cards in the open, which have to show before the veil
     float streaks = 0.55f;   // how far stripes along the beam darken it, 0..1
     float stripes = 14;      // stripes across a card
     float soft = 1;          // share of a card's half width that fades out

@@ -14,7 +14,11 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
                    "how cards turn: about their beam towards the eye, square to the view, or not at all, two "
                    "crossed for each beam",
                    TYNDALL_FIELD(billboard.facing)));
-    number("brightness", "", 0, 1000, "factor on all cards", TYNDALL_FIELD(billboard.brightness));
+    number("brightness", "", 0, 1000, "factor on all cards and veils", TYNDALL_FIELD(billboard.brightness));
+    number("veil", "", 0, 1, "share of the fog in the open air that a sun lights evenly, before its cards",
+           TYNDALL_FIELD(billboard.veil));
+    number("gaps", "", 0, 1000, "factor on cards found in gaps in the open air, which have to show before its veil",
+           TYNDALL_FIELD(billboard.gaps));
     number("streaks", "", 0, 1, "how far stripes along the beam darken it", TYNDALL_FIELD(billboard.streaks));
     number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(billboard.stripes));
     number("soft", "", 0.05, 1, "share of a card's half width over which it fades out", TYNDALL_FIELD(billboard.soft));

@@ -1,5 +1,6 @@
 // Fog of a whole picture, surfaces excluded: preparation and all look-ups of a mode at 640×360, one ray per pixel, with
-// the first surfaces traced beforehand. Frames of moving scenes follow one another; `history` keeps what a mode keeps.
+// the first surfaces traced beforehand, and what a mode adds to the finished picture. Frames of moving scenes follow
+// one another; `history` keeps what a mode keeps.
 //
 //     tyndall_benchmark --benchmark_filter=fog_of_picture/froxel
 //     TYNDALL_MODES=froxel,march TYNDALL_SCENE=scenes/pillars.json TYNDALL_SET=froxel.tile=4 tyndall_benchmark ...
@@ -31,16 +32,21 @@ std::vector<std::string> parts_of(const std::string& list, char separator) {
     return parts;
 }
 
-// A picture's camera rays in tiles of 4×4 pixels, each up to the first surface.
+// A picture's camera rays in tiles of 4×4 pixels, each up to the first surface, and a picture of grey surfaces before a
+// bright sky.
 struct PictureRays {
     std::vector<Ray> rays;
     std::vector<uint32_t> ids;
     std::vector<vec2> positions;
     std::vector<float> jitter;
+    Image<vec3> color;
+    Image<float> alpha, depth;
 };
 
 PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
     PictureRays picture;
+    picture.color = Image<vec3>(view.size, vec3(2));
+    picture.alpha = Image<float>(view.size, 0), picture.depth = Image<float>(view.size, infinity);
     for (int y = 0; y < view.size.y; y += 4)
         for (int x = 0; x < view.size.x; x += 4)
             for (int i = 0; i < 16; ++i) {
@@ -60,6 +66,10 @@ PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
         for (size_t i = 0; i < 16; ++i) {
             const Interval fog = clip(reach, rays[i].origin, rays[i].direction, {0, rays[i].t_max});
             rays[i].t_max = hits.instance[i] >= 0 ? hits.t[i] : std::min(fog.high, 1e6f);
+            if (hits.instance[i] < 0) continue;
+            const ivec2 pixel(picture.positions[static_cast<size_t>(16 * tile) + i]);
+            picture.color.at(pixel.x, pixel.y) = vec3(0.2f), picture.alpha.at(pixel.x, pixel.y) = 1;
+            picture.depth.at(pixel.x, pixel.y) = hits.t[i] * glm::dot(rays[i].direction, view.camera.forward);
         }
     });
     return picture;
@@ -98,23 +108,35 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     const auto work = [](std::clock_t from, std::clock_t to) {
         return 1000.0 * static_cast<double>(to - from) / CLOCKS_PER_SEC;
     };
-    double prepare = 0, scatter = 0, prepare_work = 0, scatter_work = 0, fastest = 1e9;
+    struct Times {
+        double prepare = 0, scatter = 0, post = 0;
+    } real, cpu;
+    double fastest = 1e9;
     History history;
     for (auto _ : state) {
         const auto start = std::chrono::steady_clock::now();
         const std::clock_t work_start = std::clock();
         const ScatterFunction function = mode.prepare(view, snapshot, settings, keep ? &history : nullptr);
-        prepare += milliseconds_since(start);
+        real.prepare += milliseconds_since(start);
         const auto prepared = std::chrono::steady_clock::now();
         const std::clock_t work_prepared = std::clock();
         scatter_picture(function, picture, results);
-        scatter += milliseconds_since(prepared);
+        real.scatter += milliseconds_since(prepared);
+        const auto scattered = std::chrono::steady_clock::now();
+        const std::clock_t work_scattered = std::clock();
+        if (mode.prepare_post)
+            benchmark::DoNotOptimize(
+                mode.prepare_post(view, snapshot, settings)({picture.color, picture.alpha, picture.depth}));
+        real.post += milliseconds_since(scattered);
         fastest = std::min(fastest, milliseconds_since(start));
-        prepare_work += work(work_start, work_prepared), scatter_work += work(work_prepared, std::clock());
+        cpu.prepare += work(work_start, work_prepared), cpu.scatter += work(work_prepared, work_scattered);
+        cpu.post += work(work_scattered, std::clock());
     }
     const auto count = static_cast<double>(state.iterations());
-    state.counters["prepare_ms"] = prepare / count, state.counters["scatter_ms"] = scatter / count;
-    state.counters["prepare_cpu_ms"] = prepare_work / count, state.counters["scatter_cpu_ms"] = scatter_work / count;
+    state.counters["prepare_ms"] = real.prepare / count, state.counters["scatter_ms"] = real.scatter / count;
+    state.counters["prepare_cpu_ms"] = cpu.prepare / count, state.counters["scatter_cpu_ms"] = cpu.scatter / count;
+    if (mode.prepare_post)
+        state.counters["post_ms"] = real.post / count, state.counters["post_cpu_ms"] = cpu.post / count;
     state.counters["fastest_ms"] = fastest; // the least disturbed frame
     state.counters["threads"] = thread_count();
 }
