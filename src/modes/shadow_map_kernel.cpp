@@ -47,12 +47,14 @@ void march_sun(const Packet& packet, size_t index) {
     const int lookups = rays.map.empty() ? 1 : packet.march.settings.lookups;
     const float part = 1 / static_cast<float>(lookups);
     Sixteen* scattered = packet.scratch.scattered.data() + index * packet.media();
+    const Lit* lit_steps = scratch.lit.data() + index * static_cast<size_t>(packet.steps);
     for (int k = 0; k < packet.steps; ++k) {
+        const Lit is_lit = lit_steps[k];
         const Floats weight = load(scratch.weight.data() + 16 * k);
-        if (!any(weight > 0.0f)) continue;
+        if (is_lit == Lit::none || !any(weight > 0.0f)) continue;
         const Floats low = packet.border(k), length = packet.border(k + 1) - low;
-        Floats share = 0.0f;
-        for (int i = 0; i < lookups; ++i)
+        Floats share = is_lit == Lit::all ? static_cast<float>(lookups) : 0.0f;
+        for (int i = 0; i < lookups && is_lit == Lit::some; ++i)
             share = share + rays.lit_share(fused((packet.jitter + static_cast<float>(i)) * part, length, low));
         share = share * weight;
         const Mask16 lit = share > 0.0f;
@@ -73,7 +75,8 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     const Snapshot& snapshot = packet.march.snapshot;
     result.radiance = vec3(0);
     for (size_t m = 0; m < packet.media(); ++m) {
-        result.radiance += glow_per_extinction(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
+        result.radiance +=
+            glow_per_extinction(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
     }
     for (size_t i = 0; i < packet.lights(); ++i) {
         vec3 part(0);
@@ -94,6 +97,7 @@ float trust(const ShadowMapMarch& march, float first, float last) {
 void march_shadow_maps_kernel(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local Scratch scratch;
     const Packet packet = make_packet(march, batch, scratch);
+    find_lit(packet);
     Totals totals = march_rays(packet);
     for (size_t i = 0; i < packet.lights(); ++i)
         march.snapshot.lights[i].kind == LightKind::sun ? march_sun(packet, i) : march_light(packet, i, totals.taken);

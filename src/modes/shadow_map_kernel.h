@@ -29,6 +29,8 @@ ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings);
 // What shadow maps make wrong, whoever looks them up.
 std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings);
 
+inline constexpr int least_uneven_steps = 8; // fewer are even
+
 // The borders of `count` steps along a ray from first to last fog, t[0], t[stride], ...; the last is t[count·stride].
 // Of fog that goes on far beyond the scene the scene gets most steps, and what follows ever longer ones. All equal when
 // there is no fog.

@@ -24,7 +24,8 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
             t[static_cast<size_t>(first + k) * stride] = part.low + step * static_cast<float>(k);
     };
     const Interval scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
-    if (scene.empty() || stretch.length() < 2 * scene.length() || count < 8) return even(stretch, 0, count);
+    if (scene.empty() || stretch.length() < 2 * scene.length() || count < least_uneven_steps)
+        return even(stretch, 0, count);
 
     const int before = scene.low > stretch.low ? count / 8 : 0, after = stretch.high > scene.high ? count / 4 : 0;
     even({stretch.low, scene.low}, 0, before);

@@ -68,7 +68,7 @@ ShadowMap fitted_shadow_map(const View& view, const Snapshot& snapshot, const Li
 ShadowMap make_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
                           const ShadowMapOptions& options) {
     ShadowMap map = fitted_shadow_map(view, snapshot, light, options);
-    if (!map.empty()) fill_shadow_map(light, *snapshot.occluders, map);
+    if (!map.empty()) fill_shadow_map(view, snapshot, light, map);
     return map;
 }
 

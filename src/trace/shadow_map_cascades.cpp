@@ -1,4 +1,5 @@
 // Where the orthographic pictures of a sun lie.
+#include "trace/seen_space.h"
 #include "trace/shadow_map.h"
 #include "volume/brick_walk.h"
 
@@ -46,12 +47,10 @@ Across across(const ShadowMap& map, const Box& box) {
     return result;
 }
 
-// What the camera sees between two planar depths, the second one perhaps infinite. Pixel filters look a little past
-// the picture's edge.
+// What the camera sees between two planar depths, the second one perhaps infinite.
 Across across(const ShadowMap& map, const View& view, double near, double far) {
     const Camera& camera = view.camera;
-    const float past = view.filter_radius + 1;
-    const vec2 low(-past), high = vec2(view.size) + past;
+    const vec2 low(-past_edge(view)), high = vec2(view.size) - low;
     Across result;
     for (int i = 0; i < 4; ++i) {
         const Ray ray = camera_ray(camera, view.size, {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y});

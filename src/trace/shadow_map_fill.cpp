@@ -1,10 +1,10 @@
-// Fills shadow maps with the first surface of rays from the light, 4×4 texels at a time.
+// Fills shadow maps with the first surface of rays from the light, a block of texels at a time.
 #include "base/parallel.h"
-#include "trace/shadow_map.h"
+#include "trace/seen_space.h"
+#include "trace/shadow_blocks.h"
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr int most_sheets = 64; // BLEND surfaces passed by one ray
 
 struct Filling {
@@ -13,14 +13,15 @@ struct Filling {
     ShadowMap& map;
     mat3 map_to_world;
     bool has_alpha;
+    SeenSpace seen;
     float start = 0;           // w at which the rays of a sun begin, before all surfaces
     float nearest = 0;         // distance from a local light at which surfaces begin
     float smallest_cosine = 0; // to the axis, of texels that the light reaches
 };
 
-// The ray through a texel; w = its t + start.
-Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 texel) {
-    const vec2 at = (vec2(texel) + 0.5f - picture.offset) / picture.scale;
+// The ray at a texel number; w = its t + start.
+Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, vec2 texel) {
+    const vec2 at = (texel - picture.offset) / picture.scale;
     const ShadowMap& map = filling.map;
     if (map.kind == LightKind::sun)
         return {map.position + filling.map_to_world * vec3(at, filling.start), filling.light.direction};
@@ -45,18 +46,31 @@ float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, floa
     return depth;
 }
 
-void fill_tile(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 corner) {
+// Where any look-up that reads texels of a block can lie on the ray through its middle.
+Interval seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
+    const float radius =
+        (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(picture.scale.x, picture.scale.y);
+    const bool parallel = filling.map.kind == LightKind::sun;
+    return seen_stretch(filling.seen, middle.origin - filling.seen.anchor, middle.direction, parallel ? radius : 0,
+                        parallel ? 0 : radius);
+}
+
+void fill_block(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 corner) {
     Ray rays[16];
     int texels[16];
     size_t count = 0;
-    const ivec2 end = glm::min(corner + tile_side, picture.size);
+    const ivec2 end = glm::min(corner + block_side, picture.size);
     float* depth = filling.map.depth.data() + picture.first;
+    const Ray middle = texel_ray(filling, picture, face, vec2(corner) + 0.5f * block_side);
+    const Interval seen = seen_by_block(filling, picture, middle);
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
-            const Ray ray = texel_ray(filling, picture, face, {x, y});
             const int texel = y * picture.size.x + x;
-            depth[texel] = infinity;
+            depth[texel] = seen.empty() ? unseen_depth : infinity;
+            if (seen.empty()) continue;
+            Ray ray = texel_ray(filling, picture, face, vec2(x, y) + 0.5f);
             if (glm::dot(ray.direction, filling.light.direction) < filling.smallest_cosine) continue;
+            ray.t_max = seen.high;
             rays[count] = ray, texels[count++] = texel;
         }
     if (count == 0) return;
@@ -74,8 +88,10 @@ void fill_tile(const Filling& filling, const ShadowPicture& picture, size_t face
 }
 }
 
-void fill_shadow_map(const Light& light, const Occluders& occluders, ShadowMap& map) {
-    Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha()};
+void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& light, ShadowMap& map) {
+    const Occluders& occluders = *snapshot.occluders;
+    Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha(), {}};
+    filling.seen = seen_space(view, snapshot, map.position);
     filling.smallest_cosine = -2;
     if (map.kind == LightKind::sun) {
         const Box box = occluders.bounds();
@@ -98,19 +114,20 @@ void fill_shadow_map(const Light& light, const Occluders& occluders, ShadowMap& 
     int64_t rows = 0;
     for (const ShadowPicture& picture : map.pictures) {
         texels += static_cast<size_t>(picture.size.x) * static_cast<size_t>(picture.size.y);
-        rows += (picture.size.y + tile_side - 1) / tile_side;
+        rows += (picture.size.y + block_side - 1) / block_side;
     }
     map.depth.resize(texels);
     parallel_for(rows, [&](int64_t row) {
         size_t face = 0;
         for (;; ++face) {
-            const int64_t of_face = (map.pictures[face].size.y + tile_side - 1) / tile_side;
+            const int64_t of_face = (map.pictures[face].size.y + block_side - 1) / block_side;
             if (row < of_face) break;
             row -= of_face;
         }
         const ShadowPicture& picture = map.pictures[face];
-        for (int x = 0; x < picture.size.x; x += tile_side)
-            fill_tile(filling, picture, face, {x, static_cast<int>(row) * tile_side});
+        for (int x = 0; x < picture.size.x; x += block_side)
+            fill_block(filling, picture, face, {x, static_cast<int>(row) * block_side});
     });
+    make_blocks(map);
 }
 }

@@ -12,9 +12,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Texels around a filtered look-up on each side that a picture has to spare.
-inline constexpr float shadow_guard = 2;
-
 HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
     Ints r;
     for (size_t i = 0; i < parts; ++i)
