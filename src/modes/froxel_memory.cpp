@@ -30,11 +30,11 @@ bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const 
 
 bool all_finite(const float* v) { return std::isfinite(v[0] + v[1] + v[2]); }
 
-// Trilinear sum of light and of `known`, at a pixel and depth of the remembered frame.
-std::array<float, 4> remembered_at(const FroxelMemory& memory, vec2 pixel, float z) {
+// Trilinear sum of light and extinction, and how much of it is known, at a pixel and depth of the remembered frame.
+std::array<float, 5> remembered_at(const FroxelMemory& memory, vec2 pixel, float z) {
     const FroxelGrid& grid = memory.grid;
     const vec2 place = grid.tile_of(pixel);
-    std::array<float, 4> sum{};
+    std::array<float, 5> sum{};
     const vec2 last(grid.size - 1);
     const bool inside = place.x >= 0 && place.y >= 0 && place.x <= last.x && place.y <= last.y;
     if (!inside || !(z >= grid.faces.front() && z <= grid.faces.back())) return sum;
@@ -55,18 +55,21 @@ std::array<float, 4> remembered_at(const FroxelMemory& memory, vec2 pixel, float
         const size_t tile = grid.tile_index(cell + ivec2(x, y));
         const float *a = memory.light.at(grid, tile, near), *b = memory.light.at(grid, tile, far);
         for (size_t c = 0; c < 4; ++c) sum[c] += across * ((1 - depth) * a[c] + depth * b[c]);
+        sum[4] += across * ((a[3] > 0 ? 1 - depth : 0) + (b[3] > 0 ? depth : 0));
     }
     return sum;
 }
 
-// Least and most light among three slices of this frame's new froxels; least > most where there are none.
+// Least and most light among three slices of this frame's new froxels that hold fog, and extinction among all of them;
+// least > most where there are none.
 struct Bounds {
-    std::array<float, 3> low{infinity, infinity, infinity}, high{-infinity, -infinity, -infinity};
-    void add(const float* light) {
-        for (size_t c = 0; c < 3; ++c) low[c] = std::min(low[c], light[c]), high[c] = std::max(high[c], light[c]);
+    std::array<float, 4> low{infinity, infinity, infinity, infinity};
+    std::array<float, 4> high{-infinity, -infinity, -infinity, -infinity};
+    void add(const float* light, size_t from, size_t to) {
+        for (size_t c = from; c < to; ++c) low[c] = std::min(low[c], light[c]), high[c] = std::max(high[c], light[c]);
     }
     void add(const Bounds& other) {
-        for (size_t c = 0; c < 3; ++c)
+        for (size_t c = 0; c < 4; ++c)
             low[c] = std::min(low[c], other.low[c]), high[c] = std::max(high[c], other.high[c]);
     }
 };
@@ -80,8 +83,8 @@ std::vector<Bounds> bounds_in_depth(const FroxelGrid& grid, const FroxelTiles& t
         for (int k = 0; k < slices && !is_hidden(grid, tiles, tile, k); ++k) {
             const float* here = light.at(grid, tile, k);
             const bool is_new = !stale || !stale[tile * static_cast<size_t>(slices) + static_cast<size_t>(k)];
-            if (!is_new || !(here[3] > 0) || !all_finite(here)) continue;
-            for (int i = std::max(k - 1, 0); i <= std::min(k + 1, slices - 1); ++i) column[i].add(here);
+            const size_t from = is_new && here[3] > 0 && all_finite(here) ? 0 : 3;
+            for (int i = std::max(k - 1, 0); i <= std::min(k + 1, slices - 1); ++i) column[i].add(here, from, 4);
         }
     });
     return bounds;
@@ -94,8 +97,7 @@ FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, const F
         for (int k = 0; k < grid.slices(); ++k) {
             float* v = memory.light.at(grid, tile, k);
             const bool known = !is_hidden(grid, tiles, tile, k) && v[3] > 0 && all_finite(v);
-            for (int c = 0; c < 3 && !known; ++c) v[c] = 0;
-            v[3] = known ? 1 : 0;
+            for (int c = 0; c < 4 && !known; ++c) v[c] = 0;
         }
     });
     return memory;
@@ -110,11 +112,10 @@ FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const Fro
         for (int k = 0; k < grid.slices() && !is_hidden(grid, tiles, tile, k); ++k) {
             const size_t i = static_cast<size_t>(k);
             const vec3 then = project(memory.grid, grid.point(pixel, 0.5f * (grid.faces[i] + grid.faces[i + 1])));
-            const std::array<float, 4> sum = remembered_at(memory, vec2(then), then.z);
-            if (!(sum[3] > least) || !all_finite(sum.data())) continue;
+            const std::array<float, 5> sum = remembered_at(memory, vec2(then), then.z);
+            if (!(sum[4] > least) || !all_finite(sum.data())) continue;
             float* v = remembered.at(grid, tile, k);
-            for (size_t c = 0; c < 3; ++c) v[c] = sum[c] / sum[3];
-            v[3] = 1;
+            for (size_t c = 0; c < 4; ++c) v[c] = sum[c] / sum[4];
         }
     });
     return remembered;
@@ -150,10 +151,11 @@ void blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const Froxe
                     around.add(in_depth[grid.tile_index({x, y}) * slices + static_cast<size_t>(k)]);
             float* now = light.at(grid, tile, k);
             const bool is_stale = stale && stale[i];
-            for (size_t c = 0; c < 3; ++c) {
+            for (size_t c = 0; c < 4; ++c) {
                 const bool bounded = around.low[c] <= around.high[c];
                 const float kept = bounded ? std::clamp(before[c], around.low[c], around.high[c]) : before[c];
-                now[c] = is_stale ? kept : now[c] + weight * (kept - now[c]);
+                // Extinction is new everywhere.
+                now[c] = is_stale && c < 3 ? kept : now[c] + weight * (kept - now[c]);
             }
         }
     });

@@ -5,6 +5,7 @@
 #include "trace/view.h"
 
 #include <memory>
+#include <vector>
 
 namespace tyndall {
 struct FroxelMemory; // of modes/froxel_memory.h
@@ -16,11 +17,13 @@ struct History {
     View view;      // of the last frame
     Settings settings;
     const Scene* scene = nullptr;
+    std::vector<vec3> lights; // what each shone into the fog
     std::shared_ptr<const FroxelMemory> froxels;
     std::shared_ptr<const FogPicture> picture;
 };
 
 // Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another
-// scene, picture size, lens or settings, or a cut. Returns the number of frames it reaches back.
+// scene, picture size, lens or settings, a cut, or a light switched on or off. Returns the number of frames it reaches
+// back.
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings);
 }

@@ -30,6 +30,11 @@ TEST(History, GoesOnWhileThePictureDoes) {
     EXPECT_TRUE(resets([&] { view.camera.name = "other"; })) << "camera";
     EXPECT_TRUE(resets([&] { view.size.x += 1; })) << "size";
     EXPECT_TRUE(resets([&] { settings.march.step_depth *= 0.5f; })) << "settings";
+    snapshot.lights = {Light{}, Light{}};
+    EXPECT_TRUE(resets([&] { snapshot.lights.pop_back(); })) << "a light out";
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 2.1f; })) << "a light switched up";
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity.y *= 0.4f; })) << "a light of another colour";
+    EXPECT_FALSE(resets([&] { snapshot.lights[0].intensity *= 0.6f; })) << "a light that flickers";
     Scene other;
     EXPECT_TRUE(resets([&] { snapshot.scene = &other; })) << "scene";
 }
