@@ -11,9 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 HWY_INLINE float least(const Floats& a) {
-    float result = infinity;
-    for (size_t i = 0; i < parts; ++i) result = std::min(result, hn::GetLane(hn::MinOfLanes(FloatTag(), a.part[i])));
-    return result;
+    auto result = a.part[0];
+    for (size_t i = 1; i < parts; ++i) result = hn::Min(result, a.part[i]);
+    return hn::GetLane(hn::MinOfLanes(FloatTag(), result));
 }
 HWY_INLINE float most(const Floats& a) { return -least(-a); }
 }

@@ -168,7 +168,7 @@ bool add_local(Packet& packet, const ConeLight& light) {
         const Mask16 bright = there & (min(before, after) < 60.0f);
         before = after, known = true;
         if (!any(bright)) continue;
-        const float share = highest(zero_unless(bright, AnglePiece(piece, seen).angle)) * (2 / pi);
+        const float share = most(zero_unless(bright, AnglePiece(piece, seen).angle)) * (2 / pi);
         const Floats length = zero_unless(bright, piece.high - piece.low);
         add_piece(packet, light, seen, piece, node_count(packet, share, zero_unless(bright, change), length));
     }

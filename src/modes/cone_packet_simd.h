@@ -7,6 +7,7 @@
 #define TYNDALL_MODES_CONE_PACKET_SIMD_H
 #endif
 
+#include "base/reduce_simd.h"
 #include "base/simd.h"
 #include "modes/cone.h"
 #include "modes/cone_simd.h"
@@ -184,7 +185,7 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
         narrowest = std::min(narrowest, 1 - std::min(g, largest_g));
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
-    const float change_at_most = std::min(highest(amount), 60.0f);
+    const float change_at_most = std::min(most(amount), 60.0f);
     const float wanted = 7 + (nodes - 2) * (2 * share * lobe + change_at_most * 0.16f);
     return std::clamp(static_cast<int>(wanted), 2, most_gauss_nodes);
 }

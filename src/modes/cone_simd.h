@@ -15,12 +15,6 @@ struct Stretch16 {
     Floats low, high; // empty when high <= low
 };
 
-HWY_INLINE float highest(const Floats& a) {
-    alignas(64) float v[16];
-    store(a, v);
-    return *std::max_element(v, v + 16);
-}
-
 // a·b - c·d within two roundings of the result, whatever cancels (Kahan).
 HWY_INLINE Floats difference_of_products(const Floats& a, const Floats& b, const Floats& c, const Floats& d) {
     const Floats product = c * d;

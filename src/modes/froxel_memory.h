@@ -14,7 +14,8 @@ struct FroxelMemory {
 
 FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light);
 
-// The light and extinction remembered at the centre of each froxel of `grid`; zeros where the last frame did not see it.
+// The light and extinction remembered at the centre of each froxel of `grid`; zeros where the last frame did not see
+// it.
 FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles);
 
 // 1 for each froxel that need not be lit anew in this frame: all remembered ones but a quarter, another one each frame,
@@ -22,8 +23,8 @@ FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const Fro
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
                                    int frame);
 
-// Blends this frame's light and extinction with what is remembered, weighted `weight`, after clamping it to what the froxels around
-// show in this frame. Stale froxels (may be null) are what they were, within those bounds.
+// Blends this frame's light and extinction with what is remembered, weighted `weight`, after clamping it to what the
+// froxels around show in this frame. Stale froxels (may be null) are what they were, within those bounds.
 void blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
                    const uint8_t* stale, float weight, FroxelLight& light);
 }

@@ -45,7 +45,7 @@ struct Totals {
 struct Points {
     Vec3s position;
     Floats length; // of the step, 0 in lanes that are done
-    Mask16 active;      // lanes with fog here
+    Mask16 active; // lanes with fog here
 };
 
 // The stretch of a ray from first to last fog.

@@ -7,6 +7,7 @@
 #define TYNDALL_MODES_SHADOW_MAP_PACKET_SIMD_H
 #endif
 
+#include "base/reduce_simd.h"
 #include "base/simd.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style_simd.h"
@@ -135,13 +136,6 @@ struct Reach {
     vec3 low, high;
 };
 
-HWY_INLINE float lowest(const Floats& a) {
-    auto least = a.part[0];
-    for (size_t i = 1; i < parts; ++i) least = hn::Min(least, a.part[i]);
-    return hn::GetLane(hn::MinOfLanes(FloatTag(), least));
-}
-HWY_INLINE float highest(const Floats& a) { return -lowest(-a); }
-
 // Finds which steps of a packet's rays a sun lights, many at once where it can.
 struct LitSteps {
     const Packet& packet;
@@ -151,13 +145,13 @@ struct LitSteps {
 
     LitSteps(const Packet& of, const RaysInMap& in, Lit* result) : packet(of), rays(in), lit(result) {
         const Floats farthest = packet.border(packet.steps);
-        const auto rounding = [&](const Floats& origin) HWY_ATTR { return 4e-7f * highest(abs(origin) + farthest); };
+        const auto rounding = [&](const Floats& origin) HWY_ATTR { return 4e-7f * most(abs(origin) + farthest); };
         slack = {rounding(rays.origin.x), rounding(rays.origin.y), rounding(rays.origin.z)};
     }
     Reach reach_at(int border) const {
         const Vec3s point = rays.at(packet.border(border));
-        return {vec3(lowest(point.x), lowest(point.y), lowest(point.z)) - slack,
-                vec3(highest(point.x), highest(point.y), highest(point.z)) + slack};
+        return {vec3(least(point.x), least(point.y), least(point.z)) - slack,
+                vec3(most(point.x), most(point.y), most(point.z)) + slack};
     }
     void find(int first, int last, const Reach& a, const Reach& b) const {
         const Lit found = lit_in_box(rays.map, glm::min(a.low, b.low), glm::max(a.high, b.high));

@@ -37,8 +37,8 @@ double low_power(const std::vector<double>& values, int radius) {
 }
 
 TEST(Jitter, EveryPatternIsEvenlySpread) {
-    for (const Jitter jitter : {Jitter::ordered, Jitter::white, Jitter::blue, Jitter::interleaved,
-                                Jitter::spatiotemporal})
+    for (const Jitter jitter :
+         {Jitter::ordered, Jitter::white, Jitter::blue, Jitter::interleaved, Jitter::spatiotemporal})
         for (const int frame : {0, 1, 7}) {
             double sum = 0;
             std::vector<int> counts(16);
