@@ -13,22 +13,28 @@ float smooth(float x) {
     return t * t * (3 - 2 * t);
 }
 
-// Even fog's answer to the light along the line of sight straight at it: irradiance at the eye times
-// Σ albedo p (1 - e^-depth), p for light that travels to the eye, or along a spot's axis. Only a scale: the blur itself
-// knows no units.
-vec3 brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float distance) {
-    const bool spot = light.kind == LightKind::spot;
-    const float cosine = spot ? glm::dot(light.direction, -towards.direction) : 1;
-    const float squared = std::max(distance * distance, 1e-6f);
-    const vec3 irradiance = light.kind == LightKind::sun ? light.intensity : light.intensity / squared;
+// What even fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth).
+vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards) {
     vec3 sum(0);
     for (const Medium& medium : even_media(snapshot.media)) {
-        Ray ray = towards;
-        ray.t_max = std::min(distance, far_away);
-        const float depth = static_cast<float>(optical_depth(medium, ray));
-        sum += medium.optics.albedo * (phase_value(medium.optics.phase, cosine) * -std::expm1(-depth));
+        const float depth = static_cast<float>(optical_depth(medium, towards));
+        sum += medium.optics.albedo * (phase_value(medium.optics.phase, 1) * -std::expm1(-depth));
     }
-    return sum * irradiance * light.volume_scale;
+    return sum * light.intensity * light.volume_scale;
+}
+
+// Of a lamp: the mean over its disc. At h from it isotropic fog shows I σs / (4 h), on average twice as much as at the
+// disc's edge; a spot has its share of that. σs and what dims it are those of the way to the eye.
+vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float radius) {
+    vec3 sum(0);
+    float whole = 0;
+    for (const Medium& medium : even_media(snapshot.media)) {
+        const float depth = static_cast<float>(optical_depth(medium, towards));
+        sum += medium.optics.albedo * depth, whole += depth;
+    }
+    const float share = light.kind == LightKind::spot ? 0.5f * (1 - std::cos(light.outer_cone)) : 1.0f;
+    const float at_edge = std::exp(-whole) / (std::max(towards.t_max, 1e-3f) * 4 * radius);
+    return sum * light.intensity * (light.volume_scale * share * 2 * at_edge);
 }
 
 float pixels_per_metre(const View& view, float depth) {
@@ -61,7 +67,9 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
         BlurLight blur{i, *position, sun ? infinity : depth, 0, fade, vec3(0), 0};
         blur.radius = settings.size * static_cast<float>(view.size.y);
         if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
-        blur.color = brightness(snapshot, light, {view.camera.position, towards / distance}, sun ? infinity : distance);
+        const Ray ray{view.camera.position, towards / distance, sun ? far_away : distance};
+        blur.color =
+            sun ? sun_brightness(snapshot, light, ray) : lamp_brightness(snapshot, light, ray, settings.lamp_size);
         blur.share = luminance(blur.color);
         total += blur.share;
         lights.push_back(blur);
