@@ -12,6 +12,7 @@
 #include "trace/light_depth_simd.h"
 #include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"
+#include "volume/fog_reach.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
 #include "volume/steps.h"
@@ -48,17 +49,6 @@ struct Points {
     Mask16 active; // lanes with fog here
 };
 
-// The stretch of a ray from first to last fog.
-Interval fog_stretch(const March& march, const Ray& ray) {
-    Interval stretch{infinity, 0};
-    for (const Medium& medium : march.snapshot.media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-        if (inside.empty()) continue;
-        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
-    }
-    return stretch;
-}
-
 // The parts of a piece of a ray inside the cones of spots, from its start.
 void find_beams(const March& march, const Ray& ray, Interval piece, std::vector<Step>& beams) {
     beams.clear();
@@ -91,7 +81,7 @@ void append_piece(const March& march, const Ray& ray, Interval piece, std::vecto
 }
 
 void place_ray_steps(const March& march, const Ray& ray, std::vector<Step>& steps) {
-    const Interval stretch = fog_stretch(march, ray);
+    const Interval stretch = fog_stretch(march.snapshot.media, ray);
     // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
     const Interval scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
     if (scene.empty() || stretch.length() < 2 * scene.length()) return append_piece(march, ray, stretch, steps);

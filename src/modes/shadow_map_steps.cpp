@@ -1,21 +1,9 @@
 // Where steps lie: exactly between entry and exit of fog and light.
 #include "modes/shadow_map_kernel.h"
 #include "scene/cone.h"
+#include "volume/fog_reach.h"
 
 namespace tyndall {
-namespace {
-// The stretch of a ray from first to last fog.
-Interval fog_stretch(std::span<const Medium> media, const Ray& ray) {
-    Interval stretch{infinity, 0};
-    for (const Medium& medium : media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-        if (inside.empty()) continue;
-        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
-    }
-    return stretch.empty() ? Interval{} : stretch;
-}
-}
-
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride) {
     const Interval stretch = fog_stretch(march.snapshot.media, ray);
     const auto even = [&](Interval part, int first, int steps) {

@@ -37,4 +37,14 @@ float fog_reach(std::span<const Medium> media, const Ray& ray) {
     }
     return std::min(reach, ray.t_max);
 }
+
+Interval fog_stretch(std::span<const Medium> media, const Ray& ray) {
+    Interval stretch{infinity, 0};
+    for (const Medium& medium : media) {
+        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+        if (inside.empty()) continue;
+        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
+    }
+    return stretch.empty() ? Interval{} : stretch;
+}
 }
