@@ -87,7 +87,7 @@ Settings settings_for(Quality quality) {
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32, march.light = LightTransmittance::froxel;
         volume.nodes = 3, volume.steps = 16, volume.light_resolution = 32;
-        froxel.tile = 16, froxel.depth_slices = 48, froxel.visibility = FroxelVisibility::rays;
+        froxel.tile = 16, froxel.depth_slices = 48;
         map.steps = 16, map.resolution = 256;
         break;
     case Quality::preview:
