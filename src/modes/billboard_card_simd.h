@@ -33,7 +33,7 @@ HWY_INLINE Floats smooth(float low, float high, const Floats& x) {
 
 // Random numbers 0..1 of lattice points.
 HWY_INLINE Floats random16(const Ints& x, const Ints& y, int32_t seed) {
-    Ints h = x * 374761393 + y * 668265263 + seed * 69069;
+    Ints h = x * 374761393 + y * 668265263 + static_cast<int32_t>(static_cast<uint32_t>(seed) * 69069u);
     h = (h ^ shift_right<13>(h)) * 1274126177;
     h = h ^ shift_right<16>(h);
     return to_floats(h & 0xffff) * (1.0f / 65535);
