@@ -1,25 +1,12 @@
 // Pictures of tiny scenes by the froxel mode and by the reference.
 #pragma once
-#include "tiny_scenes.h"
-
-#include "trace/scene_fixtures.h"
+#include "stage.h"
 
 namespace tyndall::test {
-// A snapshot with triangles; keeps their scene.
-struct FroxelStage {
-    std::shared_ptr<Scene> scene = std::make_shared<Scene>();
-    Snapshot snapshot;
-};
-
-inline FroxelStage froxel_stage(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes,
-                                vec3 ambient = vec3(0)) {
-    FroxelStage stage;
-    stage.scene->materials = {blend_material(0.5f)};
-    for (Mesh& mesh : meshes) add_mesh(*stage.scene, std::move(mesh));
-    stage.snapshot = scene_of(std::move(media), std::move(lights), ambient);
-    stage.snapshot.scene = stage.scene.get();
-    stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
-    return stage;
+// A box of fog of which a roof shadows half from a slanted sun.
+inline Stage half_shadowed_fog() {
+    return stage_of({even_fog(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun({0.3f, -1, 0.1f}, 2)},
+                    {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
 }
 
 inline View view_of(vec3 position, vec3 target, ivec2 size = {64, 36}) {

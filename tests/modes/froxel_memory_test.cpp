@@ -7,11 +7,11 @@
 
 namespace tyndall::test {
 namespace {
-FroxelStage lit_stage(bool lamp = true) {
+Stage lit_stage(bool lamp = true) {
     std::vector<Light> lights{sun({0.3f, -1, 0.1f}, 0.1f)};
     if (lamp) lights.push_back(point_light({0.5f, 4.5f, 0}, 40));
-    return froxel_stage({even_fog(0.2f, {vec3(-3), vec3(3)})}, lights,
-                        {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_mesh({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
+    return stage_of({even_fog(0.2f, {vec3(-3), vec3(3)})}, lights,
+                    {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_mesh({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
 }
 
 View moved_view(int frame) {
@@ -35,7 +35,7 @@ protected:
 };
 
 TEST_P(FroxelHistory, StartsAsIfThereWereNoneAlsoAfterACut) {
-    const FroxelStage stage = lit_stage();
+    const Stage stage = lit_stage();
     History history;
     for (int frame = 0; frame < 3; ++frame) picture(moved_view(frame), stage.snapshot, settings(), &history);
     View cut = moved_view(3);
@@ -49,8 +49,8 @@ TEST_P(FroxelHistory, StartsAsIfThereWereNoneAlsoAfterACut) {
 }
 
 TEST_P(FroxelHistory, ALightSwitchedOffIsForgotten) {
-    FroxelStage stage = lit_stage(true);
-    const FroxelStage dark = lit_stage(false);
+    Stage stage = lit_stage(true);
+    const Stage dark = lit_stage(false);
     History history;
     double before = 0;
     for (int frame = 0; frame < 8; ++frame)
@@ -65,7 +65,7 @@ TEST_P(FroxelHistory, ALightSwitchedOffIsForgotten) {
 }
 
 TEST_P(FroxelHistory, ANaNIsGoneInTheNextFrame) {
-    const FroxelStage stage = lit_stage();
+    const Stage stage = lit_stage();
     History history;
     picture(moved_view(0), stage.snapshot, settings(), &history);
     auto poisoned = std::make_shared<FroxelMemory>(*history.froxels);
@@ -80,7 +80,7 @@ TEST_P(FroxelHistory, ANaNIsGoneInTheNextFrame) {
 TEST_P(FroxelHistory, StaysCloseToTheReference) {
     // Samples spread over whole froxels, found between them again and again, blur edges; they lose no energy, and what
     // moved leaves nothing behind. One frame alone is 3 % off here.
-    const FroxelStage stage = lit_stage();
+    const Stage stage = lit_stage();
     const auto error_and_ratio = [&](bool moves) {
         History history;
         std::vector<Scatter> last;
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, FroxelHistory,
                                           testing::Values(FroxelVisibility::rays, FroxelVisibility::slices)));
 
 TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
-    const FroxelStage stage = lit_stage();
+    const Stage stage = lit_stage();
     FroxelGrid grid = make_froxel_grid(moved_view(0).camera, {64, 36}, 8);
     const FroxelTiles tiles = make_froxel_tiles(grid, stage.snapshot);
     set_slices(grid, 3, 9, 16, 4, 0, 0);

@@ -6,9 +6,7 @@
 namespace tyndall::test {
 namespace {
 TEST(Froxel, ErrorFallsAtLeastAsTheRootOfTheRefinement) {
-    const FroxelStage stage =
-        froxel_stage({even_fog(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun({0.3f, -1, 0.1f}, 2)},
-                     {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
+    const Stage stage = half_shadowed_fog();
     const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);

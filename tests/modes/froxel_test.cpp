@@ -68,7 +68,7 @@ TEST(Froxel, ADarkRoomStaysDark) {
     // A closed room of thin walls in fog that is everywhere, under a sun of 100 000 lux.
     Mesh room = box_mesh({-3, 0, -4}, {3, 3, 4});
     const std::vector<Medium> fog{even_fog(0.1f, {vec3(-20), vec3(20)})};
-    const FroxelStage stage = froxel_stage(fog, {sun({0.4f, -1, 0.3f}, 1e5f)}, {room});
+    const Stage stage = stage_of(fog, {sun({0.4f, -1, 0.3f}, 1e5f)}, {room});
     const View inside = view_of({1.5f, 1.2f, 3.5f}, {-1, 1.4f, -4});
     const View outside = view_of({1.5f, 1.2f, 15}, {-1, 1.4f, 6});
     for (const int tile : {1, 4, 8, 16})
@@ -85,9 +85,7 @@ TEST(Froxel, ADarkRoomStaysDark) {
 }
 
 TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
-    const FroxelStage stage =
-        froxel_stage({even_fog(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun({0.3f, -1, 0.1f}, 2)},
-                     {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
+    const Stage stage = half_shadowed_fog();
     const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
@@ -132,9 +130,9 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
 }
 
 TEST(Froxel, StretchesBehindGlassContinueTheRay) {
-    const FroxelStage stage =
-        froxel_stage({even_fog(0.3f, {vec3(-6), vec3(6)})}, {sun({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
-                     {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
+    const Stage stage =
+        stage_of({even_fog(0.3f, {vec3(-6), vec3(6)})}, {sun({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
+                 {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
     const View view = view_of({0, 0, 5}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, stage.snapshot, {});
     for (const vec2 pixel : {vec2(30, 12), vec2(50, 30), vec2(3, 3)})
@@ -149,13 +147,13 @@ TEST(Froxel, StretchesBehindGlassContinueTheRay) {
         }
 }
 
-FroxelStage busy_stage() {
+Stage busy_stage() {
     Medium banks = grid_fog(0.6f, unit_grid(16, [](vec3 p) { return p.x * p.y + 0.2f; }));
     Light soft = point_light({1.4f, 1.2f, 0.4f}, 3);
     soft.radius = 0.1f;
-    return froxel_stage({even_fog(0.2f, {vec3(-1), vec3(2)}), banks}, {sun({0.4f, -1, -0.3f}, 1), soft},
-                        {box_mesh({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
-                        vec3(0.1f));
+    return stage_of({even_fog(0.2f, {vec3(-1), vec3(2)}), banks}, {sun({0.4f, -1, -0.3f}, 1), soft},
+                    {box_mesh({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
+                    vec3(0.1f));
 }
 
 bool same(const Scatter& a, const Scatter& b) {
@@ -163,7 +161,7 @@ bool same(const Scatter& a, const Scatter& b) {
 }
 
 TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
-    const FroxelStage stage = busy_stage();
+    const Stage stage = busy_stage();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
     for (const char* visibility : {"rays", "slices"}) {
@@ -177,7 +175,7 @@ TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
 }
 
 TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
-    const FroxelStage stage = busy_stage();
+    const Stage stage = busy_stage();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     for (const float ortho : {0.0f, 1.5f}) {
         view.camera.ortho_height = ortho;
@@ -196,7 +194,7 @@ TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
 }
 
 TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
-    const FroxelStage stage = busy_stage();
+    const Stage stage = busy_stage();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     view.camera.ortho_height = 1.5f;
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
@@ -206,7 +204,7 @@ TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
 }
 
 TEST(Froxel, PartsOfTheLightsAddUp) {
-    FroxelStage stage = busy_stage();
+    Stage stage = busy_stage();
     stage.snapshot.ambient = vec3(0);
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     for (const bool with_history : {false, true}) {
@@ -227,7 +225,7 @@ TEST(Froxel, PartsOfTheLightsAddUp) {
 }
 
 TEST(Froxel, NoFogIsNothing) {
-    const FroxelStage stage = froxel_stage({}, {sun({0, -1, 0})}, {box_mesh(vec3(-1), vec3(1))});
+    const Stage stage = stage_of({}, {sun({0, -1, 0})}, {box_mesh(vec3(-1), vec3(1))});
     const View view = view_of({0, 0, 6}, vec3(0));
     for (const Scatter& result : scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot))) {
         EXPECT_EQ(result.radiance, vec3(0));
@@ -236,7 +234,7 @@ TEST(Froxel, NoFogIsNothing) {
 }
 
 TEST(Froxel, SurfacesInTheLastFroxelLowerTheValidity) {
-    const FroxelStage stage = busy_stage();
+    const Stage stage = busy_stage();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     const auto results = scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot, 8));
     double least = 1;

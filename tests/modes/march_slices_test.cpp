@@ -1,10 +1,9 @@
 // The exact march against closed forms, quadrature of the light equation, and the sampled march.
-#include "tiny_scenes.h"
+#include "stage.h"
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "trace/light_ray.h"
-#include "trace/scene_fixtures.h"
 
 #include <gtest/gtest.h>
 
@@ -12,25 +11,6 @@ namespace tyndall::test {
 namespace {
 const Box unit_box{vec3(0), vec3(1)};
 const double four_pi = 4 * std::acos(-1.0);
-
-// A snapshot with triangles; keeps their scene.
-struct Stage {
-    std::shared_ptr<Scene> scene = std::make_shared<Scene>();
-    Snapshot snapshot;
-};
-
-Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient = vec3(0)) {
-    Stage stage;
-    stage.scene->materials = {blend_material(0.5f)};
-    for (Mesh& mesh : meshes) add_mesh(*stage.scene, std::move(mesh));
-    stage.snapshot = scene_of(std::move(media), std::move(lights), ambient);
-    stage.snapshot.scene = stage.scene.get();
-    stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
-    return stage;
-}
-
-// Opaque over x < edge at height y, far out to the other sides.
-Mesh shade(float edge, float y) { return quad({edge - 50, y, -50}, {50, 0, 0}, {0, 0, 100}); }
 
 TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
@@ -310,81 +290,6 @@ TEST(MarchSlices, LightsWithoutShadowsAndTheEndOfTheMarch) {
     EXPECT_LT(whole.transmittance, ended.transmittance);
     EXPECT_LT(ended.radiance.x, whole.radiance.x);
     EXPECT_GT(ended.radiance.x, 0.9f * whole.radiance.x);
-}
-
-// Each ray once per sample, with the place of that sample; the mean.
-dvec3 mean_over_samples(const Snapshot& snapshot, const Settings& settings, const Ray& ray, uint32_t samples) {
-    const ScatterFunction scatter = find_mode("march").prepare(View{}, snapshot, settings, nullptr);
-    dvec3 sum(0);
-    for (uint32_t first = 0; first < samples; first += 16) {
-        const std::vector<Ray> rays(16, ray);
-        uint32_t ids[16];
-        SamplePlace places[16];
-        Scatter results[16];
-        for (uint32_t i = 0; i < 16; ++i) ids[i] = hash(first + i, 4u), places[i] = {77, first + i};
-        scatter({rays, ids, {}, {}, places}, results);
-        for (const Scatter& result : results) sum += dvec3(result.radiance);
-    }
-    return sum / double(samples);
-}
-
-TEST(MarchSlices, SoftSunIsTheMeanOverItsDisc) {
-    // Edge at x = 0.4, 1.7 m above a level ray through thin fog: what counts is the mean lit length. Brute force over
-    // 256² directions of the disc.
-    Light light = sun({0.2f, -1, 0});
-    light.angle = 0.1f;
-    const Stage stage = stage_of({even_fog(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
-    const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    double mean = 0;
-    constexpr int n = 256;
-    for (int i = 0; i < n * n; ++i) {
-        const vec2 u((i % n + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n);
-        const vec3 direction = ray_to_light(light, vec3(0), u).direction;
-        const double edge = 0.4 - 1.7 * direction.x / direction.y; // x from which on the ray is lit
-        mean += 1 - std::clamp(edge, 0.0, 1.0);
-    }
-    mean /= n * n;
-    Light hard = light;
-    hard.angle = 0;
-    const double full = marched(scene_of(stage.snapshot.media, {hard}), exact_settings(), ray).radiance.x;
-    const double found = mean_over_samples(stage.snapshot, exact_settings(), ray, 1024).x;
-    EXPECT_GT(mean, 0.1);
-    EXPECT_LT(mean, 0.9);
-    EXPECT_NEAR(found / full, mean, 2e-3); // e^-0.001 along the ray, and 1024 stratified samples
-}
-
-TEST(MarchSlices, SoftLampAgreesWithShadowRaysToItsBall) {
-    Light light = point_light({0.4f, 2, 0.5f}, 3);
-    light.radius = 0.1f;
-    const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
-    const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    Settings rays = exact_settings();
-    rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256;
-    const double sampled = mean_over_samples(stage.snapshot, rays, ray, 512).x;
-    const double sliced = mean_over_samples(stage.snapshot, exact_settings(), ray, 1024).x;
-    EXPECT_NEAR(sliced / sampled, 1, 2e-3); // radius²/distance² of the penumbra's part, and 131072 shadow rays
-    light.radius = 0;
-    Stage hard = stage_of(stage.snapshot.media, {light}, {shade(0.3f, 1.2f)});
-    EXPECT_GT(std::abs(marched(hard.snapshot, exact_settings(), ray).radiance.x / sliced - 1), 1e-4);
-}
-
-TEST(MarchSlices, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
-    // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
-    Light light = point_light({0.4f, 2, 0.5f}, 3);
-    light.radius = 0.2f;
-    const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
-    const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    Settings many = exact_settings();
-    many.march.light_points = 8;
-    const double together = mean_over_samples(stage.snapshot, many, ray, 16).x;
-    const double apart = mean_over_samples(stage.snapshot, exact_settings(), ray, 128).x;
-    EXPECT_NEAR(together / apart, 1, 1e-6);
-    EXPECT_GT(std::abs(mean_over_samples(stage.snapshot, exact_settings(), ray, 16).x / apart - 1), 1e-5);
-
-    // Shadow rays to many points in each step: the same light with less noise.
-    Settings rays = exact_settings();
-    rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256, rays.march.light_points = 64;
-    EXPECT_NEAR(mean_over_samples(stage.snapshot, rays, ray, 16).x / apart, 1, 0.01);
 }
 
 TEST(MarchSlices, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
