@@ -1,8 +1,9 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
 #include "modes/limits.h"
+#include "modes/lit_fog.h"
+#include "modes/march_exact.h"
 #include "modes/march_kernel.h"
-#include "modes/march_slices.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
@@ -26,9 +27,10 @@ std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, cons
     for (const Light& light : snapshot.lights)
         if (march.visibility == Visibility::off && light.shadows)
             limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
-    if (march.visibility == Visibility::slices && snapshot.occluders && snapshot.occluders->has_alpha())
-        limits.push_back(
-            {Severity::info, "march.visibility", "shadows of MASK and BLEND surfaces are sampled, not sliced"});
+    const bool sliced = march.visibility == Visibility::slices || march.visibility == Visibility::exact;
+    if (sliced && snapshot.occluders && snapshot.occluders->has_alpha())
+        limits.push_back({Severity::info, "march.visibility",
+                          "shadows of MASK and BLEND surfaces are sampled by rays, not cut out exactly"});
     if (march.visibility == Visibility::maps)
         for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
     if (!snapshot.media.empty() && march.light == LightTransmittance::off)
@@ -52,7 +54,37 @@ Snapshot march_snapshot(const Snapshot& snapshot, const Settings& settings) {
     return result;
 }
 
+namespace {
+// Beyond so many triangles, by measurement, shadow rays at every step are the quicker way to the same error: of soft
+// lights, of which every ray cuts its own slice, and of others, whose volumes are made once.
+constexpr uint64_t most_sliced = 200'000, most_with_volumes = 2'000'000;
+
+// Steps inside lit stretches. Shadows are exact, of one point of each light for a ray; but sampled by rays at every
+// step where surfaces have alpha, or are too many.
+ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    auto fog = std::make_shared<LitFog>();
+    const MarchSettings& march = settings.march;
+    fog->snapshot = march_snapshot(snapshot, settings), fog->style = settings.style;
+    fog->nodes = march.nodes, fog->light_points = march.light_points;
+    fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
+    const uint64_t triangles = snapshot.occluders ? snapshot.occluders->triangle_count() : 0;
+    const auto by = [&](const Light& light) {
+        const bool soft = is_soft(light), many = triangles > (soft ? most_sliced : most_with_volumes);
+        if (many || snapshot.occluders->has_alpha()) return ShadowsBy::rays;
+        return soft ? ShadowsBy::slices : ShadowsBy::volumes;
+    };
+    add_lights(view, march.light, march.light_resolution, by, *fog);
+    std::vector<Light> sampled; // lights that the steps have to find the shadows of
+    for (size_t i = 0; i < fog->shadows.size(); ++i)
+        if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
+    fog->sampled = has_grid(fog->snapshot) || !sampled.empty();
+    if (fog->sampled) fog->rule = march_steps(march, std::move(sampled));
+    return [fog](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*fog, batch, results); };
+}
+}
+
 ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    if (settings.march.visibility == Visibility::slices) return prepare_slices(view, snapshot, settings);
     auto march = std::make_shared<March>();
     march->snapshot = march_snapshot(snapshot, settings);
     march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
@@ -61,13 +93,13 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
             make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
-        if (light.kind != LightKind::sun) march->near_points.push_back(light.position);
     }
+    march->steps = march_steps(settings.march, march->snapshot.lights);
     if (settings.march.visibility == Visibility::maps)
         march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
-    if (settings.march.visibility != Visibility::slices)
+    if (settings.march.visibility != Visibility::exact)
         return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
     if (snapshot.occluders) march->slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
-    return [march](const RayBatch& batch, std::span<Scatter> results) { march_slices(*march, batch, results); };
+    return [march](const RayBatch& batch, std::span<Scatter> results) { march_exact(*march, batch, results); };
 }
 }

@@ -4,18 +4,14 @@
 
 #include "modes/march_kernel.h"
 
-#include "base/random.h"
 #include "base/simd.h"
 #include "modes/batch_simd.h"
+#include "modes/shadow_rays_simd.h"
 #include "modes/style_simd.h"
-#include "scene/cone.h"
 #include "trace/light_depth_simd.h"
-#include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"
-#include "volume/fog_reach.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
-#include "volume/steps.h"
 
 #include <array>
 
@@ -49,47 +45,6 @@ struct Points {
     Mask16 active; // lanes with fog here
 };
 
-// The parts of a piece of a ray inside the cones of spots, from its start.
-void find_beams(const March& march, const Ray& ray, Interval piece, std::vector<Step>& beams) {
-    beams.clear();
-    for (const Light& light : march.snapshot.lights) {
-        if (light.kind != LightKind::spot) continue;
-        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
-        const float low = std::max(static_cast<float>(cone.low), piece.low) - piece.low;
-        const float high = std::min(static_cast<float>(cone.high), piece.high) - piece.low;
-        if (!cone.empty() && low < high) beams.push_back({low, high});
-    }
-}
-
-// Steps of one piece of a ray, as long as the settings allow on a piece of that length.
-void append_piece(const March& march, const Ray& ray, Interval piece, std::vector<Step>& steps) {
-    if (piece.empty()) return;
-    const MarchSettings& settings = march.settings;
-    static thread_local std::vector<Step> beams;
-    find_beams(march, ray, piece, beams);
-    const StepRule rule{settings.step_depth,
-                        settings.step_voxels,
-                        std::min(settings.step_length, settings.step_share * piece.length()),
-                        settings.max_steps,
-                        march.near_points,
-                        settings.near_light,
-                        beams,
-                        8 / settings.near_light};
-    const size_t first = steps.size();
-    append_steps({ray.at(piece.low), ray.direction, piece.length()}, march.snapshot.media, rule, steps);
-    for (size_t i = first; i < steps.size(); ++i) steps[i].low += piece.low, steps[i].high += piece.low;
-}
-
-void place_ray_steps(const March& march, const Ray& ray, std::vector<Step>& steps) {
-    const Interval stretch = fog_stretch(march.snapshot.media, ray);
-    // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
-    const Interval scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
-    if (scene.empty() || stretch.length() < 2 * scene.length()) return append_piece(march, ray, stretch, steps);
-    append_piece(march, ray, {stretch.low, scene.low}, steps);
-    append_piece(march, ray, scene, steps);
-    append_piece(march, ray, {scene.high, stretch.high}, steps);
-}
-
 void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
     alignas(64) float v[6][16] = {};
     packet.longest = 0;
@@ -99,7 +54,7 @@ void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
         const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
         for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
         if (lane >= batch.rays.size()) continue;
-        place_ray_steps(march, ray, steps);
+        append_march_steps(march.steps, march.snapshot, ray, steps);
         packet.longest = std::max(packet.longest, steps.size());
     }
     packet.origin = {load(v[0]), load(v[1]), load(v[2])};
@@ -122,48 +77,16 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
     return points;
 }
 
-// Turns the shadow rays to random points of a soft light, another set for each `k`.
-void aim_at_points(const Light& light, const RayBatch& batch, size_t step, size_t light_index, uint32_t k,
-                   Occluders::ShadowRays& rays) {
-    for (size_t lane = 0; lane < 16; ++lane) {
-        if (!rays.active[lane]) continue;
-        uint32_t key = hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
-        if (k > 0) key = hash(key, k);
-        const vec2 u(to_unit(hash(key, 0u)), to_unit(hash(key, 1u)));
-        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
-        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
-        rays.t_max[lane] = ray.t_max;
-    }
-}
-
-// Share of the light that surfaces let through, by packets of shadow rays: one, or one for each point of a soft light.
+// Share of the light that surfaces let through.
 Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
                      const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
     if (march.settings.visibility == Visibility::maps) return lit_share16(march.maps[light_index], points.position);
-    const Occluders* occluders = march.snapshot.occluders.get();
-    if (!light.shadows || !occluders || occluders->empty() || march.settings.visibility == Visibility::off) return 1.0f;
-    Occluders::ShadowRays rays;
-    store(points.position.x, rays.ox), store(points.position.y, rays.oy), store(points.position.z, rays.oz);
-    store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
-    store(light_at.distance * 0.9999f, rays.t_max);
-    alignas(64) float is_wanted[16], share[16];
-    store(select(wanted, 1.0f, 0.0f), is_wanted);
-    for (size_t lane = 0; lane < 16; ++lane) {
-        rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
-        rays.t_min[lane] = 0;
-        share[lane] = 0;
-    }
-    if (!is_soft(light)) {
-        occluders->transmission(rays, share);
-        return load(share);
-    }
-    Floats total = 0.0f;
-    for (int k = 0; k < march.settings.light_points; ++k) {
-        aim_at_points(light, batch, step, light_index, static_cast<uint32_t>(k), rays);
-        occluders->transmission(rays, share);
-        total = total + load(share);
-    }
-    return total * (1 / static_cast<float>(march.settings.light_points));
+    if (!casts(light, march.snapshot) || march.settings.visibility == Visibility::off) return 1.0f;
+    const auto key = [&](size_t lane) {
+        return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
+    };
+    return share_by_rays(*march.snapshot.occluders, light, points.position, light_at, wanted,
+                         march.settings.light_points, key);
 }
 
 // Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.

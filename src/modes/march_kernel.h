@@ -1,5 +1,6 @@
 // The march of one packet, apart from its preparation.
 #pragma once
+#include "modes/march_steps.h"
 #include "modes/mode.h"
 #include "trace/light_depth.h"
 #include "trace/shadow_map.h"
@@ -16,9 +17,9 @@ struct March {
     Camera camera;                  // for style.range
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
-    std::vector<vec3> near_points;  // positions of the local lights
-    ShadowSlices slices;            // with Visibility::slices
-    std::vector<ShadowMap> maps;    // with Visibility::maps, one per light
+    MarchSteps steps;
+    ShadowSlices slices;         // with Visibility::exact
+    std::vector<ShadowMap> maps; // with Visibility::maps, one per light
 };
 
 // The snapshot as march.* and style.* see it: terms that are off are taken out.

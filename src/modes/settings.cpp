@@ -86,6 +86,7 @@ Settings settings_for(Quality quality) {
         settings.cone.nodes = 6;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32, march.light = LightTransmittance::froxel;
+        march.nodes = 3;
         volume.nodes = 3, volume.steps = 16, volume.light_resolution = 32;
         froxel.tile = 16, froxel.depth_slices = 48;
         map.steps = 16, map.resolution = 256;
@@ -95,7 +96,7 @@ Settings settings_for(Quality quality) {
     case Quality::final:
         settings.pixel.samples = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
-        march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128;
+        march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128, march.nodes = 6;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
         froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
         map.steps = 64, map.resolution = 2048, map.pcf = 1;
@@ -105,8 +106,8 @@ Settings settings_for(Quality quality) {
         settings.cone.nodes = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
-        march.visibility = Visibility::slices;
-        march.light_resolution = 256;
+        march.visibility = Visibility::exact;
+        march.light_resolution = 256, march.nodes = 16;
         volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
         froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
         map.steps = 256, map.resolution = 4096, map.pcf = 1, map.light = LightTransmittance::marched;

@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tyndall {
-enum class Visibility { off, rays, maps, slices };
+enum class Visibility { off, rays, maps, slices, exact };
 
 // How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
 enum class PictureShare { full, half, third, quarter };
@@ -30,10 +30,11 @@ struct MarchSettings {
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     int max_steps = 1024;            // per ray
     float min_transmittance = 1e-3f; // the march stops where less than this passes
-    Visibility visibility = Visibility::rays;
+    Visibility visibility = Visibility::slices;
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids
     int light_points = 1;      // of a soft light, asked for shadows at once
+    int nodes = 4;             // Gauss–Legendre nodes on each lit stretch of fog in closed form
     bool phase = true;         // off: isotropic
     bool heterogeneity = true; // off: bricks at their mean density
     bool emission = true;

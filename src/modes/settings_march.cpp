@@ -18,15 +18,20 @@ void append_march_rows(std::vector<SettingRow>& rows) {
                               "of it of the way through the beam of a spot",
                               TYNDALL_FIELD(march.near_light)));
     rows.push_back(number_row("march.max_steps", "", 1, 1e6,
-                              "most steps per ray; they get longer beyond (slices take all they need)",
+                              "most steps per ray; they get longer beyond (exact takes all it needs)",
                               TYNDALL_FIELD(march.max_steps)));
     rows.push_back(number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
                               TYNDALL_FIELD(march.min_transmittance)));
-    rows.push_back(choice_row("march.visibility", {"off", "rays", "maps", "slices"},
-                              "shadows of surfaces in the fog; rays = sampled at each step, maps = the same, looked up "
-                              "in shadow_map.*, slices = exact: only lit stretches are "
-                              "integrated, as exactly as the fog allows",
+    rows.push_back(choice_row("march.visibility", {"off", "rays", "maps", "slices", "exact"},
+                              "shadows of surfaces in the fog; slices = only lit stretches are marched, found without "
+                              "sampling (by rays where surfaces have alpha, or more than "
+                              "200000 triangles and soft lights); rays = sampled at each step; maps = the "
+                              "same, looked up in shadow_map.*; exact = as slices, and everything else integrated as "
+                              "exactly as the fog allows: the reference",
                               TYNDALL_FIELD(march.visibility)));
+    rows.push_back(number_row("march.nodes", "", 1, 16,
+                              "Gauss-Legendre nodes on each lit stretch of fog without a grid, with slices",
+                              TYNDALL_FIELD(march.nodes)));
     rows.push_back(
         choice_row("march.light", {"off", "average", "froxel", "grid", "marched"},
                    "fog between light and fog; froxel = looked up in a grid before the camera, grid = in one "
@@ -35,11 +40,11 @@ void append_march_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("march.light_resolution", "cells", 4, 1024,
                               "cells across the fog in the light's grid; with froxel, across the picture and in depth",
                               TYNDALL_FIELD(march.light_resolution)));
-    rows.push_back(
-        number_row("march.light_points", "", 1, 256,
-                   "points of a soft light that shadows are asked for, by each ray (slices) or step (rays) and by each "
-                   "sample of a surface",
-                   TYNDALL_FIELD(march.light_points)));
+    rows.push_back(number_row(
+        "march.light_points", "", 1, 256,
+        "points of a soft light that shadows are asked for, by each ray (slices, exact) or step (rays) and by each "
+        "sample of a surface",
+        TYNDALL_FIELD(march.light_points)));
     rows.push_back(choice_row("march.phase", switches, "directional scattering; off = the same in all directions",
                               TYNDALL_FIELD(march.phase)));
     rows.push_back(choice_row("march.heterogeneity", switches, "density detail; off = every grid at its mean density",

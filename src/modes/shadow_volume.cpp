@@ -1,16 +1,11 @@
 // Shadow volumes: exact shafts without noise.
-#include "modes/shadow_volume.h"
-
 #include "modes/limits.h"
+#include "modes/lit_fog.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
 namespace tyndall {
 namespace {
-bool has_grid(const Snapshot& snapshot) {
-    return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.kind == DensityKind::bricks; });
-}
-
 bool samples_fog(const Snapshot& snapshot, const ShadowVolumeSettings& settings) {
     return settings.fog == ShadowFog::sampled || (settings.fog == ShadowFog::automatic && has_grid(snapshot));
 }
@@ -18,10 +13,6 @@ bool samples_fog(const Snapshot& snapshot, const ShadowVolumeSettings& settings)
 float half_diagonal(const Box& scene) {
     const float length = 0.5f * glm::distance(scene.low, scene.high);
     return std::isfinite(length) && length > 0 ? length : 1;
-}
-
-bool casts(const Light& light, const Snapshot& snapshot) {
-    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
 }
 
 void add_fog_limits(const Snapshot& snapshot, const Settings& settings, std::vector<Limit>& limits) {
@@ -65,32 +56,20 @@ std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, c
 }
 
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
-    auto frame = std::make_shared<ShadowVolumeFrame>();
+    auto frame = std::make_shared<LitFog>();
     const ShadowVolumeSettings& own = settings.shadow_volume;
-    frame->snapshot = stylised(snapshot, settings.style);
-    frame->settings = own, frame->style = settings.style, frame->camera = view.camera;
-    frame->margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
+    frame->snapshot = stylised(snapshot, settings.style), frame->style = settings.style;
+    frame->nodes = own.nodes, frame->steps = own.steps;
+    if (own.draw == ShadowDraw::shells)
+        frame->shells = {own.shell_length > 0 ? own.shell_length : half_diagonal(snapshot.bounds), own.shell_intensity};
     frame->sampled = samples_fog(snapshot, own);
-    if (frame->settings.shell_length <= 0) frame->settings.shell_length = half_diagonal(snapshot.bounds);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
-
-    std::shared_ptr<const ShadowMesh> mesh;
-    for (const Light& light : frame->snapshot.lights) {
-        frame->depths.push_back(
-            make_light_depth(frame->snapshot, light, LightTransmittance::grid, own.light_resolution));
-        frame->depths.back().scale = settings.style.light_depth;
-        frame->cones.push_back(cone_falloff(light));
-        frame->casters.emplace_back();
-        if (!casts(light, snapshot)) continue;
-        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(snapshot.occluders->shadow_triangles()));
-        ShadowCaster& caster = frame->casters.back();
-        caster.volumes = make_shadow_volumes(mesh, center_of(light));
-        caster.view = view_from(caster.volumes, view.camera, view.size, frame->margin);
-    }
-    return [frame](const RayBatch& batch, std::span<Scatter> results) { shadow_volume_packet(*frame, batch, results); };
+    const auto by = [](const Light&) { return ShadowsBy::volumes; };
+    add_lights(view, LightTransmittance::grid, own.light_resolution, by, *frame);
+    return [frame](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*frame, batch, results); };
 }
 }

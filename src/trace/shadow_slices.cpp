@@ -104,4 +104,61 @@ void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& ligh
         add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit);
     }
 }
+
+namespace {
+void set_lane(ShadowPacket& packet, size_t i, const Slice& slice) {
+    for (int axis = 0; axis < 3; ++axis) {
+        packet.origin[axis][i] = slice.origin[axis], packet.normal[axis][i] = slice.normal[axis];
+        packet.x[axis][i] = slice.x[axis], packet.y[axis][i] = slice.y[axis];
+    }
+    packet.light_x[i] = slice.light_x, packet.light_y[i] = slice.light_y, packet.near[i] = slice.far ? 0 : 1;
+    packet.top[i] = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
+    packet.end[i] = slice.x_max, packet.metres[i] = 1 / slice.per_metre;
+    packet.active |= 1u << i;
+}
+
+// Whether a light's ball may reach into a box.
+bool meets_ball(const LightPoint& light, const ShadowSlices::Node& box) {
+    if (light.far || !(light.radius > 0)) return false;
+    const dvec3 nearest = glm::clamp(light.center, dvec3(box.low), dvec3(box.high));
+    return glm::distance(nearest, light.center) <= light.radius;
+}
+}
+
+void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
+              std::vector<Stretch> (&lit)[16]) {
+    static thread_local std::vector<Stretch> shadows[16];
+    static thread_local std::vector<ShadowSlice::Segment> segments;
+    ShadowPacket packet;
+    Slice planes[16];
+    for (size_t i = 0; i < rays.size(); ++i) {
+        lit[i].clear(), shadows[i].clear();
+        if (!(rays[i].t_max > 0) || !is_finite(rays[i].origin) || !is_finite(rays[i].direction)) continue;
+        planes[i] = make_slice(rays[i], points[i]);
+        set_lane(packet, i, planes[i]);
+    }
+
+    ShadowSlices around; // leaves in a light's ball, whose triangles are cut at its surface
+    around.corners = slices.corners;
+    for (size_t at = 0; at < slices.nodes.size(); ++at) {
+        const ShadowSlices::Node& node = slices.nodes[at];
+        if (node.count == 0) continue;
+        if (std::ranges::any_of(points, [&](const LightPoint& point) { return meets_ball(point, node); }))
+            around.nodes.push_back(node);
+        else
+            append_shadows(slices, node, packet, shadows);
+    }
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (!(packet.active >> i & 1)) continue;
+        const Ball ball = ball_in(planes[i], points[i]);
+        segments.clear();
+        if (!around.nodes.empty()) append_segments(around, planes[i], segments);
+        for (const auto& [a, b] : segments) append_outside(planes[i], ball, a, b, shadows[i]);
+        const double t_max = planes[i].x_max / planes[i].per_metre;
+        append_gaps(shadows[i], t_max, lit[i]);
+        if (!(ball.squared_radius > 0)) continue;
+        const Stretch inside = in_ball({0, 0}, {planes[i].per_metre, 0}, ball.center, ball.squared_radius);
+        add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit[i]);
+    }
+}
 }

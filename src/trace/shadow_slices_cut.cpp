@@ -105,8 +105,41 @@ void append_segments_kernel(const ShadowSlices& slices, const ShadowSlice& slice
     });
 }
 
+// The triangles of a leaf that the fan meets, as bits.
+HWY_INLINE uint32_t met_triangles(const ShadowSlices::Corners& corners, const ShadowFan& fan, uint32_t first) {
+    const Doubles d;
+    uint32_t met = 0;
+    for (size_t i = 0; i < 8; i += double_lanes) {
+        hn::Vec<Doubles> values[9];
+        for (size_t k = 0; k < 9; ++k)
+            values[k] = hn::PromoteTo(d, hn::LoadU(Halves(), corners.values[k].data() + first + i));
+        auto inside = hn::Eq(hn::Zero(d), hn::Zero(d));
+        for (int side = 0; side < 8; ++side) {
+            const auto x = hn::Set(d, fan.x[side]), y = hn::Set(d, fan.y[side]), z = hn::Set(d, fan.z[side]);
+            const auto height = [&](size_t corner) HWY_ATTR {
+                const auto* v = values + 3 * corner;
+                return hn::MulAdd(z, v[2], hn::MulAdd(y, v[1], hn::Mul(x, v[0])));
+            };
+            const auto highest = hn::Max(hn::Max(height(0), height(1)), height(2));
+            inside = hn::And(inside, hn::Ge(highest, hn::Set(d, fan.least[side])));
+        }
+        uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, inside, bits);
+        met |= static_cast<uint32_t>(bits[0]) << i;
+    }
+    return met;
+}
+
 void append_leaves_kernel(const ShadowSlices& slices, const ShadowFan& fan, std::vector<ShadowSlices::Node>& leaves) {
-    visit_leaves(slices, fan, [&](const ShadowSlices::Node& leaf) HWY_ATTR { leaves.push_back(leaf); });
+    visit_leaves(slices, fan, [&](const ShadowSlices::Node& leaf) HWY_ATTR {
+        uint32_t left = met_triangles(*slices.corners, fan, leaf.first) & ((1u << leaf.count) - 1);
+        while (left) {
+            const int start = std::countr_zero(left), run = std::countr_one(left >> start);
+            leaves.push_back(
+                {leaf.low, leaf.high, leaf.first + static_cast<uint32_t>(start), static_cast<uint32_t>(run)});
+            left &= ~(((1u << run) - 1) << start);
+        }
+    });
 }
 }
 }

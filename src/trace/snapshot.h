@@ -57,6 +57,11 @@ Camera camera_at(const Scene& scene, int camera, double seconds);
 // Index of a camera by name; empty = the default. Throws Error (usage) listing the names.
 int find_camera(const Scene& scene, const std::string& name);
 
+// Whether surfaces shadow the light.
+inline bool casts(const Light& light, const Snapshot& snapshot) {
+    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+}
+
 // Radiance behind everything. `screen` is the position on the picture, 0..1 from the upper left (for plates).
 vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);
 }

@@ -38,7 +38,8 @@ class Info(ProgramTest):
                 self.assertAlmostEqual(found, expected, places=5)
 
     def test_pictures(self):
-        path = self.write("scene.json", scene(frames="5"))
+        box = {"type": "homogeneous", "extinction": 0.1, "bounds": {"low": [-2, -2, -2], "high": [2, 2, 2]}}
+        path = self.write("scene.json", scene(frames="5", media=[box]))
         self.succeed("render", path, "-o", self.path("out.exr"), "--crop", "8,4,40,20", "--seed", "3", "--aov", "Z")
         report = self.report(self.path("out.exr"))
         self.assertEqual((report["display"], report["low"], report["size"]), ([64, 36], [8, 4], [32, 16]))

@@ -1,4 +1,4 @@
-// Soft lights in the exact march.
+// Soft lights where shadows are cut out exactly: in steps between them, and in the exact march.
 #include "stage.h"
 
 #include "base/random.h"
@@ -26,7 +26,13 @@ dvec3 mean_over_samples(const Snapshot& snapshot, const Settings& settings, cons
     return sum / double(samples);
 }
 
-TEST(MarchSlices, SoftSunIsTheMeanOverItsDisc) {
+class SoftLights : public testing::TestWithParam<Visibility> {
+protected:
+    static Settings settings() { return GetParam() == Visibility::exact ? exact_settings() : sliced_settings(); }
+};
+INSTANTIATE_TEST_SUITE_P(March, SoftLights, testing::Values(Visibility::slices, Visibility::exact));
+
+TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     // Edge at x = 0.4, 1.7 m above a level ray through thin fog: what counts is the mean lit length. Brute force over
     // 256² directions of the disc.
     Light light = sun({0.2f, -1, 0});
@@ -44,14 +50,14 @@ TEST(MarchSlices, SoftSunIsTheMeanOverItsDisc) {
     mean /= n * n;
     Light hard = light;
     hard.angle = 0;
-    const double full = marched(scene_of(stage.snapshot.media, {hard}), exact_settings(), ray).radiance.x;
-    const double found = mean_over_samples(stage.snapshot, exact_settings(), ray, 1024).x;
+    const double full = marched(scene_of(stage.snapshot.media, {hard}), settings(), ray).radiance.x;
+    const double found = mean_over_samples(stage.snapshot, settings(), ray, 1024).x;
     EXPECT_GT(mean, 0.1);
     EXPECT_LT(mean, 0.9);
     EXPECT_NEAR(found / full, mean, 2e-3); // e^-0.001 along the ray, and 1024 stratified samples
 }
 
-TEST(MarchSlices, SoftLampAgreesWithShadowRaysToItsBall) {
+TEST_P(SoftLights, SoftLampAgreesWithShadowRaysToItsBall) {
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.1f;
     const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
@@ -59,25 +65,25 @@ TEST(MarchSlices, SoftLampAgreesWithShadowRaysToItsBall) {
     Settings rays = exact_settings();
     rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256;
     const double sampled = mean_over_samples(stage.snapshot, rays, ray, 512).x;
-    const double sliced = mean_over_samples(stage.snapshot, exact_settings(), ray, 1024).x;
+    const double sliced = mean_over_samples(stage.snapshot, settings(), ray, 1024).x;
     EXPECT_NEAR(sliced / sampled, 1, 2e-3); // radius²/distance² of the penumbra's part, and 131072 shadow rays
     light.radius = 0;
     Stage hard = stage_of(stage.snapshot.media, {light}, {shade(0.3f, 1.2f)});
-    EXPECT_GT(std::abs(marched(hard.snapshot, exact_settings(), ray).radiance.x / sliced - 1), 1e-4);
+    EXPECT_GT(std::abs(marched(hard.snapshot, settings(), ray).radiance.x / sliced - 1), 1e-4);
 }
 
-TEST(MarchSlices, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
+TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
     // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.2f;
     const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    Settings many = exact_settings();
+    Settings many = settings();
     many.march.light_points = 8;
     const double together = mean_over_samples(stage.snapshot, many, ray, 16).x;
-    const double apart = mean_over_samples(stage.snapshot, exact_settings(), ray, 128).x;
+    const double apart = mean_over_samples(stage.snapshot, settings(), ray, 128).x;
     EXPECT_NEAR(together / apart, 1, 1e-6);
-    EXPECT_GT(std::abs(mean_over_samples(stage.snapshot, exact_settings(), ray, 16).x / apart - 1), 1e-5);
+    EXPECT_GT(std::abs(mean_over_samples(stage.snapshot, settings(), ray, 16).x / apart - 1), 1e-5);
 
     // Shadow rays to many points in each step: the same light with less noise.
     Settings rays = exact_settings();

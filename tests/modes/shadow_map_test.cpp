@@ -164,6 +164,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
             Settings settings;
             settings.march.light = transmittance, settings.shadow_map.resolution = 512;
             settings.shadow_map.pcf = 1;
+            settings.march.visibility = Visibility::rays;
             const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
             settings.march.visibility = Visibility::maps;
             EXPECT_LT(rmse_rel(run("march", box.snapshot, settings, rays), traced), 0.03)

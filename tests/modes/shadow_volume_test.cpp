@@ -1,5 +1,5 @@
 // Fog between shadow volumes, against closed forms and the deterministic reference.
-#include "modes/shadow_volume.h"
+#include "modes/lit_fog.h"
 
 #include "base/parallel.h"
 #include "base/random.h"

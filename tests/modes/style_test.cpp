@@ -25,12 +25,13 @@ struct Slab {
 class Styles : public testing::TestWithParam<Visibility> {
 protected:
     Settings settings() const {
-        Settings settings = GetParam() == Visibility::slices ? exact_settings() : sampled_settings();
+        Settings settings = GetParam() == Visibility::exact ? exact_settings() : sampled_settings();
+        settings.march.visibility = GetParam();
         settings.march.visibility = GetParam();
         return settings;
     }
 };
-INSTANTIATE_TEST_SUITE_P(March, Styles, testing::Values(Visibility::rays, Visibility::slices));
+INSTANTIATE_TEST_SUITE_P(March, Styles, testing::Values(Visibility::rays, Visibility::slices, Visibility::exact));
 
 TEST_P(Styles, DepthsOfLightAndViewAreScaledApart) {
     const Slab slab;

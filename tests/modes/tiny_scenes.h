@@ -91,6 +91,13 @@ inline Settings sampled_settings() {
     return settings;
 }
 
+// Steps as short, inside lit stretches.
+inline Settings sliced_settings() {
+    Settings settings = sampled_settings();
+    settings.march.visibility = Visibility::slices;
+    return settings;
+}
+
 // ∫ f over a..b by composite Gauss–Legendre with 5 nodes on `pieces` pieces.
 inline double integral(const std::function<double(double)>& f, double a, double b, int pieces = 4000) {
     constexpr double x[] = {0, 0.5384693101056831, 0.9061798459386640},

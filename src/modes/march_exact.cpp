@@ -1,7 +1,7 @@
-#include "modes/march_slices.h"
+#include "modes/march_exact.h"
 
-#include "base/random.h"
 #include "modes/light_along.h"
+#include "modes/light_point.h"
 #include "modes/style.h"
 #include "volume/fog_pieces.h"
 
@@ -9,8 +9,6 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t use_light_point = 0x51ce5u; // tells these random numbers from others of the same sample
-
 // Gauss–Legendre on -1..1.
 struct Node {
     double at, weight;
@@ -206,24 +204,6 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     return sum * dvec3(along.light->intensity * along.light->volume_scale);
 }
 
-// Point k of `count` points of a light that cast the shadows of one ray.
-LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index, uint32_t k,
-                       uint32_t count) {
-    if (!is_soft(light)) return center_of(light);
-    const uint32_t index = static_cast<uint32_t>(light_index);
-    Sample2 u, v;
-    if (batch.places.empty()) {
-        const uint32_t key =
-            k ? hash(batch.ids[ray], use_light_point, index, k) : hash(batch.ids[ray], use_light_point, index);
-        u = {to_unit(hash(key, 0u)), to_unit(hash(key, 1u))}, v = {to_unit(hash(key, 2u)), 0};
-    } else {
-        const SamplePlace place = batch.places[ray];
-        u = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 0u));
-        v = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 1u));
-    }
-    return point_on(light, batch.rays[ray], {u.x, u.y, v.x});
-}
-
 // Light of one light along the ray: each point's lit stretches, taken together where shares of them can be. Shadow rays
 // through surfaces with alpha need a point each.
 dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
@@ -283,7 +263,7 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
 }
 }
 
-void march_slices(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+void march_exact(const March& march, const RayBatch& batch, std::span<Scatter> results) {
     for (size_t i = 0; i < batch.rays.size(); ++i) march_ray(march, batch, i, results[i]);
 }
 }

@@ -1,29 +1,31 @@
 // Fog between shadow volumes along a packet of rays, light by light.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/shadow_volume_kernel.cpp"
+#define HWY_TARGET_INCLUDE "modes/lit_fog_kernel.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/shadow_volume.h"
+#include "modes/light_point.h"
+#include "modes/lit_fog.h"
 #include "modes/style.h"
 
-#include "modes/shadow_volume_lit_simd.h"
-#include "modes/shadow_volume_shells_simd.h"
+#include "modes/lit_fog_parts_simd.h"
+#include "modes/lit_fog_shells_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Lanes without a ray repeat the last.
-Packet make_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, Scratch& scratch) {
-    Packet packet{frame, batch, scratch, {}, {}};
+Packet make_packet(const LitFog& frame, const RayBatch& batch, Scratch& scratch) {
+    Packet packet{frame, batch, scratch, {}, {}, {}};
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
+        packet.jittered[i] = {i < batch.jitter.size() ? batch.jitter[i] : 0.5f, 1};
         for (int axis = 0; axis < 3; ++axis)
             packet.origin[axis][i] = ray.origin[axis], packet.direction[axis][i] = ray.direction[axis];
     }
     return packet;
 }
 
-// What the light reaches of a ray's fog, from first to last; its parts are left in `along`, unless the light is a sun.
+// What the light reaches of a ray's fog, from first to last. Nothing divides what a sun reaches.
 Stretch reach_of(Packet& packet, const Light& light, size_t i) {
     const FogCuts& cuts = packet.scratch.cuts;
     if (cuts.pieces[i] == 0) return {};
@@ -33,35 +35,65 @@ Stretch reach_of(Packet& packet, const Light& light, size_t i) {
     find_light(light, center_of(light), {ray.origin, ray.direction, cuts.high(i)}, nullptr, {}, along);
     packet.nearest[i] = static_cast<float>(along.nearest);
     packet.away[i] = static_cast<float>(std::max<double>({along.distance, light.radius, smallest_radius}));
-    if (along.lit.empty()) return {};
-    return {std::max<double>(along.lit.front().low, cuts.low(i)),
-            std::min<double>(along.lit.back().high, cuts.high(i))};
+    const std::vector<Stretch>& lit = along.lit;
+    if (lit.empty()) return {};
+    return {std::max<double>(lit.front().low, cuts.low(i)), std::min<double>(lit.back().high, cuts.high(i))};
 }
 
-// One light on all rays.
-void add_light(Packet& packet, size_t index) {
+// Nodes on the lit stretches within reach.
+void push_all(Packet& packet, size_t index, const Stretch (&reached)[16]) {
     Scratch& scratch = packet.scratch;
-    const ShadowVolumeFrame& frame = packet.frame;
-    const Light& light = frame.snapshot.lights[index];
-    const bool shells = frame.settings.draw == ShadowDraw::shells, sun = light.kind == LightKind::sun;
-    const size_t count = packet.batch.rays.size();
-    Stretch reached[16];
-    int dark[16];
-    for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
-    find_shadows(frame, index, packet.batch, reached, scratch.crossings, dark);
-    packet.spread = shells ? Spread::points : sun ? Spread::length : Spread::angle;
-    const int name = static_cast<int>(index);
-    if (shells) {
-        for (size_t i = 0; i < count; ++i)
-            if (!reached[i].empty()) push_shells(packet, name, i, dark[i], reached[i]);
-        return add_nodes(packet, name);
-    }
-    for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
-    append_lit(dark, scratch.crossings, reached, scratch.lit);
-    for (size_t i = 0; i < count; ++i) {
+    const bool sun = packet.frame.snapshot.lights[index].kind == LightKind::sun;
+    for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         if (reached[i].empty()) continue;
         const std::span<const Stretch> parts = sun ? std::span(&reached[i], 1) : std::span(scratch.along[i].lit);
-        push_lit(packet, name, i, scratch.lit[i], parts);
+        push_lit(packet, static_cast<int>(index), i, scratch.lit[i], parts);
+    }
+}
+
+// Every ray sees one point of the light, or several in turn, each with shadows of its own.
+void add_sliced(Packet& packet, size_t index, const Stretch (&reached)[16]) {
+    const LitFog& frame = packet.frame;
+    const Light& light = frame.snapshot.lights[index];
+    const size_t count = packet.batch.rays.size();
+    const uint32_t points = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
+    Ray rays[16];
+    LightPoint picked[16];
+    packet.part = 1.0 / points;
+    for (uint32_t k = 0; k < points; ++k) {
+        for (size_t i = 0; i < count; ++i) {
+            rays[i] = packet.batch.rays[i], rays[i].t_max = static_cast<float>(reached[i].high);
+            picked[i] = light_point(packet.batch, i, light, index, k, points);
+        }
+        find_lit(near_rays(frame.slices, {rays, count}, {picked, count}), {rays, count}, {picked, count},
+                 packet.scratch.lit);
+        push_all(packet, index, reached);
+    }
+    add_nodes(packet, static_cast<int>(index));
+    packet.part = 1;
+}
+
+void add_light(Packet& packet, size_t index) {
+    Scratch& scratch = packet.scratch;
+    const LitFog& frame = packet.frame;
+    const Light& light = frame.snapshot.lights[index];
+    const size_t count = packet.batch.rays.size();
+    Stretch reached[16];
+    for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
+    packet.spread = light.kind == LightKind::sun ? Spread::length : Spread::angle;
+    if (frame.shadows[index].by == ShadowsBy::slices) return add_sliced(packet, index, reached);
+
+    int dark[16];
+    find_shadows(frame, index, packet.batch, reached, scratch.crossings, dark);
+    const int name = static_cast<int>(index);
+    if (frame.shells) {
+        packet.spread = Spread::points;
+        for (size_t i = 0; i < count; ++i)
+            if (!reached[i].empty()) push_shells(packet, name, i, dark[i], reached[i]);
+    } else {
+        for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
+        append_lit(dark, scratch.crossings, reached, scratch.lit);
+        push_all(packet, index, reached);
     }
     add_nodes(packet, name);
 }
@@ -94,7 +126,7 @@ Floats find_depths(const Packet& packet) {
 }
 
 // What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.
-vec3 even_glow(const ShadowVolumeFrame& frame) {
+vec3 even_glow(const LitFog& frame) {
     vec3 common(0);
     for (const Medium& medium : frame.snapshot.media) {
         const vec3 own = glow_per_extinction(medium.optics, frame.snapshot.ambient);
@@ -105,7 +137,7 @@ vec3 even_glow(const ShadowVolumeFrame& frame) {
 }
 
 void add_glow(Packet& packet, const Floats& depth) {
-    const ShadowVolumeFrame& frame = packet.frame;
+    const LitFog& frame = packet.frame;
     const vec3 even = even_glow(frame);
     if (even == vec3(0)) return;
     const size_t count = packet.batch.rays.size();
@@ -125,14 +157,14 @@ void add_glow(Packet& packet, const Floats& depth) {
     add_nodes(packet, no_light);
 }
 
-float validity_of(const ShadowVolumeFrame& frame, const Ray& ray) {
-    if (frame.settings.draw == ShadowDraw::shells) return 0;
+float validity_of(const LitFog& frame, const Ray& ray) {
+    if (frame.shells) return 0;
     for (const Box& box : frame.uneven)
         if (!clip(box, ray.origin, ray.direction, {0, ray.t_max}).empty()) return 0;
     return 1;
 }
 
-void shadow_volume_kernel(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
+void lit_fog_kernel(const LitFog& frame, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local Scratch scratch;
     Packet packet = make_packet(frame, batch, scratch);
     const size_t count = batch.rays.size(), lights = frame.snapshot.lights.size();
@@ -162,9 +194,9 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tyndall {
-HWY_EXPORT(shadow_volume_kernel);
-void shadow_volume_packet(const ShadowVolumeFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
-    HWY_DYNAMIC_DISPATCH(shadow_volume_kernel)(frame, batch, results);
+HWY_EXPORT(lit_fog_kernel);
+void lit_fog_packet(const LitFog& frame, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(lit_fog_kernel)(frame, batch, results);
 }
 }
 #endif

@@ -1,18 +1,18 @@
 // The integrand of shadow-volume at sixteen points of any rays, inside its kernel (see base/simd.h for how such files
 // are compiled).
-#if defined(TYNDALL_MODES_SHADOW_VOLUME_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_SHADOW_VOLUME_SIMD_H
-#undef TYNDALL_MODES_SHADOW_VOLUME_SIMD_H
+#if defined(TYNDALL_MODES_LIT_FOG_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_LIT_FOG_SIMD_H
+#undef TYNDALL_MODES_LIT_FOG_SIMD_H
 #else
-#define TYNDALL_MODES_SHADOW_VOLUME_SIMD_H
+#define TYNDALL_MODES_LIT_FOG_SIMD_H
 #endif
 
 #include "base/simd.h"
 #include "modes/angles_simd.h"
-#include "modes/shadow_volume.h"
+#include "modes/lit_fog.h"
+#include "modes/shadow_rays_simd.h"
 #include "modes/style_simd.h"
 #include "trace/light_depth_simd.h"
-#include "trace/light_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
 
@@ -47,11 +47,13 @@ struct Scratch {
 enum class Spread { length, angle, points };
 
 struct Packet {
-    const ShadowVolumeFrame& frame;
+    const LitFog& frame;
     const RayBatch& batch;
     Scratch& scratch;
     alignas(64) float origin[3][16], direction[3][16];
+    QuadratureNode jittered[16]; // the one node of each ray where shadows are sampled
     Spread spread = Spread::length;
+    double part = 1;                                   // of the light that the current nodes are asked for
     alignas(64) float nearest[16] = {}, away[16] = {}; // where the rays pass the light, and how near; 0 unless `angle`
     vec3 radiance[16] = {};                            // of the current light
     int asked[16] = {};
@@ -63,11 +65,22 @@ struct Packet {
     }
 };
 
-// Light of one light scattered towards the eye per metre.
-HWY_INLINE Vec3s scattered(const ShadowVolumeFrame& frame, size_t index, const Vec3s& position,
-                           const Vec3s& direction) {
+// Light of one light scattered towards the eye per metre at the waiting nodes.
+HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& position, const Vec3s& direction) {
+    const LitFog& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
     const Arriving light_at = arriving(light, frame.cones[index], position);
+    const Nodes& nodes = packet.scratch.nodes;
+    Floats amount = light_at.amount;
+    if (frame.shadows[index].by == ShadowsBy::rays) {
+        const auto key = [&](size_t lane) {
+            const uint32_t id = packet.batch.ids[static_cast<size_t>(nodes.ray[lane])];
+            return hash(id, static_cast<uint32_t>(nodes.cut[lane]), static_cast<uint32_t>(index));
+        };
+        const Mask16 wanted = (amount > 0.0f) & (load(nodes.weight) > 0.0f);
+        amount = amount *
+                 share_by_rays(*frame.snapshot.occluders, light, position, light_at, wanted, frame.light_points, key);
+    }
     const Vec3s color = splat(light.intensity * light.volume_scale);
     const Floats cosine = dot(light_at.to_light, direction);
     Vec3s scattering = splat(vec3(0));
@@ -76,12 +89,12 @@ HWY_INLINE Vec3s scattered(const ShadowVolumeFrame& frame, size_t index, const V
         scattering =
             fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
     }
-    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, light_at.amount > 0.0f));
-    return scattering * (light_at.amount * dimmed) * color;
+    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, amount > 0.0f));
+    return scattering * (amount * dimmed) * color;
 }
 
 // Emission and ambient light per metre.
-HWY_INLINE Vec3s glow(const ShadowVolumeFrame& frame, const Vec3s& position) {
+HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
@@ -91,7 +104,7 @@ HWY_INLINE Vec3s glow(const ShadowVolumeFrame& frame, const Vec3s& position) {
     return sum;
 }
 
-HWY_INLINE Floats closed_depth(const ShadowVolumeFrame& frame, const LightPaths& paths) {
+HWY_INLINE Floats closed_depth(const LitFog& frame, const LightPaths& paths) {
     Floats depth = 0.0f;
     for (const Medium& medium : frame.snapshot.media) depth = depth + analytic_depth16(medium, paths);
     return depth;
@@ -124,7 +137,7 @@ HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const Light
 
 // Adds the waiting nodes to their rays.
 void add_nodes(Packet& packet, int light) {
-    const ShadowVolumeFrame& frame = packet.frame;
+    const LitFog& frame = packet.frame;
     Nodes& nodes = packet.scratch.nodes;
     if (nodes.count == 0) return;
     for (int i = nodes.count; i < 16; ++i) {
@@ -139,7 +152,7 @@ void add_nodes(Packet& packet, int light) {
     Floats weight = placed.length * exp(-depth * frame.style.view_depth);
     if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
     const Vec3s source =
-        light == no_light ? glow(frame, position) : scattered(frame, static_cast<size_t>(light), position, direction);
+        light == no_light ? glow(frame, position) : scattered(packet, static_cast<size_t>(light), position, direction);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     for (int i = 0; i < nodes.count; ++i) {
@@ -155,7 +168,7 @@ HWY_INLINE void push_node(Packet& packet, int light, size_t ray, int cut, double
     Nodes& nodes = packet.scratch.nodes;
     const int i = nodes.count++;
     nodes.low[i] = static_cast<float>(low), nodes.high[i] = static_cast<float>(high);
-    nodes.share[i] = static_cast<float>(share), nodes.weight[i] = static_cast<float>(weight);
+    nodes.share[i] = static_cast<float>(share), nodes.weight[i] = static_cast<float>(weight * packet.part);
     nodes.ray[i] = static_cast<int32_t>(ray), nodes.cut[i] = 16 * cut + static_cast<int32_t>(ray);
     if (nodes.count == 16) add_nodes(packet, light);
 }

@@ -1,13 +1,13 @@
 // Shells: the sides of shadow volumes as sheets of light, inside the kernel of shadow-volume (see base/simd.h for how
 // such files are compiled).
-#if defined(TYNDALL_MODES_SHADOW_VOLUME_SHELLS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_SHADOW_VOLUME_SHELLS_SIMD_H
-#undef TYNDALL_MODES_SHADOW_VOLUME_SHELLS_SIMD_H
+#if defined(TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H
+#undef TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H
 #else
-#define TYNDALL_MODES_SHADOW_VOLUME_SHELLS_SIMD_H
+#define TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H
 #endif
 
-#include "modes/shadow_volume_simd.h"
+#include "modes/lit_fog_simd.h"
 #include "scene/cone.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,7 +39,7 @@ void push_shells(Packet& packet, int light, size_t ray, int dark, Stretch reache
             shells.push_back({crossing.t[ray], crossing.behind[ray], static_cast<int>(crossing.change[ray])});
     append_mantle(packet.frame.snapshot.lights[static_cast<size_t>(light)], packet.batch.rays[ray], shells);
     std::sort(shells.begin(), shells.end(), [](const Shell& a, const Shell& b) { return a.t < b.t; });
-    const ShadowVolumeSettings& settings = packet.frame.settings;
+    const Shells& look = *packet.frame.shells;
     const FogCuts& cuts = packet.scratch.cuts;
     int cut = 0;
     for (const Shell& shell : shells) {
@@ -47,11 +47,10 @@ void push_shells(Packet& packet, int light, size_t ray, int dark, Stretch reache
         dark += shell.change;
         const bool edge = shell.change ? (dark > 0) != was_dark : !was_dark;
         if (!edge || !(shell.behind > 0) || shell.t < reached.low || shell.t > reached.high) continue;
-        const double left = 1 - shell.behind / settings.shell_length;
+        const double left = 1 - shell.behind / look.length;
         if (left <= 0) continue;
         while (cut + 1 < cuts.pieces[ray] && cuts.at[16 * static_cast<size_t>(cut + 1) + ray] < shell.t) ++cut;
-        push_node(packet, light, ray, cut, shell.t, shell.t, 0,
-                  settings.shell_intensity * settings.shell_length * left * left);
+        push_node(packet, light, ray, cut, shell.t, shell.t, 0, look.intensity * look.length * left * left);
     }
 }
 }

@@ -1,5 +1,5 @@
 // Where rays are cut: where the fog changes its kind, or into steps.
-#include "modes/shadow_volume.h"
+#include "modes/lit_fog.h"
 
 #include "volume/spans.h"
 
@@ -47,7 +47,7 @@ void add_exits(const Medium& medium, const Light& light, const Ray& ray, Stretch
 }
 
 // Divides low..high evenly so that no part holds more than a given optical depth.
-void divide(const ShadowVolumeFrame& frame, const Ray& ray, double low, double high, std::vector<double>& cuts) {
+void divide(const LitFog& frame, const Ray& ray, double low, double high, std::vector<double>& cuts) {
     double extinction = 0;
     const vec3 middle = ray.at(static_cast<float>(0.5 * (low + high)));
     for (const Medium& medium : frame.snapshot.media)
@@ -57,7 +57,7 @@ void divide(const ShadowVolumeFrame& frame, const Ray& ray, double low, double h
 }
 
 // Where fog is smooth but for these kinks.
-void find_even_cuts(const ShadowVolumeFrame& frame, const Ray& ray, std::vector<double>& cuts) {
+void find_even_cuts(const LitFog& frame, const Ray& ray, std::vector<double>& cuts) {
     static thread_local std::vector<double> kinks;
     kinks.clear();
     const double end = std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media));
@@ -79,7 +79,7 @@ void find_even_cuts(const ShadowVolumeFrame& frame, const Ray& ray, std::vector<
 struct Thirds {
     float at[4] = {};
 };
-Thirds divide_fog(const ShadowVolumeFrame& frame, const Ray& ray) {
+Thirds divide_fog(const LitFog& frame, const Ray& ray) {
     const float end = static_cast<float>(std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media)));
     Interval fog{infinity, 0};
     for (const Medium& medium : frame.snapshot.media) {
@@ -92,7 +92,7 @@ Thirds divide_fog(const ShadowVolumeFrame& frame, const Ray& ray) {
     return {{fog.low, scene.low, scene.high, fog.high}};
 }
 
-void find_steps(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts) {
+void find_steps(const LitFog& frame, std::span<const Ray> rays, FogCuts& cuts) {
     float low[3][16] = {}, length[3][16] = {};
     bool used[3] = {};
     for (size_t ray = 0; ray < rays.size(); ++ray) {
@@ -102,7 +102,7 @@ void find_steps(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCu
             used[i] |= length[i][ray] > 0;
         }
     }
-    const int steps = frame.settings.steps, few = std::max(steps / 4, 1);
+    const int steps = frame.steps, few = std::max(steps / 4, 1);
     const int counts[3] = {used[0] ? few : 0, used[1] ? steps : 0, used[2] ? few : 0};
     cuts.most = counts[0] + counts[1] + counts[2];
     cuts.at.resize(16 * (static_cast<size_t>(cuts.most) + 1));
@@ -117,15 +117,27 @@ void find_steps(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCu
     for (int ray = 0; ray < 16; ++ray)
         if (!(at[ray] > low[0][ray])) cuts.pieces[ray] = 0;
 }
+
+// The ends of the steps that a rule places; what lies between two steps is empty.
+void find_step_cuts(const LitFog& frame, const Ray& ray, std::vector<double>& cuts) {
+    static thread_local std::vector<Step> steps;
+    steps.clear();
+    append_march_steps(*frame.rule, frame.snapshot, ray, steps);
+    for (const Step& step : steps) {
+        if (cuts.empty() || cuts.back() < step.low) cuts.push_back(step.low);
+        cuts.push_back(step.high);
+    }
+}
 }
 
-void find_cuts(const ShadowVolumeFrame& frame, std::span<const Ray> rays, FogCuts& cuts) {
-    if (frame.sampled) return find_steps(frame, rays, cuts);
+void find_cuts(const LitFog& frame, std::span<const Ray> rays, FogCuts& cuts) {
+    if (frame.sampled && !frame.rule) return find_steps(frame, rays, cuts);
     static thread_local std::vector<double> own;
     cuts.most = 0;
     for (size_t ray = 0; ray < 16; ++ray) {
         own.clear();
-        if (ray < rays.size()) find_even_cuts(frame, rays[ray], own);
+        if (ray < rays.size())
+            frame.sampled ? find_step_cuts(frame, rays[ray], own) : find_even_cuts(frame, rays[ray], own);
         if (cuts.at.size() < 16 * (own.size() + 1)) cuts.at.resize(16 * (own.size() + 1));
         cuts.pieces[ray] = std::max(static_cast<int>(own.size()) - 1, 0);
         cuts.most = std::max(cuts.most, cuts.pieces[ray]);

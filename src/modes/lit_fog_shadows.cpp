@@ -1,5 +1,5 @@
 // What rays cross of the shadow volumes.
-#include "modes/shadow_volume.h"
+#include "modes/lit_fog.h"
 
 namespace tyndall {
 namespace {
@@ -31,13 +31,13 @@ void find_in_view(const ShadowView& view, ShadowRays& rays, std::vector<ShadowCr
 }
 }
 
-void find_shadows(const ShadowVolumeFrame& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
+void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
                   std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
-    const ShadowCaster& caster = frame.casters[light];
+    const LitShadows& caster = frame.shadows[light];
     crossings.clear(), std::fill(dark, dark + 16, 0);
-    if (!caster.volumes.mesh) return;
+    if (caster.by != ShadowsBy::volumes) return;
     ShadowRays rays;
-    rays.edges = frame.settings.draw == ShadowDraw::shells;
+    rays.edges = frame.shells.has_value();
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         if (reached[i].empty()) continue;
         const Ray ray{batch.rays[i].origin, batch.rays[i].direction,

@@ -1,19 +1,19 @@
 // Nodes on the lit stretches of rays, inside the kernel of shadow-volume (see base/simd.h for how such files are
 // compiled).
-#if defined(TYNDALL_MODES_SHADOW_VOLUME_LIT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_SHADOW_VOLUME_LIT_SIMD_H
-#undef TYNDALL_MODES_SHADOW_VOLUME_LIT_SIMD_H
+#if defined(TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#undef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
 #else
-#define TYNDALL_MODES_SHADOW_VOLUME_LIT_SIMD_H
+#define TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
 #endif
 
-#include "modes/shadow_volume_simd.h"
+#include "modes/lit_fog_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // How far the angle seen from a local light may turn on one set of nodes: less where the phase function has a lobe.
-double widest_turn(const ShadowVolumeFrame& frame) {
+double widest_turn(const LitFog& frame) {
     float g = 0;
     for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(medium.optics.phase.g));
     return std::min(0.8, 4 * (1 - double(g)));
@@ -44,8 +44,11 @@ double turns_of(double from, double to, double widest) {
 
 // The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
-    if (packet.frame.sampled) return gauss_legendre(part.soft ? 3 : 2);
-    return gauss_legendre(packet.frame.settings.nodes + (part.soft ? 2 : 0));
+    if (part.light != no_light && packet.frame.shadows[static_cast<size_t>(part.light)].by == ShadowsBy::rays)
+        return {&packet.jittered[part.ray], 1};
+    const int more = part.soft ? 2 : 0;
+    if (!packet.frame.sampled) return gauss_legendre(packet.frame.nodes + more);
+    return gauss_legendre(packet.spread == Spread::angle ? 2 + more / 2 : 1);
 }
 
 void push_turning(Packet& packet, const Part& part) {
@@ -64,7 +67,6 @@ void push_turning(Packet& packet, const Part& part) {
 
 void push_part(Packet& packet, const Part& part) {
     if (packet.spread == Spread::angle) return push_turning(packet, part);
-    if (packet.frame.sampled) return push_node(packet, part.light, part.ray, part.cut, part.low, part.high, 0.5, 1);
     for (const QuadratureNode& node : rule_for(packet, part))
         push_node(packet, part.light, part.ray, part.cut, part.low, part.high, node.at, node.weight);
 }
@@ -72,9 +74,8 @@ void push_part(Packet& packet, const Part& part) {
 // Whether a piece between cuts can be seen to hold fog.
 HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
     if (!packet.frame.sampled) return true;
-    constexpr float opaque = 16; // e^-16 = 1e-7
     const float* depth = packet.scratch.depth.data() + 16 * static_cast<size_t>(cut) + ray;
-    return depth[0] * packet.frame.style.view_depth < opaque && depth[16] > depth[0];
+    return depth[0] * packet.frame.style.view_depth < packet.frame.opaque && depth[16] > depth[0];
 }
 
 bool in_soft_edge(const LightAlong& along, Stretch part) {

@@ -1,0 +1,31 @@
+#include "modes/lit_fog.h"
+
+#include <algorithm>
+
+namespace tyndall {
+bool has_grid(const Snapshot& snapshot) {
+    return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.kind == DensityKind::bricks; });
+}
+
+void add_lights(const View& view, LightTransmittance method, int light_resolution,
+                const std::function<ShadowsBy(const Light&)>& by, LitFog& frame) {
+    frame.camera = view.camera;
+    frame.margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
+    std::vector<ShadowTriangle> triangles;
+    std::shared_ptr<const ShadowMesh> mesh;
+    for (const Light& light : frame.snapshot.lights) {
+        frame.depths.push_back(make_light_depth(frame.snapshot, light, method, light_resolution, &view));
+        frame.depths.back().scale = frame.style.light_depth;
+        frame.cones.push_back(cone_falloff(light));
+        LitShadows& shadows = frame.shadows.emplace_back();
+        if (!casts(light, frame.snapshot)) continue;
+        shadows.by = by(light);
+        if (triangles.empty()) triangles = frame.snapshot.occluders->shadow_triangles();
+        if (shadows.by == ShadowsBy::slices && frame.slices.nodes.empty()) frame.slices = make_shadow_slices(triangles);
+        if (shadows.by != ShadowsBy::volumes) continue;
+        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(triangles));
+        shadows.volumes = make_shadow_volumes(mesh, center_of(light));
+        shadows.view = view_from(shadows.volumes, view.camera, view.size, frame.margin);
+    }
+}
+}
