@@ -84,29 +84,23 @@ struct Written {
     uint64_t voxels = 0, bytes = 0;
 };
 
-Written write_frame(const std::filesystem::path& file, int frame, const SparseVolume& volume,
-                    const VdbWriteOptions& options) {
-    Written written{.file = file, .frame = frame};
-    for (const Leaf& leaf : volume.leaves)
-        for (const float value : leaf.values) written.voxels += value != 0;
-    write_vdb(file, volume, options);
-    written.bytes = check_readable(file);
-    return written;
-}
-
 // Frames that are being written while the next one grows. Few, so that memory stays bounded.
 class Writers {
 public:
     Writers(BakeReport& report, Progress& progress)
         : report_(report), progress_(progress), most_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
 
-    void start(std::filesystem::path file, int frame, SparseVolume volume, const VdbWriteOptions& options) {
+    // Of `written`, all but the bytes is known.
+    void start(Written written, SparseVolume volume, const VdbWriteOptions& options) {
         while (pending_.size() >= most_) finish_one();
         // One thread means one: the frame is then written when its turn to finish comes.
         const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
-        pending_.push_back(std::async(when, [file = std::move(file), frame, volume = std::move(volume), &options] {
-            return write_frame(file, frame, volume, options);
-        }));
+        pending_.push_back(
+            std::async(when, [written = std::move(written), volume = std::move(volume), &options]() mutable {
+                write_vdb(written.file, volume, options);
+                written.bytes = check_readable(written.file);
+                return written;
+            }));
     }
     void keep(const std::filesystem::path& file) {
         ++report_.kept;
@@ -160,9 +154,11 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
             continue;
         }
         const double seconds = frame / recipe.frame_rate;
-        SparseVolume volume = grow(recipe, seconds);
+        GrowReport work;
+        SparseVolume volume = grow(recipe, seconds, &work);
         volume.metadata = frame_metadata(recipe, hash, frame, seconds);
-        writers.start(file, frame, std::move(volume), options.write);
+        const Written written{.file = file, .frame = frame, .voxels = static_cast<uint64_t>(work.voxels)};
+        writers.start(written, std::move(volume), options.write);
     }
     writers.finish();
     report.cancelled = report.written + report.kept < static_cast<int>(frames.size());

@@ -2,10 +2,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "volume/recipe_leaf.h"
+#include "volume/voxel_mask.h"
 
 #include <array>
 #include <bit>
-#include <cstring>
 #include <string>
 
 namespace tyndall {
@@ -91,23 +91,20 @@ struct ActiveBox {
     bool empty() const { return high.x < low.x; }
 };
 
-// The box of a leaf's voxels that are not 0.
-ActiveBox active_box(const Leaf& leaf) {
+// The box of a leaf's voxels in a mask.
+ActiveBox active_box(ivec3 origin, const VoxelMask& mask) {
     std::array<uint32_t, 3> used{}; // a bit for every layer of voxels across x, y, z
-    std::array<uint32_t, 8> z_bits{};
-    for (int row = 0; row < 64; ++row) {
-        std::array<uint32_t, 8> bits;
-        std::memcpy(bits.data(), leaf.values.data() + 8 * row, sizeof bits);
-        uint32_t any = 0;
-        for (int z = 0; z < 8; ++z) any |= bits[z], z_bits[z] |= bits[z];
-        if (any) used[0] |= 1u << (row / 8), used[1] |= 1u << (row % 8);
+    uint64_t rows = 0;              // bit y·8 + z
+    for (uint32_t x = 0; x < 8; ++x) used[0] |= uint32_t{mask[x] != 0} << x, rows |= mask[x];
+    for (uint32_t y = 0; y < 8; ++y) {
+        const uint32_t row = rows >> (8 * y) & 0xff;
+        used[1] |= uint32_t{row != 0} << y, used[2] |= row;
     }
-    for (int z = 0; z < 8; ++z) used[2] |= (z_bits[z] != 0) << z;
-    if (!used[0]) return {};
+    if (rows == 0) return {};
     ActiveBox box;
     for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = leaf.origin[axis] + std::countr_zero(used[axis]);
-        box.high[axis] = leaf.origin[axis] + std::bit_width(used[axis]) - 1;
+        box.low[axis] = origin[axis] + std::countr_zero(used[axis]);
+        box.high[axis] = origin[axis] + std::bit_width(used[axis]) - 1;
     }
     return box;
 }
@@ -123,16 +120,19 @@ SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
 
     // Filled in place, then closed up over the leaves that turned out empty.
     const std::vector<ivec3> origins = leaves_to_try(field, grid);
-    volume.leaves.resize(origins.size());
+    volume.leaves.reserve(origins.size());
+    for (size_t i = 0; i < origins.size(); ++i) volume.leaves.emplace_back(Unfilled{});
     std::vector<ActiveBox> active(origins.size());
-    std::vector<int> finished(origins.size());
+    std::vector<int> finished(origins.size()), voxels(origins.size());
     parallel_ranges(static_cast<int64_t>(origins.size()), 8, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i) {
             Leaf& leaf = volume.leaves[i];
             leaf.origin = origins[i];
             finished[i] = fill_leaf(field, &grid.at[0][leaf.origin.x], &grid.at[1][leaf.origin.y],
                                     &grid.at[2][leaf.origin.z], leaf.values);
-            active[i] = active_box(leaf);
+            const VoxelMask mask = voxels_above(leaf.values, 0);
+            active[i] = active_box(leaf.origin, mask);
+            voxels[i] = static_cast<int>(count_voxels(mask));
         }
     });
 
@@ -141,7 +141,7 @@ SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
     ActiveBox all;
     size_t kept = 0;
     for (size_t i = 0; i < origins.size(); ++i) {
-        work.finished += finished[i];
+        work.finished += finished[i], work.voxels += voxels[i];
         if (active[i].empty()) {
             work.wasted += finished[i];
             continue;

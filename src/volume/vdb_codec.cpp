@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/parallel.h"
+#include "volume/vdb_stream.h"
 
 #include <openvdb/Grid.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -16,6 +16,7 @@
 #include <new>
 #include <optional>
 #include <sstream>
+#include <tuple>
 
 namespace tyndall {
 namespace {
@@ -55,73 +56,114 @@ template<class Tree> void append_tiles(const Tree& tree, DecodedTree& result) {
     for (; off; ++off) append_tile(off, false, result);
 }
 
-template<class Tree> void append_leaves(const Tree& tree, DecodedTree& result) {
+// The tree gives the places of the leaves; their values are decoded in parallel, past the library's tree.
+template<class Tree>
+void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins,
+                   const LeafCoding& coding, DecodedTree& result) {
     std::vector<const typename Tree::LeafNodeType*> nodes;
-    nodes.reserve(tree.leafCount());
+    nodes.reserve(begins.size());
     tree.getNodes(nodes);
-    result.leaves.resize(nodes.size());
+    if (nodes.size() != begins.size()) throw std::runtime_error("the tree holds another number of leaves");
+    result.leaves.reserve(nodes.size());
+    for (const auto* node : nodes) result.leaves.emplace_back(Unfilled{}).origin = point(node->origin());
     result.active.resize(nodes.size());
-    parallel_ranges(static_cast<int64_t>(nodes.size()), 256, [&](int64_t begin, int64_t end) {
-        for (int64_t i = begin; i < end; ++i) {
-            const auto n = static_cast<size_t>(i);
-            const auto& node = *nodes[n];
-            result.leaves[n].origin = point(node.origin());
-            const auto* values = node.buffer().data();
-            for (size_t v = 0; v < 512; ++v) result.leaves[n].values[v] = static_cast<float>(values[v]);
-            for (openvdb::Index w = 0; w < 8; ++w)
-                result.active[n][w] = node.valueMask().template getWord<openvdb::Index64>(w);
-        }
-    });
+    decode_leaves(bytes, begins, coding, result.leaves, result.active);
 }
 
 // The tree is read from a stream that throws and has no file behind it, so nothing is mapped or loaded late.
 // Grids come from the library's registry: making them here would compile every member of every type of tree.
-template<class Grid> DecodedTree decoded(std::string bytes, const VdbGridEntry& entry, uint32_t file_version) {
+template<class Grid>
+DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts,
+                    uint32_t file_version) {
     openvdb::initialize();
     const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid("Tree_" + entry.type + "_5_4_3");
+    const size_t topology_end = counts.leaf_begins.empty() ? bytes.size() : counts.leaf_begins.front();
     {
-        const auto size = static_cast<std::streamoff>(bytes.size());
-        std::istringstream stream(std::move(bytes), std::ios::binary);
+        ByteSource source(bytes);
+        std::istream stream(&source);
         stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
         openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), file_version);
         openvdb::io::setDataCompression(stream, entry.compression);
         grid->setSaveFloatAsHalf(entry.half);
         grid->readTopology(stream);
-        grid->readBuffers(stream);
-        if (stream.tellg() != size) throw std::runtime_error("the tree ends before its bytes do");
+        if (source.taken() != topology_end) throw std::runtime_error("the tree ends elsewhere than its bytes do");
     }
     const auto& tree = static_cast<const Grid&>(*grid).tree();
     DecodedTree result;
     result.background = static_cast<float>(tree.background());
     for (auto at = tree.root().cbeginChildAll(); at; ++at) result.root_nodes.push_back(point(at.getCoord()));
     append_tiles(tree, result);
-    append_leaves(tree, result);
+    const LeafCoding coding{file_version, entry.compression, entry.half, entry.type == "double", tree.background()};
+    append_leaves(tree, bytes, counts.leaf_begins, coding, result);
     return result;
 }
 
-// The value a reader will see: what half cannot hold is clamped, what it rounds to nothing is nothing.
-float stored_value(float value, bool half) {
-    if (!(value > 0)) return 0;
-    if (!half) return std::min(value, std::numeric_limits<float>::max());
-    return static_cast<float>(openvdb::math::half(std::min(value, 65504.0f)));
-}
-
-void fill_tree(openvdb::FloatTree& tree, const SparseVolume& volume, bool half) {
-    for (const Tile& tile : volume.tiles) {
+void fill_tiles(openvdb::FloatTree& tree, const std::vector<Tile>& tiles, bool half) {
+    for (const Tile& tile : tiles) {
         const float value = stored_value(tile.value, half);
         if (value == 0) continue;
         const openvdb::Coord low(tile.low.x, tile.low.y, tile.low.z), high(tile.high.x, tile.high.y, tile.high.z);
         tree.sparseFill(openvdb::CoordBBox(low, high), value, true);
     }
-    for (const Leaf& leaf : volume.leaves) {
-        assert((leaf.origin.x & 7) == 0 && (leaf.origin.y & 7) == 0 && (leaf.origin.z & 7) == 0);
-        std::array<float, 512> values;
-        for (size_t v = 0; v < 512; ++v) values[v] = stored_value(leaf.values[v], half);
-        if (std::all_of(values.begin(), values.end(), [](float value) { return value == 0; })) continue;
-        auto* node = tree.touchLeaf(openvdb::Coord(leaf.origin.x, leaf.origin.y, leaf.origin.z));
-        for (openvdb::Index v = 0; v < 512; ++v)
-            if (values[v] != 0) node->setValueOn(v, values[v]);
+}
+
+// The leaves that tiles made where they cover one in part.
+Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
+    Leaves leaves;
+    for (auto node = tree.cbeginLeaf(); node; ++node) {
+        Leaf& leaf = leaves.emplace_back(Leaf{point(node->origin())});
+        for (openvdb::Index v = 0; v < 512; ++v) leaf.values[v] = node->getValue(v);
     }
+    return leaves;
+}
+
+// The order of the leaves in a tree: by their 4096³, 128³ and 8³ cells, x before y before z.
+struct TreePlace {
+    std::array<int32_t, 3> root;
+    uint32_t inner = 0;
+    const Leaf* leaf = nullptr;
+
+    auto key() const { return std::tie(root, inner); }
+};
+
+TreePlace tree_place(const Leaf& leaf) {
+    assert((leaf.origin.x & 7) == 0 && (leaf.origin.y & 7) == 0 && (leaf.origin.z & 7) == 0);
+    TreePlace place{.root = {}, .leaf = &leaf};
+    for (int axis = 0; axis < 3; ++axis) {
+        place.root[axis] = leaf.origin[axis] >> 12;
+        place.inner |= static_cast<uint32_t>(leaf.origin[axis] >> 7 & 31) << (22 - 5 * axis);
+        place.inner |= static_cast<uint32_t>(leaf.origin[axis] >> 3 & 15) << (8 - 4 * axis);
+    }
+    return place;
+}
+
+std::vector<const Leaf*> in_tree_order(const Leaves& leaves, const Leaves& more) {
+    std::vector<TreePlace> places;
+    places.reserve(leaves.size() + more.size());
+    for (const Leaves* some : {&leaves, &more})
+        for (const Leaf& leaf : *some) places.push_back(tree_place(leaf));
+    std::ranges::sort(places, {}, &TreePlace::key);
+    std::vector<const Leaf*> result;
+    result.reserve(places.size());
+    for (const TreePlace& place : places) result.push_back(place.leaf);
+    return result;
+}
+
+// Puts the leaves that hold anything into the tree, with masks but without values, which are encoded apart.
+void add_leaves(openvdb::FloatTree& tree, std::span<const Leaf* const> leaves, std::span<const VoxelMask> masks) {
+    using Node = openvdb::FloatTree::LeafNodeType;
+    size_t added = 0;
+    for (size_t n = 0; n < leaves.size(); ++n) {
+        if (count_voxels(masks[n]) == 0) continue;
+        const ivec3 origin = leaves[n]->origin;
+        auto node = std::make_unique<Node>(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), 0.f);
+        Node::NodeMaskType mask;
+        for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<openvdb::Index64>(w) = masks[n][w];
+        node->setValueMask(mask);
+        tree.addLeaf(node.release());
+        ++added;
+    }
+    if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
 }
 
 // Scale and translation as such, since some readers know no other map; anything else as a matrix.
@@ -185,10 +227,11 @@ void write_header(std::ostream& stream) {
     stream << "00000000-0000-0000-0000-000000000000";
 }
 
-// As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so.
-void write_grid(std::ostream& stream, openvdb::GridBase& grid, bool blosc) {
+// As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so. What follows the
+// topology are the values; the leaves hold none, but count as if they did in the memory that the grid says it takes.
+void write_grid(std::ostream& stream, openvdb::FloatGrid& grid, uint32_t compression,
+                std::span<const std::string_view> values) {
     using namespace openvdb;
-    const uint32_t compression = io::COMPRESS_ACTIVE_MASK | (blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP);
     io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(stream);
     const std::streampos offsets = stream.tellp();
@@ -198,49 +241,70 @@ void write_grid(std::ostream& stream, openvdb::GridBase& grid, bool blosc) {
     io::setDataCompression(stream, compression);
     write_value(stream, compression);
     grid.addStatsMetadata();
+    const auto memory = static_cast<int64_t>(grid.memUsage() + grid.tree().leafCount() * 512 * sizeof(float));
+    grid.insertMeta(GridBase::META_FILE_MEM_BYTES, Int64Metadata(memory));
     grid.insertMeta(GridBase::META_FILE_COMPRESSION, StringMetadata(io::compressionToString(compression)));
     grid.writeMeta(stream);
     grid.writeTransform(stream);
     grid.writeTopology(stream);
-    descriptor.setBlockPos(stream.tellp());
-    grid.writeBuffers(stream);
-    descriptor.setEndPos(stream.tellp());
+    std::streamoff end = stream.tellp();
+    descriptor.setBlockPos(end);
+    for (const std::string_view piece : values) end += static_cast<std::streamoff>(piece.size());
+    descriptor.setEndPos(end);
 
     stream.seekp(offsets);
     descriptor.writeStreamPos(stream);
 }
 }
 
-DecodedTree decode_tree(std::string bytes, const VdbGridEntry& grid, uint32_t file_version, const std::string& where) {
+DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
+                        uint32_t file_version, const std::string& where) {
     return guarded(ExitCode::refused, where, [&] {
-        return grid.type == "double" ? decoded<openvdb::DoubleGrid>(std::move(bytes), grid, file_version)
-                                     : decoded<openvdb::FloatGrid>(std::move(bytes), grid, file_version);
+        return grid.type == "double" ? decoded<openvdb::DoubleGrid>(bytes, grid, counts, file_version)
+                                     : decoded<openvdb::FloatGrid>(bytes, grid, counts, file_version);
     });
 }
 
-std::string encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where) {
+std::vector<std::string_view> EncodedFog::pieces() const {
+    std::vector<std::string_view> result{head};
+    result.insert(result.end(), leaves.pieces.begin(), leaves.pieces.end());
+    return result;
+}
+
+EncodedFog encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where) {
     return guarded(ExitCode::internal, where, [&] {
-        openvdb::initialize();
-        const openvdb::GridBase::Ptr base = openvdb::GridBase::createGrid(openvdb::FloatGrid::gridType());
-        auto& grid = static_cast<openvdb::FloatGrid&>(*base);
-        fill_tree(grid.tree(), volume, options.half);
+        using namespace openvdb;
+        initialize();
+        const GridBase::Ptr base = GridBase::createGrid(FloatGrid::gridType());
+        auto& grid = static_cast<FloatGrid&>(*base);
         grid.setName(volume.name);
-        grid.setGridClass(openvdb::GRID_FOG_VOLUME);
+        grid.setGridClass(GRID_FOG_VOLUME);
         grid.setCreator(options.creator);
         grid.setSaveFloatAsHalf(options.half);
-        grid.setTransform(std::make_shared<openvdb::math::Transform>(make_transform(volume.index_to_world)));
+        grid.setTransform(std::make_shared<math::Transform>(make_transform(volume.index_to_world)));
+
+        // The values first: how many bytes they take stands before them.
+        fill_tiles(grid.tree(), volume.tiles, options.half);
+        const Leaves more = leaves_of_tiles(grid.tree());
+        const std::vector<const Leaf*> leaves = in_tree_order(volume.leaves, more);
+        const uint32_t packing = options.blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP;
+        EncodedFog fog;
+        fog.leaves = encode_leaves(leaves, options.half, packing);
+        add_leaves(grid.tree(), leaves, fog.leaves.masks);
 
         std::ostringstream stream(std::ios::binary);
         stream.exceptions(std::ios::failbit | std::ios::badbit);
         write_header(stream);
         make_metadata(volume, options.creator).writeMeta(stream);
         write_value<int32_t>(stream, 1);
-        write_grid(stream, grid, options.blosc);
+        write_grid(stream, grid, io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.pieces);
+        fog.head = std::move(stream).str();
 
         // The same content gets the same identity.
-        std::string bytes = std::move(stream).str(), hash = content_hash(bytes);
+        std::string hash = content_hash(fog.pieces());
         for (const size_t hyphen : {8, 13, 18, 23}) hash.insert(hyphen, "-");
-        return bytes.replace(uuid_begin, uuid_bytes, hash);
+        fog.head.replace(uuid_begin, uuid_bytes, hash);
+        return fog;
     });
 }
 }

@@ -50,7 +50,7 @@ bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
     return any;
 }
 
-void clean_leaves(std::vector<Leaf>& leaves, const ActiveBox& box, Mended& mended) {
+void clean_leaves(Leaves& leaves, const ActiveBox& box, Mended& mended) {
     std::vector<uint8_t> keep(leaves.size());
     std::atomic<uint64_t> non_finite = 0, negative = 0;
     parallel_ranges(static_cast<int64_t>(leaves.size()), 256, [&](int64_t begin, int64_t end) {
