@@ -5,7 +5,6 @@
 #include "volume/voxel_mask.h"
 
 #include <array>
-#include <bit>
 #include <string>
 
 namespace tyndall {
@@ -90,24 +89,6 @@ struct ActiveBox {
 
     bool empty() const { return high.x < low.x; }
 };
-
-// The box of a leaf's voxels in a mask.
-ActiveBox active_box(ivec3 origin, const VoxelMask& mask) {
-    std::array<uint32_t, 3> used{}; // a bit for every layer of voxels across x, y, z
-    uint64_t rows = 0;              // bit y·8 + z
-    for (uint32_t x = 0; x < 8; ++x) used[0] |= uint32_t{mask[x] != 0} << x, rows |= mask[x];
-    for (uint32_t y = 0; y < 8; ++y) {
-        const uint32_t row = rows >> (8 * y) & 0xff;
-        used[1] |= uint32_t{row != 0} << y, used[2] |= row;
-    }
-    if (rows == 0) return {};
-    ActiveBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = origin[axis] + std::countr_zero(used[axis]);
-        box.high[axis] = origin[axis] + std::bit_width(used[axis]) - 1;
-    }
-    return box;
-}
 }
 
 SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
@@ -131,8 +112,10 @@ SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
             finished[i] = fill_leaf(field, &grid.at[0][leaf.origin.x], &grid.at[1][leaf.origin.y],
                                     &grid.at[2][leaf.origin.z], leaf.values);
             const VoxelMask mask = voxels_above(leaf.values, 0);
-            active[i] = active_box(leaf.origin, mask);
             voxels[i] = static_cast<int>(count_voxels(mask));
+            if (voxels[i] == 0) continue;
+            bounds_of(mask, active[i].low, active[i].high);
+            active[i].low += leaf.origin, active[i].high += leaf.origin;
         }
     });
 

@@ -120,8 +120,10 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     const uint64_t size = grid.tree_end - grid.tree_begin;
     check_memory(size, where);
     file.seek(grid.tree_begin, "the grid");
-    const std::string bytes = file.bytes(size, "the grid");
+    const LargeBytes memory = large_bytes(size);
+    file.read(memory.get(), size, "the grid");
 
+    const std::string_view bytes(memory.get(), size);
     ByteCursor tree(where, bytes, grid.tree_begin);
     counts = walk_tree(tree, grid);
     if (tree.left() > 0) tree.complain("its voxels end before the grid does");

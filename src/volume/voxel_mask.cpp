@@ -35,5 +35,17 @@ VoxelMask voxels_above(std::span<const float, 512> values, float threshold) {
     HWY_DYNAMIC_DISPATCH(mask_kernel)(values.data(), threshold, mask.data());
     return mask;
 }
+
+void bounds_of(const VoxelMask& mask, ivec3& low, ivec3& high) {
+    uint64_t rows = 0; // bit y·8 + z
+    for (const uint64_t word : mask) rows |= word;
+    std::array<uint32_t, 3> used{}; // a bit for every layer across x, y, z
+    for (uint32_t i = 0; i < 8; ++i) {
+        const uint32_t row = rows >> (8 * i) & 0xff;
+        used[0] |= uint32_t{mask[i] != 0} << i, used[1] |= uint32_t{row != 0} << i, used[2] |= row;
+    }
+    for (int axis = 0; axis < 3; ++axis)
+        low[axis] = std::countr_zero(used[axis]), high[axis] = std::bit_width(used[axis]) - 1;
+}
 }
 #endif
