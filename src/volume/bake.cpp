@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/frames.h"
 #include "base/parallel.h"
-#include "volume/recipe_field.h"
+#include "volume/recipe_growth.h"
 
 #include <charconv>
 #include <chrono>
@@ -90,17 +90,14 @@ public:
     Writers(BakeReport& report, Progress& progress)
         : report_(report), progress_(progress), most_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
 
-    // Of `written`, all but the bytes is known.
-    void start(Written written, SparseVolume volume, const VdbWriteOptions& options) {
+    void start(std::filesystem::path file, int frame, VdbImage image) {
         while (pending_.size() >= most_) finish_one();
         // One thread means one: the frame is then written when its turn to finish comes.
         const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
-        pending_.push_back(
-            std::async(when, [written = std::move(written), volume = std::move(volume), &options]() mutable {
-                write_vdb(written.file, volume, options);
-                written.bytes = check_readable(written.file);
-                return written;
-            }));
+        pending_.push_back(std::async(when, [file = std::move(file), frame, image = std::move(image)] {
+            image.write(file);
+            return Written{file, frame, image.voxels(), check_readable(file)};
+        }));
     }
     void keep(const std::filesystem::path& file) {
         ++report_.kept;
@@ -154,11 +151,14 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
             continue;
         }
         const double seconds = frame / recipe.frame_rate;
-        GrowReport work;
-        SparseVolume volume = grow(recipe, seconds, &work);
-        volume.metadata = frame_metadata(recipe, hash, frame, seconds);
-        const Written written{.file = file, .frame = frame, .voxels = static_cast<uint64_t>(work.voxels)};
-        writers.start(written, std::move(volume), options.write);
+        const Growth growth = start_growth(recipe, seconds);
+        const VdbContent content{.name = recipe.name,
+                                 .index_to_world = growth.index_to_world,
+                                 .metadata = frame_metadata(recipe, hash, frame, seconds),
+                                 .tiles = {},
+                                 .origins = growth.origins,
+                                 .fill = [&](size_t number, Leaf& leaf) { grow_leaf(growth, number, leaf); }};
+        writers.start(file, frame, VdbImage(content, options.write, file.string()));
     }
     writers.finish();
     report.cancelled = report.written + report.kept < static_cast<int>(frames.size());

@@ -209,8 +209,20 @@ VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     return read_directory(file).metadata;
 }
 
+VdbImage::VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where)
+    : fog_(std::make_unique<EncodedFog>(encode_fog(content, options, where))) {}
+VdbImage::VdbImage(VdbImage&&) noexcept = default;
+VdbImage::~VdbImage() = default;
+
+void VdbImage::write(const std::filesystem::path& file) const { write_file_atomically(file, fog_->pieces()); }
+uint64_t VdbImage::voxels() const { return fog_->voxels(); }
+
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume, const VdbWriteOptions& options) {
-    write_file_atomically(path, encode_fog(volume, options, path.string()).pieces());
+    VdbContent content{volume.name, volume.index_to_world, volume.metadata, volume.tiles, {}, {}};
+    content.origins.reserve(volume.leaves.size());
+    for (const Leaf& leaf : volume.leaves) content.origins.push_back(leaf.origin);
+    content.fill = [&](size_t number, Leaf& leaf) { leaf = volume.leaves[number]; };
+    VdbImage(content, options, path.string()).write(path);
 }
 
 std::string VdbReadReport::summary() const {

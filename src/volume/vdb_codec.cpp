@@ -16,7 +16,6 @@
 #include <new>
 #include <optional>
 #include <sstream>
-#include <tuple>
 
 namespace tyndall {
 namespace {
@@ -119,51 +118,66 @@ Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
 
 // The order of the leaves in a tree: by their 4096³, 128³ and 8³ cells, x before y before z.
 struct TreePlace {
-    std::array<int32_t, 3> root;
-    uint32_t inner = 0;
-    const Leaf* leaf = nullptr;
+    uint64_t root = 0;
+    uint32_t inner = 0, number = 0;
 
-    auto key() const { return std::tie(root, inner); }
+    bool operator<(const TreePlace& other) const {
+        return root != other.root ? root < other.root : inner < other.inner;
+    }
 };
 
-TreePlace tree_place(const Leaf& leaf) {
-    assert((leaf.origin.x & 7) == 0 && (leaf.origin.y & 7) == 0 && (leaf.origin.z & 7) == 0);
-    TreePlace place{.root = {}, .leaf = &leaf};
+TreePlace tree_place(ivec3 origin, uint32_t number) {
+    assert((origin.x & 7) == 0 && (origin.y & 7) == 0 && (origin.z & 7) == 0);
+    TreePlace place{.number = number};
     for (int axis = 0; axis < 3; ++axis) {
-        place.root[axis] = leaf.origin[axis] >> 12;
-        place.inner |= static_cast<uint32_t>(leaf.origin[axis] >> 7 & 31) << (22 - 5 * axis);
-        place.inner |= static_cast<uint32_t>(leaf.origin[axis] >> 3 & 15) << (8 - 4 * axis);
+        const auto cell = static_cast<uint64_t>((origin[axis] >> 12) + (1 << 19)); // 20 bits
+        place.root |= cell << (40 - 20 * axis);
+        place.inner |= static_cast<uint32_t>(origin[axis] >> 7 & 31) << (22 - 5 * axis);
+        place.inner |= static_cast<uint32_t>(origin[axis] >> 3 & 15) << (8 - 4 * axis);
     }
     return place;
 }
 
-std::vector<const Leaf*> in_tree_order(const Leaves& leaves, const Leaves& more) {
+std::vector<TreePlace> in_tree_order(std::span<const ivec3> origins, const Leaves& more) {
     std::vector<TreePlace> places;
-    places.reserve(leaves.size() + more.size());
-    for (const Leaves* some : {&leaves, &more})
-        for (const Leaf& leaf : *some) places.push_back(tree_place(leaf));
-    std::ranges::sort(places, {}, &TreePlace::key);
-    std::vector<const Leaf*> result;
-    result.reserve(places.size());
-    for (const TreePlace& place : places) result.push_back(place.leaf);
-    return result;
+    places.reserve(origins.size() + more.size());
+    uint32_t number = 0;
+    for (const ivec3 origin : origins) places.push_back(tree_place(origin, number++));
+    for (const Leaf& leaf : more) places.push_back(tree_place(leaf.origin, number++));
+    std::ranges::sort(places, std::less());
+    return places;
 }
 
-// Puts the leaves that hold anything into the tree, with masks but without values, which are encoded apart.
-void add_leaves(openvdb::FloatTree& tree, std::span<const Leaf* const> leaves, std::span<const VoxelMask> masks) {
+// Puts a leaf into the tree with its mask but without values, which are encoded apart.
+void add_leaf(openvdb::FloatTree& tree, ivec3 origin, const VoxelMask& voxels) {
     using Node = openvdb::FloatTree::LeafNodeType;
+    auto node = std::make_unique<Node>(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), 0.f);
+    Node::NodeMaskType mask;
+    for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<openvdb::Index64>(w) = voxels[w];
+    node->setValueMask(mask);
+    tree.addLeaf(node.release());
+}
+
+// Tiles and leaves as a tree without the values of leaves; those, in its order.
+EncodedLeaves encode_tree(openvdb::FloatTree& tree, const VdbContent& content, bool half, uint32_t packing) {
+    fill_tiles(tree, content.tiles, half);
+    const Leaves more = leaves_of_tiles(tree);
+    const size_t given = content.origins.size();
+    const std::vector<TreePlace> places = in_tree_order(content.origins, more);
+    const auto fill = [&](size_t n, Leaf& leaf) {
+        const size_t number = places[n].number;
+        number < given ? content.fill(number, leaf) : void(leaf = more[number - given]);
+    };
+    EncodedLeaves leaves = encode_leaves(places.size(), fill, half, packing);
     size_t added = 0;
-    for (size_t n = 0; n < leaves.size(); ++n) {
-        if (count_voxels(masks[n]) == 0) continue;
-        const ivec3 origin = leaves[n]->origin;
-        auto node = std::make_unique<Node>(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), 0.f);
-        Node::NodeMaskType mask;
-        for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<openvdb::Index64>(w) = masks[n][w];
-        node->setValueMask(mask);
-        tree.addLeaf(node.release());
+    for (size_t n = 0; n < places.size(); ++n) {
+        if (count_voxels(leaves.masks[n]) == 0) continue;
+        const size_t number = places[n].number;
+        add_leaf(tree, number < given ? content.origins[number] : more[number - given].origin, leaves.masks[n]);
         ++added;
     }
     if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
+    return leaves;
 }
 
 // Scale and translation as such, since some readers know no other map; anything else as a matrix.
@@ -190,12 +204,12 @@ std::optional<double> number(const std::string& text) {
 }
 
 // Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
-openvdb::MetaMap make_metadata(const SparseVolume& volume, const std::string& creator) {
+openvdb::MetaMap make_metadata(const VdbMetadata& texts, const std::string& creator) {
     constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
     constexpr std::string_view real[] = {"tyndall_frame",  "tyndall_time_s",           "tyndall_fps",
                                          "tyndall_unit_m", "tyndall_extinction_per_m", "tyndall_g"};
     openvdb::MetaMap metadata;
-    for (const auto& [key, text] : volume.metadata) {
+    for (const auto& [key, text] : texts) {
         if (key.empty() || key == "creator") continue;
         metadata.removeMeta(key);
         const std::optional<double> value = number(text);
@@ -271,31 +285,33 @@ std::vector<std::string_view> EncodedFog::pieces() const {
     return result;
 }
 
-EncodedFog encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where) {
+uint64_t EncodedFog::voxels() const {
+    uint64_t sum = 0;
+    for (const VoxelMask& mask : leaves.masks) sum += count_voxels(mask);
+    return sum;
+}
+
+EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where) {
     return guarded(ExitCode::internal, where, [&] {
         using namespace openvdb;
         initialize();
         const GridBase::Ptr base = GridBase::createGrid(FloatGrid::gridType());
         auto& grid = static_cast<FloatGrid&>(*base);
-        grid.setName(volume.name);
+        grid.setName(content.name);
         grid.setGridClass(GRID_FOG_VOLUME);
         grid.setCreator(options.creator);
         grid.setSaveFloatAsHalf(options.half);
-        grid.setTransform(std::make_shared<math::Transform>(make_transform(volume.index_to_world)));
+        grid.setTransform(std::make_shared<math::Transform>(make_transform(content.index_to_world)));
 
         // The values first: how many bytes they take stands before them.
-        fill_tiles(grid.tree(), volume.tiles, options.half);
-        const Leaves more = leaves_of_tiles(grid.tree());
-        const std::vector<const Leaf*> leaves = in_tree_order(volume.leaves, more);
         const uint32_t packing = options.blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP;
         EncodedFog fog;
-        fog.leaves = encode_leaves(leaves, options.half, packing);
-        add_leaves(grid.tree(), leaves, fog.leaves.masks);
+        fog.leaves = encode_tree(grid.tree(), content, options.half, packing);
 
         std::ostringstream stream(std::ios::binary);
         stream.exceptions(std::ios::failbit | std::ios::badbit);
         write_header(stream);
-        make_metadata(volume, options.creator).writeMeta(stream);
+        make_metadata(content.metadata, options.creator).writeMeta(stream);
         write_value<int32_t>(stream, 1);
         write_grid(stream, grid, io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.pieces);
         fog.head = std::move(stream).str();

@@ -30,8 +30,9 @@ struct EncodedFog {
     EncodedLeaves leaves;
 
     std::vector<std::string_view> pieces() const;
+    uint64_t voxels() const; // in leaves
 };
 
 // Throws Error (out_of_memory).
-EncodedFog encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where);
+EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where);
 }

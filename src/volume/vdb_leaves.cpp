@@ -85,23 +85,25 @@ float stored_value(float value, bool half) {
     return half ? float_from_half(half_from_float(value)) : std::min(value, largest_float);
 }
 
-EncodedLeaves encode_leaves(std::span<const Leaf* const> leaves, bool half, uint32_t compression) {
+EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression) {
     EncodedLeaves result;
-    result.masks.resize(leaves.size());
-    if (leaves.empty()) return result;
+    result.masks.resize(count);
+    result.pieces.resize((count + leaves_at_once - 1) / leaves_at_once);
 
     // Every piece has a place as large as it can become: nothing is moved later, and untouched pages cost nothing.
-    const size_t place = leaves_at_once * most_bytes(half), count = (leaves.size() - 1) / leaves_at_once + 1;
-    result.memory = large_bytes(leaves.size() * most_bytes(half));
-    result.pieces.resize(count);
-    parallel_for(static_cast<int64_t>(count), [&](int64_t i) {
-        const size_t first = static_cast<size_t>(i) * leaves_at_once;
-        const size_t last = std::min(first + leaves_at_once, leaves.size());
-        char* const to = result.memory.get() + static_cast<size_t>(i) * place;
-        ByteSink sink(to, (last - first) * most_bytes(half));
+    const size_t room = most_bytes(half);
+    result.memory = std::make_unique_for_overwrite<char[]>(count * room);
+    parallel_for(static_cast<int64_t>(result.pieces.size()), [&](int64_t i) {
+        const size_t first = static_cast<size_t>(i) * leaves_at_once, last = std::min(first + leaves_at_once, count);
+        char* const to = result.memory.get() + first * room;
+        ByteSink sink(to, (last - first) * room);
         std::ostream stream(&sink);
         stream.exceptions(std::ios::failbit | std::ios::badbit);
-        for (size_t n = first; n < last; ++n) encode(*leaves[n], half, compression, result.masks[n], stream);
+        Leaf leaf;
+        for (size_t n = first; n < last; ++n) {
+            fill(n, leaf);
+            encode(leaf, half, compression, result.masks[n], stream);
+        }
         result.pieces[static_cast<size_t>(i)] = {to, sink.size()};
     });
     return result;

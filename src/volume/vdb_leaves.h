@@ -1,10 +1,11 @@
 // The values of leaves as a file holds them: a mask, what inactive voxels are, a compressed chunk of the active ones.
 // The library codes one leaf at a time; here many are coded in parallel, to the same bytes.
 #pragma once
-#include "volume/sparse_volume.h"
+#include "volume/vdb.h"
 #include "volume/voxel_mask.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -16,11 +17,12 @@ float stored_value(float value, bool half);
 struct EncodedLeaves {
     std::vector<VoxelMask> masks;         // voxels that are not 0 as stored, of every leaf asked for
     std::vector<std::string_view> pieces; // bytes of the leaves that hold any, in order; they live in `memory`
-    LargeBytes memory;
+    std::unique_ptr<char[]> memory;
 };
 
-// `compression` is one of vdb_zip and vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
-EncodedLeaves encode_leaves(std::span<const Leaf* const> leaves, bool half, uint32_t compression);
+// Encodes `count` leaves, each filled when its turn comes, on several threads. `compression` is one of vdb_zip and
+// vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
+EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression);
 
 // How a file holds the leaves of a float or double tree.
 struct LeafCoding {
