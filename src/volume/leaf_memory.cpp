@@ -8,9 +8,7 @@ namespace tyndall {
 namespace {
 constexpr size_t large_page = size_t{2} << 20;
 
-std::align_val_t alignment(size_t bytes) {
-    return std::align_val_t{bytes < large_page ? size_t{64} : large_page};
-}
+std::align_val_t alignment(size_t bytes) { return std::align_val_t{bytes < large_page ? size_t{64} : large_page}; }
 }
 
 void* allocate_large(size_t bytes) {

@@ -57,8 +57,8 @@ template<class Tree> void append_tiles(const Tree& tree, DecodedTree& result) {
 
 // The tree gives the places of the leaves; their values are decoded in parallel, past the library's tree.
 template<class Tree>
-void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins,
-                   const LeafCoding& coding, DecodedTree& result) {
+void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins, const LeafCoding& coding,
+                   DecodedTree& result) {
     std::vector<const typename Tree::LeafNodeType*> nodes;
     nodes.reserve(begins.size());
     tree.getNodes(nodes);

@@ -82,7 +82,8 @@ TEST(ContentHash, OfPiecesIsThatOfTheWhole) {
     for (int i = 0; i < 300; ++i) whole += static_cast<char>(i * 7);
     for (const size_t length : {1, 5, 15, 16, 17, 31, 100, 300}) {
         std::vector<std::string_view> pieces{""};
-        for (size_t at = 0; at < whole.size(); at += length) pieces.push_back(std::string_view(whole).substr(at, length));
+        for (size_t at = 0; at < whole.size(); at += length)
+            pieces.push_back(std::string_view(whole).substr(at, length));
         EXPECT_EQ(content_hash(pieces), content_hash(whole)) << length;
     }
 }
