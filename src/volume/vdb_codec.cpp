@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "volume/vdb_head.h"
 #include "volume/vdb_stream.h"
+#include "volume/vdb_tree_order.h"
 
 #include <openvdb/Grid.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -10,11 +12,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <cassert>
-#include <charconv>
-#include <cmath>
 #include <new>
-#include <optional>
 #include <sstream>
 
 namespace tyndall {
@@ -116,38 +114,6 @@ Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
     return leaves;
 }
 
-// The order of the leaves in a tree: by their 4096³, 128³ and 8³ cells, x before y before z.
-struct TreePlace {
-    uint64_t root = 0;
-    uint32_t inner = 0, number = 0;
-
-    bool operator<(const TreePlace& other) const {
-        return root != other.root ? root < other.root : inner < other.inner;
-    }
-};
-
-TreePlace tree_place(ivec3 origin, uint32_t number) {
-    assert((origin.x & 7) == 0 && (origin.y & 7) == 0 && (origin.z & 7) == 0);
-    TreePlace place{.number = number};
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto cell = static_cast<uint64_t>((origin[axis] >> 12) + (1 << 19)); // 20 bits
-        place.root |= cell << (40 - 20 * axis);
-        place.inner |= static_cast<uint32_t>(origin[axis] >> 7 & 31) << (22 - 5 * axis);
-        place.inner |= static_cast<uint32_t>(origin[axis] >> 3 & 15) << (8 - 4 * axis);
-    }
-    return place;
-}
-
-std::vector<TreePlace> in_tree_order(std::span<const ivec3> origins, const Leaves& more) {
-    std::vector<TreePlace> places;
-    places.reserve(origins.size() + more.size());
-    uint32_t number = 0;
-    for (const ivec3 origin : origins) places.push_back(tree_place(origin, number++));
-    for (const Leaf& leaf : more) places.push_back(tree_place(leaf.origin, number++));
-    std::ranges::sort(places, std::less());
-    return places;
-}
-
 // Puts a leaf into the tree with its mask but without values, which are encoded apart.
 void add_leaf(openvdb::FloatTree& tree, ivec3 origin, const VoxelMask& voxels) {
     using Node = openvdb::FloatTree::LeafNodeType;
@@ -163,17 +129,18 @@ EncodedLeaves encode_tree(openvdb::FloatTree& tree, const VdbContent& content, b
     fill_tiles(tree, content.tiles, half);
     const Leaves more = leaves_of_tiles(tree);
     const size_t given = content.origins.size();
-    const std::vector<TreePlace> places = in_tree_order(content.origins, more);
+    std::vector<ivec3> origins = content.origins;
+    for (const Leaf& leaf : more) origins.push_back(leaf.origin);
+    const std::vector<uint32_t> order = in_tree_order(origins);
     const auto fill = [&](size_t n, Leaf& leaf) {
-        const size_t number = places[n].number;
+        const size_t number = order[n];
         number < given ? content.fill(number, leaf) : void(leaf = more[number - given]);
     };
-    EncodedLeaves leaves = encode_leaves(places.size(), fill, half, packing);
+    EncodedLeaves leaves = encode_leaves(order.size(), fill, half, packing);
     size_t added = 0;
-    for (size_t n = 0; n < places.size(); ++n) {
+    for (size_t n = 0; n < order.size(); ++n) {
         if (count_voxels(leaves.masks[n]) == 0) continue;
-        const size_t number = places[n].number;
-        add_leaf(tree, number < given ? content.origins[number] : more[number - given].origin, leaves.masks[n]);
+        add_leaf(tree, origins[order[n]], leaves.masks[n]);
         ++added;
     }
     if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
@@ -194,51 +161,6 @@ openvdb::math::Transform make_transform(const dmat4& matrix) {
     const openvdb::Vec3d scale(matrix[0][0], matrix[1][1], matrix[2][2]);
     const openvdb::Vec3d translation(matrix[3][0], matrix[3][1], matrix[3][2]);
     return Transform(std::make_shared<ScaleTranslateMap>(scale, translation));
-}
-
-std::optional<double> number(const std::string& text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
-
-// Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
-openvdb::MetaMap make_metadata(const VdbMetadata& texts, const std::string& creator) {
-    constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
-    constexpr std::string_view real[] = {"tyndall_frame",  "tyndall_time_s",           "tyndall_fps",
-                                         "tyndall_unit_m", "tyndall_extinction_per_m", "tyndall_g"};
-    openvdb::MetaMap metadata;
-    for (const auto& [key, text] : texts) {
-        if (key.empty() || key == "creator") continue;
-        metadata.removeMeta(key);
-        const std::optional<double> value = number(text);
-        const auto is_key = [&](std::string_view name) { return name == key; };
-        if (value && std::ranges::any_of(whole, is_key) && *value == std::floor(*value) && std::abs(*value) < 1e15)
-            metadata.insertMeta(key, openvdb::Int64Metadata(static_cast<int64_t>(*value)));
-        else if (value && std::ranges::any_of(real, is_key))
-            metadata.insertMeta(key, openvdb::DoubleMetadata(*value));
-        else
-            metadata.insertMeta(key, openvdb::StringMetadata(text));
-    }
-    metadata.insertMeta("creator", openvdb::StringMetadata(creator));
-    return metadata;
-}
-
-template<class T> void write_value(std::ostream& stream, T value) {
-    stream.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-// Where the 36 characters of the UUID stand; the library would fill them at random.
-constexpr size_t uuid_begin = 21, uuid_bytes = 36;
-
-void write_header(std::ostream& stream) {
-    write_value<int64_t>(stream, openvdb::OPENVDB_MAGIC);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_FILE_VERSION);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MAJOR_VERSION);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MINOR_VERSION);
-    write_value<char>(stream, 1); // the grids say where they begin and end
-    stream << "00000000-0000-0000-0000-000000000000";
 }
 
 // As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so. What follows the
@@ -310,16 +232,12 @@ EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options,
 
         std::ostringstream stream(std::ios::binary);
         stream.exceptions(std::ios::failbit | std::ios::badbit);
-        write_header(stream);
-        make_metadata(content.metadata, options.creator).writeMeta(stream);
-        write_value<int32_t>(stream, 1);
+        write_head(stream, content.metadata, options.creator);
         write_grid(stream, grid, io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.pieces);
         fog.head = std::move(stream).str();
 
         // The same content gets the same identity.
-        std::string hash = content_hash(fog.pieces());
-        for (const size_t hyphen : {8, 13, 18, 23}) hash.insert(hyphen, "-");
-        fog.head.replace(uuid_begin, uuid_bytes, hash);
+        set_identity(fog.head, content_hash(fog.pieces()));
         return fog;
     });
 }
