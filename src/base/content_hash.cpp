@@ -1,5 +1,6 @@
 #include "base/file.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -32,25 +33,53 @@ std::string hex(uint64_t value) {
     for (size_t i = 16; i-- > 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
     return digits;
 }
-}
 
 // MurmurHash3, x64 128-bit variant, seed 0 (Appleby, public domain algorithm).
-std::string content_hash(std::string_view bytes) {
-    const uint64_t length = bytes.size();
-    uint64_t a = 0, b = 0;
-    for (; bytes.size() >= 16; bytes.remove_prefix(16)) {
-        a = std::rotl(a ^ scrambled_1(little_endian(bytes.substr(0, 8))), 27) + b;
-        a = a * 5 + 0x52dce729u;
-        b = std::rotl(b ^ scrambled_2(little_endian(bytes.substr(8, 8))), 31) + a;
-        b = b * 5 + 0x38495ab5u;
-    }
-    if (bytes.size() > 8) b ^= scrambled_2(little_endian(bytes.substr(8)));
-    a ^= scrambled_1(little_endian(bytes.substr(0, 8)));
+struct Murmur {
+    uint64_t a = 0, b = 0, length = 0;
+    std::string rest; // under 16 bytes
 
-    a ^= length, b ^= length;
-    a += b, b += a;
-    a = avalanched(a), b = avalanched(b);
-    a += b, b += a;
-    return hex(a) + hex(b);
+    // Whole blocks of 16 bytes; leaves the others in `bytes`.
+    void add_blocks(std::string_view& bytes) {
+        for (; bytes.size() >= 16; bytes.remove_prefix(16)) {
+            a = std::rotl(a ^ scrambled_1(little_endian(bytes.substr(0, 8))), 27) + b;
+            a = a * 5 + 0x52dce729u;
+            b = std::rotl(b ^ scrambled_2(little_endian(bytes.substr(8, 8))), 31) + a;
+            b = b * 5 + 0x38495ab5u;
+        }
+    }
+    void add(std::string_view bytes) {
+        length += bytes.size();
+        if (!rest.empty()) { // completed first
+            const size_t missing = std::min(16 - rest.size(), bytes.size());
+            rest += bytes.substr(0, missing);
+            bytes.remove_prefix(missing);
+            if (rest.size() < 16) return;
+            std::string_view block = rest;
+            add_blocks(block);
+        }
+        add_blocks(bytes);
+        rest = bytes;
+    }
+    std::string finish() {
+        const std::string_view bytes = rest;
+        if (bytes.size() > 8) b ^= scrambled_2(little_endian(bytes.substr(8)));
+        a ^= scrambled_1(little_endian(bytes.substr(0, 8)));
+
+        a ^= length, b ^= length;
+        a += b, b += a;
+        a = avalanched(a), b = avalanched(b);
+        a += b, b += a;
+        return hex(a) + hex(b);
+    }
+};
 }
+
+std::string content_hash(std::span<const std::string_view> pieces) {
+    Murmur hash;
+    for (const std::string_view piece : pieces) hash.add(piece);
+    return hash.finish();
+}
+
+std::string content_hash(std::string_view bytes) { return content_hash(std::span(&bytes, 1)); }
 }

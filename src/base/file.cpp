@@ -90,13 +90,17 @@ std::string read_file(const fs::path& path, uint64_t most) {
 
 uint64_t check_readable(const fs::path& path) { return Input(path).size; }
 
-void write_file_atomically(const fs::path& path, std::string_view text) {
+void write_file_atomically(const fs::path& path, std::span<const std::string_view> pieces) {
     const fs::path target = final_path(path);
     check_final_name(target);
     Temporary temporary(target);
-    temporary.write(text.data(), text.size());
+    for (const std::string_view piece : pieces) temporary.write(piece.data(), piece.size());
     temporary.sync_and_close();
     temporary.rename_over_final();
+}
+
+void write_file_atomically(const fs::path& path, std::string_view text) {
+    write_file_atomically(path, std::span(&text, 1));
 }
 
 void write_file_atomically(const fs::path& path, std::span<const std::byte> bytes) {

@@ -19,6 +19,7 @@ uint64_t check_readable(const std::filesystem::path& path);
 // Writes a temporary beside `path`, syncs it and renames it over `path`. Throws Error (unwritable) and leaves nothing.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
+void write_file_atomically(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 
 // Makes sure a file can be made in the directory of `path`, creating the directory when missing. Throws Error
 // (unwritable).
@@ -30,4 +31,5 @@ void sweep_temporaries(const std::filesystem::path& directory);
 
 // 128-bit content hash as 32 hex digits; stable across machines.
 std::string content_hash(std::string_view bytes);
+std::string content_hash(std::span<const std::string_view> pieces); // of the pieces joined
 }

@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/frames.h"
 #include "base/parallel.h"
-#include "volume/recipe_field.h"
+#include "volume/recipe_growth.h"
 
 #include <charconv>
 #include <chrono>
@@ -84,28 +84,19 @@ struct Written {
     uint64_t voxels = 0, bytes = 0;
 };
 
-Written write_frame(const std::filesystem::path& file, int frame, const SparseVolume& volume,
-                    const VdbWriteOptions& options) {
-    Written written{.file = file, .frame = frame};
-    for (const Leaf& leaf : volume.leaves)
-        for (const float value : leaf.values) written.voxels += value != 0;
-    write_vdb(file, volume, options);
-    written.bytes = check_readable(file);
-    return written;
-}
-
 // Frames that are being written while the next one grows. Few, so that memory stays bounded.
 class Writers {
 public:
     Writers(BakeReport& report, Progress& progress)
         : report_(report), progress_(progress), most_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
 
-    void start(std::filesystem::path file, int frame, SparseVolume volume, const VdbWriteOptions& options) {
+    void start(std::filesystem::path file, int frame, VdbImage image) {
         while (pending_.size() >= most_) finish_one();
         // One thread means one: the frame is then written when its turn to finish comes.
         const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
-        pending_.push_back(std::async(when, [file = std::move(file), frame, volume = std::move(volume), &options] {
-            return write_frame(file, frame, volume, options);
+        pending_.push_back(std::async(when, [file = std::move(file), frame, image = std::move(image)] {
+            image.write(file);
+            return Written{file, frame, image.voxels(), check_readable(file)};
         }));
     }
     void keep(const std::filesystem::path& file) {
@@ -160,9 +151,14 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
             continue;
         }
         const double seconds = frame / recipe.frame_rate;
-        SparseVolume volume = grow(recipe, seconds);
-        volume.metadata = frame_metadata(recipe, hash, frame, seconds);
-        writers.start(file, frame, std::move(volume), options.write);
+        const Growth growth = start_growth(recipe, seconds);
+        const VdbContent content{.name = recipe.name,
+                                 .index_to_world = growth.index_to_world,
+                                 .metadata = frame_metadata(recipe, hash, frame, seconds),
+                                 .tiles = {},
+                                 .origins = growth.origins,
+                                 .fill = [&](size_t number, Leaf& leaf) { grow_leaf(growth, number, leaf); }};
+        writers.start(file, frame, VdbImage(content, options.write, file.string()));
     }
     writers.finish();
     report.cancelled = report.written + report.kept < static_cast<int>(frames.size());

@@ -1,4 +1,4 @@
-// Bakes a recipe to a sequence of VDB files: frames are grown in parallel with writing.
+// Bakes a recipe to a sequence of VDB files: leaves are packed as they grow, a frame is written while another grows.
 #pragma once
 #include "base/progress.h"
 #include "volume/recipe.h"

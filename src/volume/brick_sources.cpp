@@ -2,37 +2,35 @@
 
 #include "base/parallel.h"
 #include "volume/half.h"
+#include "volume/voxel_mask.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace tyndall {
 namespace {
 LeafSummary summary_of(const Leaf& leaf) {
     LeafSummary summary;
-    int filled_z = 0;
-    ivec3 low(7), high(0);
+    const VoxelMask filled = voxels_above(leaf.values, smallest_half / 2);
+    uint64_t rows = 0; // bit y·8 + z
+    for (const uint64_t word : filled) rows |= word;
+    if (rows == 0) return summary;
+
+    // Part d holds the layers that a brick on the lower side shares: x, y, z 0 for its bits 4, 2, 1.
+    constexpr uint64_t first_y = 0xff, first_z = 0x0101010101010101u;
+    for (int d = 0; d < 8; ++d) {
+        const uint64_t shared = (d & 2 ? first_y : ~uint64_t{0}) & (d & 1 ? first_z : ~uint64_t{0});
+        const bool used = ((d & 4 ? filled[0] : rows) & shared) != 0;
+        summary.parts |= static_cast<uint8_t>(used << d);
+    }
+    ivec3 low, high;
+    bounds_of(filled, low, high);
+    summary.box = {leaf.origin + low, leaf.origin + high};
     std::array<float, 8> sums{}; // of each z
-    for (int row = 0; row < 64; ++row) {
-        int filled = 0; // bit z
+    for (int row = 0; row < 64; ++row)
         for (int z = 0; z < 8; ++z) {
             const float value = leaf.values[row * 8 + z];
-            filled |= (value > smallest_half / 2) << z;
             sums[z] += value > 0 ? std::min(value, largest_half) : 0;
         }
-        if (filled == 0) continue;
-        const int x = row / 8, y = row % 8;
-        low = glm::min(low, ivec3(x, y, 7)), high = glm::max(high, ivec3(x, y, 0));
-        filled_z |= filled;
-        for (int d = 0; d < 8; ++d) {
-            const bool used = (!(d & 4) || x == 0) && (!(d & 2) || y == 0) && (!(d & 1) || (filled & 1));
-            summary.parts |= static_cast<uint8_t>(used << d);
-        }
-    }
-    if (summary.parts == 0) return summary;
-    low.z = std::countr_zero(static_cast<unsigned>(filled_z));
-    high.z = std::bit_width(static_cast<unsigned>(filled_z)) - 1;
-    summary.box = {leaf.origin + low, leaf.origin + high};
     for (const float sum : sums) summary.mass += sum;
     return summary;
 }

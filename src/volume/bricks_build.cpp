@@ -4,6 +4,7 @@
 #include "volume/brick_sources.h"
 #include "volume/half.h"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -115,6 +116,12 @@ std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ive
         fail(ExitCode::out_of_memory, name,
              "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +
                  std::to_string(static_cast<int64_t>(memory / 1e6)) + " MB. Use larger voxels");
+    // Large pages, where there are any, take a fraction of the time that small ones need to be touched first.
+    pool.values.reserve(list.size() * brick_stride);
+    constexpr uintptr_t page = uintptr_t{2} << 20;
+    const auto room = reinterpret_cast<uintptr_t>(pool.values.data());
+    const uintptr_t low = (room + page - 1) & ~(page - 1), high = (room + list.size() * brick_stride * 2) & ~(page - 1);
+    if (low < high) madvise(reinterpret_cast<void*>(low), high - low, MADV_HUGEPAGE);
     pool.values.resize(list.size() * brick_stride);
     std::vector<Packed> packed(list.size());
     parallel_ranges(static_cast<int64_t>(list.size()), 16, [&](int64_t begin, int64_t end) {

@@ -59,6 +59,7 @@ struct GrowReport {
     int64_t leaves = 0;   // inside the bounds
     int64_t tried = 0;    // not ruled out by a bound of their box
     int64_t kept = 0;     // hold fog
+    int64_t voxels = 0;   // hold fog themselves
     int64_t finished = 0; // voxels computed to the last octave, by eights or sixteens
     int64_t wasted = 0;   // those of them in leaves that turned out empty: false positives of the bounds
 };

@@ -1,11 +1,11 @@
 // From bounds to leaves: a grid, the leaves that can hold fog, their values.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "volume/recipe_growth.h"
 #include "volume/recipe_leaf.h"
+#include "volume/voxel_mask.h"
 
 #include <array>
-#include <bit>
-#include <cstring>
 #include <string>
 
 namespace tyndall {
@@ -90,58 +90,56 @@ struct ActiveBox {
 
     bool empty() const { return high.x < low.x; }
 };
-
-// The box of a leaf's voxels that are not 0.
-ActiveBox active_box(const Leaf& leaf) {
-    std::array<uint32_t, 3> used{}; // a bit for every layer of voxels across x, y, z
-    std::array<uint32_t, 8> z_bits{};
-    for (int row = 0; row < 64; ++row) {
-        std::array<uint32_t, 8> bits;
-        std::memcpy(bits.data(), leaf.values.data() + 8 * row, sizeof bits);
-        uint32_t any = 0;
-        for (int z = 0; z < 8; ++z) any |= bits[z], z_bits[z] |= bits[z];
-        if (any) used[0] |= 1u << (row / 8), used[1] |= 1u << (row % 8);
-    }
-    for (int z = 0; z < 8; ++z) used[2] |= (z_bits[z] != 0) << z;
-    if (!used[0]) return {};
-    ActiveBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-        box.low[axis] = leaf.origin[axis] + std::countr_zero(used[axis]);
-        box.high[axis] = leaf.origin[axis] + std::bit_width(used[axis]) - 1;
-    }
-    return box;
 }
+
+Growth start_growth(const FogRecipe& recipe, double seconds) {
+    VoxelGrid grid = voxel_grid(recipe);
+    Growth growth;
+    const double step = recipe.voxel_size;
+    growth.index_to_world = glm::scale(glm::translate(dmat4(1), dvec3(recipe.bounds.low) + 0.5 * step), dvec3(step));
+    growth.field = fog_field(recipe, seconds);
+    growth.origins = leaves_to_try(growth.field, grid);
+    growth.size = grid.size;
+    growth.at = std::move(grid.at);
+    return growth;
+}
+
+int grow_leaf(const Growth& growth, size_t number, Leaf& leaf) {
+    leaf.origin = growth.origins[number];
+    return fill_leaf(growth.field, &growth.at[0][leaf.origin.x], &growth.at[1][leaf.origin.y],
+                     &growth.at[2][leaf.origin.z], leaf.values);
 }
 
 SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
-    const VoxelGrid grid = voxel_grid(recipe);
-    const FogField field = fog_field(recipe, seconds);
+    const Growth growth = start_growth(recipe, seconds);
     SparseVolume volume;
     volume.name = recipe.name;
-    const double step = recipe.voxel_size;
-    volume.index_to_world = glm::scale(glm::translate(dmat4(1), dvec3(recipe.bounds.low) + 0.5 * step), dvec3(step));
+    volume.index_to_world = growth.index_to_world;
 
     // Filled in place, then closed up over the leaves that turned out empty.
-    const std::vector<ivec3> origins = leaves_to_try(field, grid);
-    volume.leaves.resize(origins.size());
-    std::vector<ActiveBox> active(origins.size());
-    std::vector<int> finished(origins.size());
-    parallel_ranges(static_cast<int64_t>(origins.size()), 8, [&](int64_t begin, int64_t end) {
+    const size_t count = growth.origins.size();
+    volume.leaves.reserve(count);
+    for (size_t i = 0; i < count; ++i) volume.leaves.emplace_back(Unfilled{});
+    std::vector<ActiveBox> active(count);
+    std::vector<int> finished(count), voxels(count);
+    parallel_ranges(static_cast<int64_t>(count), 8, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i) {
             Leaf& leaf = volume.leaves[i];
-            leaf.origin = origins[i];
-            finished[i] = fill_leaf(field, &grid.at[0][leaf.origin.x], &grid.at[1][leaf.origin.y],
-                                    &grid.at[2][leaf.origin.z], leaf.values);
-            active[i] = active_box(leaf);
+            finished[i] = grow_leaf(growth, static_cast<size_t>(i), leaf);
+            const VoxelMask mask = voxels_above(leaf.values, 0);
+            voxels[i] = static_cast<int>(count_voxels(mask));
+            if (voxels[i] == 0) continue;
+            bounds_of(mask, active[i].low, active[i].high);
+            active[i].low += leaf.origin, active[i].high += leaf.origin;
         }
     });
 
-    const ivec3 leaves = (grid.size + 7) / 8;
-    GrowReport work{.leaves = int64_t{leaves.x} * leaves.y * leaves.z, .tried = static_cast<int64_t>(origins.size())};
+    const ivec3 leaves = (growth.size + 7) / 8;
+    GrowReport work{.leaves = int64_t{leaves.x} * leaves.y * leaves.z, .tried = static_cast<int64_t>(count)};
     ActiveBox all;
     size_t kept = 0;
-    for (size_t i = 0; i < origins.size(); ++i) {
-        work.finished += finished[i];
+    for (size_t i = 0; i < count; ++i) {
+        work.finished += finished[i], work.voxels += voxels[i];
         if (active[i].empty()) {
             work.wasted += finished[i];
             continue;

@@ -7,8 +7,11 @@
 #endif
 
 #include "volume/noise_bound_kernel.h"
+#include "volume/noise_column_kernel.h"
 #include "volume/noise_curl_kernel.h"
 #include "volume/recipe_field.h"
+
+#include <bit>
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -71,23 +74,77 @@ HWY_INLINE FloatVec sum_of_octaves(const NoiseSum& sum, FloatVec x, FloatVec y, 
     return total;
 }
 
+// The same along a column, for the x whose `needed` some lane can reach.
+HWY_INLINE void sums_along_column(const NoiseSum& sum, const float* x, FloatVec y, FloatVec z, const FloatVec* needed,
+                                  FloatVec* totals, int& finished) {
+    const FloatTag tag;
+    uint32_t open = 0xff;
+    for (int i = 0; i < 8; ++i) totals[i] = splat(sum.start);
+    for (size_t k = 0; k < sum.octaves.size(); ++k) {
+        for (uint32_t left = open; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            if (!hn::AllFalse(tag, hn::Gt(hn::Add(totals[i], splat(sum.rest[k])), needed[i]))) continue;
+            totals[i] = splat(-4);
+            open &= ~(1u << i);
+        }
+        if (open == 0) return;
+        OctaveColumn octave(sum.octaves[k], y, z);
+        for (uint32_t left = open; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
+            totals[i] = add_octave(sum.octaves[k], sum.billow, octave.at(x[i]), totals[i]);
+        }
+    }
+    finished += static_cast<int>(lane_step) * std::popcount(open);
+}
+
+// What the noise is weighed against.
+struct Weighing {
+    Floats scale, needed, wanted; // wanted: infinity where there is nothing to scale
+    bool open = false;
+};
+HWY_INLINE Weighing weighing(const FogField& field, const Vec3s& p) {
+    const Floats distance = field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, p);
+    Weighing result;
+    result.scale = envelope(field, p, p.y, distance);
+    const Mask16 open = result.scale >= least_density;
+    result.open = any(open);
+    result.needed = needed_noise(field, distance);
+    result.wanted = select(open, result.needed, infinity);
+    return result;
+}
+
+HWY_INLINE Floats density_of(const FogField& field, const Floats& noise, const Weighing& weigh) {
+    const Floats excess = 0.5f * (noise - weigh.needed);
+    Floats density = clamp01(excess * field.gain) * weigh.scale;
+    if (field.soft_edge > 0) density = density * smoothstep01(excess * (1 / field.soft_edge));
+    return zero_unless(density >= least_density, density);
+}
+
 // Densities at sixteen points. `finished` counts the points that needed every octave.
 HWY_INLINE Floats fog_density(const FogField& field, const Vec3s& p, int& finished) {
-    const Floats distance = field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, p);
-    const Floats scale = envelope(field, p, p.y, distance);
-    const Mask16 open = scale >= least_density;
-    if (!any(open)) return 0.0f;
-    const Floats needed = needed_noise(field, distance), wanted = select(open, needed, infinity);
-
+    const Weighing weigh = weighing(field, p);
+    if (!weigh.open) return 0.0f;
     const Vec3s q = field.swirl_gain == 0 ? p : p + displacement(field, p);
     Floats noise;
     for (size_t i = 0; i < parts; ++i)
-        noise.part[i] = sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], wanted.part[i], finished);
+        noise.part[i] =
+            sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], weigh.wanted.part[i], finished);
+    return density_of(field, noise, weigh);
+}
 
-    const Floats excess = 0.5f * (noise - needed);
-    Floats density = clamp01(excess * field.gain) * scale;
-    if (field.soft_edge > 0) density = density * smoothstep01(excess * (1 / field.soft_edge));
-    return zero_unless(density >= least_density, density);
+// The same of still coordinates, at eight x.
+HWY_INLINE void fog_column(const FogField& field, const float* x, const Floats& y, const Floats& z, Floats* densities,
+                           int& finished) {
+    Weighing weigh[8];
+    Floats noise[8];
+    for (int i = 0; i < 8; ++i) weigh[i] = weighing(field, {x[i], y, z});
+    for (size_t part = 0; part < parts; ++part) {
+        FloatVec wanted[8], totals[8];
+        for (int i = 0; i < 8; ++i) wanted[i] = weigh[i].wanted.part[part];
+        sums_along_column(field.noise, x, y.part[part], z.part[part], wanted, totals, finished);
+        for (int i = 0; i < 8; ++i) noise[i].part[part] = totals[i];
+    }
+    for (int i = 0; i < 8; ++i) densities[i] = weigh[i].open ? density_of(field, noise[i], weigh[i]) : 0.0f;
 }
 
 // True where a box can hold fog: never false for one that does. Boxes are those of the points, both ends included.

@@ -17,8 +17,13 @@ int fill_leaf_kernel(const FogField& field, const float* x, const float* y, cons
         for (int k = 0; k < 8; k += 4) {
             float ys[16], zs[16], density[16];
             for (int lane = 0; lane < 16; ++lane) ys[lane] = y[j + lane / 4], zs[lane] = z[k + lane % 4];
+            Floats column[8];
+            if (field.swirl_gain == 0)
+                fog_column(field, x, load(ys), load(zs), column, finished);
+            else
+                for (int i = 0; i < 8; ++i) column[i] = fog_density(field, {x[i], load(ys), load(zs)}, finished);
             for (int i = 0; i < 8; ++i) {
-                store(fog_density(field, {x[i], load(ys), load(zs)}, finished), density);
+                store(column[i], density);
                 for (int row = 0; row < 4; ++row)
                     std::memcpy(values + i * 64 + (j + row) * 8 + k, density + 4 * row, 4 * sizeof(float));
             }

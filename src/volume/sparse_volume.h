@@ -2,6 +2,7 @@
 // Index space: the centre of voxel (i,j,k) is at (i,j,k). Values are densities, 0..1 by custom.
 #pragma once
 #include "base/math.h"
+#include "volume/leaf_memory.h"
 
 #include <array>
 #include <cstdint>
@@ -16,6 +17,8 @@ struct Leaf {
     std::array<float, 512> values{};
 };
 
+using Leaves = std::vector<Leaf, LeafMemory<Leaf>>;
+
 // A box of voxels low..high (both included) of one value.
 struct Tile {
     ivec3 low{0}, high{0};
@@ -25,7 +28,7 @@ struct Tile {
 struct SparseVolume {
     std::string name = "density";
     dmat4 index_to_world{1};
-    std::vector<Leaf> leaves;             // no two share an origin
+    Leaves leaves;                        // no two share an origin
     std::vector<Tile> tiles;              // disjoint from the leaves and each other
     ivec3 active_low{0}, active_high{-1}; // box of the active voxels, both included; high < low = empty
     std::vector<std::pair<std::string, std::string>> metadata;

@@ -98,10 +98,9 @@ uint64_t available_memory() {
     return most - most / 8;
 }
 
-// Of the library's tree and of ours, which stand side by side for a moment.
-uint64_t memory_needed(const VdbGridEntry& grid, const VdbTreeCounts& counts) {
-    const uint64_t value = grid.type == "double" ? 8 : 4;
-    const uint64_t leaf = 512 * value + 128 + sizeof(Leaf) + sizeof(VoxelMask);
+// Of the library's tree, whose leaves hold no values, and of ours, which stand side by side for a moment.
+uint64_t memory_needed(const VdbTreeCounts& counts) {
+    const uint64_t leaf = 128 + sizeof(Leaf) + sizeof(VoxelMask) + sizeof(uint64_t);
     return counts.leaves * leaf + counts.lower_nodes * (4096 * 8 + 1100) + counts.upper_nodes * (32768 * 8 + 8300) +
            counts.root_tiles * 160 + counts.active_tiles * sizeof(Tile);
 }
@@ -121,13 +120,15 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     const uint64_t size = grid.tree_end - grid.tree_begin;
     check_memory(size, where);
     file.seek(grid.tree_begin, "the grid");
-    std::string bytes = file.bytes(size, "the grid");
+    const LargeBytes memory = large_bytes(size);
+    file.read(memory.get(), size, "the grid");
 
+    const std::string_view bytes(memory.get(), size);
     ByteCursor tree(where, bytes, grid.tree_begin);
     counts = walk_tree(tree, grid);
     if (tree.left() > 0) tree.complain("its voxels end before the grid does");
-    check_memory(size + memory_needed(grid, counts), where);
-    return decode_tree(std::move(bytes), grid, directory.file_version, where);
+    check_memory(size + memory_needed(counts), where);
+    return decode_tree(bytes, grid, counts, directory.file_version, where);
 }
 
 // An allocation that fails is the user's to know, not a crash.
@@ -162,7 +163,7 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
         file.where = where;
     }
     info.active_voxels = counts.active_voxels, info.leaves = counts.leaves, info.tiles = counts.active_tiles;
-    info.memory_bytes = memory_needed(grid, counts);
+    info.memory_bytes = memory_needed(counts);
     return info;
 }
 
@@ -208,8 +209,20 @@ VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     return read_directory(file).metadata;
 }
 
+VdbImage::VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where)
+    : fog_(std::make_unique<EncodedFog>(encode_fog(content, options, where))) {}
+VdbImage::VdbImage(VdbImage&&) noexcept = default;
+VdbImage::~VdbImage() = default;
+
+void VdbImage::write(const std::filesystem::path& file) const { write_file_atomically(file, fog_->pieces()); }
+uint64_t VdbImage::voxels() const { return fog_->voxels(); }
+
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume, const VdbWriteOptions& options) {
-    write_file_atomically(path, encode_fog(volume, options, path.string()));
+    VdbContent content{volume.name, volume.index_to_world, volume.metadata, volume.tiles, {}, {}};
+    content.origins.reserve(volume.leaves.size());
+    for (const Leaf& leaf : volume.leaves) content.origins.push_back(leaf.origin);
+    content.fill = [&](size_t number, Leaf& leaf) { leaf = volume.leaves[number]; };
+    VdbImage(content, options, path.string()).write(path);
 }
 
 std::string VdbReadReport::summary() const {

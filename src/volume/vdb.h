@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,9 +16,35 @@ struct VdbWriteOptions {
     std::string creator = "tyndall " TYNDALL_VERSION;
 };
 
+using LeafFill = std::function<void(size_t number, Leaf& leaf)>;
+
+// A fog grid whose leaves are computed while they are written, so that no more than a few exist at a time.
+struct VdbContent {
+    std::string name = "density";
+    dmat4 index_to_world{1};
+    std::vector<std::pair<std::string, std::string>> metadata;
+    std::vector<Tile> tiles;    // disjoint from the leaves and each other
+    std::vector<ivec3> origins; // of the leaves, multiples of 8, no two alike
+    LeafFill fill;              // every value of a leaf; called once for each, on several threads
+};
+
 // Writes one fog grid (class fog volume, background 0, zero voxels inactive) atomically. Same input, same bytes.
-// volume.metadata goes into the file's metadata. Throws Error (unwritable).
+// The metadata goes into the file's metadata. Throws Error (unwritable).
 void write_vdb(const std::filesystem::path& file, const SparseVolume& volume, const VdbWriteOptions& options = {});
+
+// The same in two steps, of which only the second waits for the disk.
+class VdbImage {
+public:
+    VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where);
+    VdbImage(VdbImage&&) noexcept;
+    ~VdbImage();
+
+    void write(const std::filesystem::path& file) const;
+    uint64_t voxels() const; // that are not 0, in leaves
+
+private:
+    std::unique_ptr<struct EncodedFog> fog_;
+};
 
 struct VdbGridInfo {
     std::string name, type, grid_class; // "density", "float", "fog volume"

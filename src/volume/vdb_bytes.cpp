@@ -66,6 +66,11 @@ void ByteCursor::fill_window() {
 void ByteCursor::read(void* bytes, uint64_t count, std::string_view what) {
     require(count, what);
     auto* to = static_cast<char*>(bytes);
+    if (descriptor_ >= 0 && count > window_bytes) { // more than passes through the window
+        read_at(position_, to, count, what);
+        position_ += count;
+        return;
+    }
     while (count > 0) {
         if (position_ < window_first_ || position_ >= window_first_ + window_.size()) fill_window();
         const uint64_t offset = position_ - window_first_, step = std::min(count, window_.size() - offset);
@@ -93,12 +98,7 @@ std::string ByteCursor::text(uint64_t most, std::string_view what) {
 std::string ByteCursor::bytes(uint64_t count, std::string_view what) {
     require(count, what);
     std::string result(count, '\0');
-    if (descriptor_ >= 0 && count > window_bytes) {
-        read_at(position_, result.data(), count, what);
-        position_ += count;
-    } else {
-        read(result.data(), count, what);
-    }
+    read(result.data(), count, what);
     return result;
 }
 }

@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "base/parallel.h"
+#include "volume/vdb_head.h"
+#include "volume/vdb_stream.h"
+#include "volume/vdb_tree_order.h"
 
 #include <openvdb/Grid.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -10,11 +12,7 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <cassert>
-#include <charconv>
-#include <cmath>
 #include <new>
-#include <optional>
 #include <sstream>
 
 namespace tyndall {
@@ -55,73 +53,98 @@ template<class Tree> void append_tiles(const Tree& tree, DecodedTree& result) {
     for (; off; ++off) append_tile(off, false, result);
 }
 
-template<class Tree> void append_leaves(const Tree& tree, DecodedTree& result) {
+// The tree gives the places of the leaves; their values are decoded in parallel, past the library's tree.
+template<class Tree>
+void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins, const LeafCoding& coding,
+                   DecodedTree& result) {
     std::vector<const typename Tree::LeafNodeType*> nodes;
-    nodes.reserve(tree.leafCount());
+    nodes.reserve(begins.size());
     tree.getNodes(nodes);
-    result.leaves.resize(nodes.size());
+    if (nodes.size() != begins.size()) throw std::runtime_error("the tree holds another number of leaves");
+    result.leaves.reserve(nodes.size());
+    for (const auto* node : nodes) result.leaves.emplace_back(Unfilled{}).origin = point(node->origin());
     result.active.resize(nodes.size());
-    parallel_ranges(static_cast<int64_t>(nodes.size()), 256, [&](int64_t begin, int64_t end) {
-        for (int64_t i = begin; i < end; ++i) {
-            const auto n = static_cast<size_t>(i);
-            const auto& node = *nodes[n];
-            result.leaves[n].origin = point(node.origin());
-            const auto* values = node.buffer().data();
-            for (size_t v = 0; v < 512; ++v) result.leaves[n].values[v] = static_cast<float>(values[v]);
-            for (openvdb::Index w = 0; w < 8; ++w)
-                result.active[n][w] = node.valueMask().template getWord<openvdb::Index64>(w);
-        }
-    });
+    decode_leaves(bytes, begins, coding, result.leaves, result.active);
 }
 
 // The tree is read from a stream that throws and has no file behind it, so nothing is mapped or loaded late.
 // Grids come from the library's registry: making them here would compile every member of every type of tree.
-template<class Grid> DecodedTree decoded(std::string bytes, const VdbGridEntry& entry, uint32_t file_version) {
+template<class Grid>
+DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts,
+                    uint32_t file_version) {
     openvdb::initialize();
     const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid("Tree_" + entry.type + "_5_4_3");
+    const size_t topology_end = counts.leaf_begins.empty() ? bytes.size() : counts.leaf_begins.front();
     {
-        const auto size = static_cast<std::streamoff>(bytes.size());
-        std::istringstream stream(std::move(bytes), std::ios::binary);
+        ByteSource source(bytes);
+        std::istream stream(&source);
         stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
         openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), file_version);
         openvdb::io::setDataCompression(stream, entry.compression);
         grid->setSaveFloatAsHalf(entry.half);
         grid->readTopology(stream);
-        grid->readBuffers(stream);
-        if (stream.tellg() != size) throw std::runtime_error("the tree ends before its bytes do");
+        if (source.taken() != topology_end) throw std::runtime_error("the tree ends elsewhere than its bytes do");
     }
     const auto& tree = static_cast<const Grid&>(*grid).tree();
     DecodedTree result;
     result.background = static_cast<float>(tree.background());
     for (auto at = tree.root().cbeginChildAll(); at; ++at) result.root_nodes.push_back(point(at.getCoord()));
     append_tiles(tree, result);
-    append_leaves(tree, result);
+    const LeafCoding coding{file_version, entry.compression, entry.half, entry.type == "double", tree.background()};
+    append_leaves(tree, bytes, counts.leaf_begins, coding, result);
     return result;
 }
 
-// The value a reader will see: what half cannot hold is clamped, what it rounds to nothing is nothing.
-float stored_value(float value, bool half) {
-    if (!(value > 0)) return 0;
-    if (!half) return std::min(value, std::numeric_limits<float>::max());
-    return static_cast<float>(openvdb::math::half(std::min(value, 65504.0f)));
-}
-
-void fill_tree(openvdb::FloatTree& tree, const SparseVolume& volume, bool half) {
-    for (const Tile& tile : volume.tiles) {
+void fill_tiles(openvdb::FloatTree& tree, const std::vector<Tile>& tiles, bool half) {
+    for (const Tile& tile : tiles) {
         const float value = stored_value(tile.value, half);
         if (value == 0) continue;
         const openvdb::Coord low(tile.low.x, tile.low.y, tile.low.z), high(tile.high.x, tile.high.y, tile.high.z);
         tree.sparseFill(openvdb::CoordBBox(low, high), value, true);
     }
-    for (const Leaf& leaf : volume.leaves) {
-        assert((leaf.origin.x & 7) == 0 && (leaf.origin.y & 7) == 0 && (leaf.origin.z & 7) == 0);
-        std::array<float, 512> values;
-        for (size_t v = 0; v < 512; ++v) values[v] = stored_value(leaf.values[v], half);
-        if (std::all_of(values.begin(), values.end(), [](float value) { return value == 0; })) continue;
-        auto* node = tree.touchLeaf(openvdb::Coord(leaf.origin.x, leaf.origin.y, leaf.origin.z));
-        for (openvdb::Index v = 0; v < 512; ++v)
-            if (values[v] != 0) node->setValueOn(v, values[v]);
+}
+
+// The leaves that tiles made where they cover one in part.
+Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
+    Leaves leaves;
+    for (auto node = tree.cbeginLeaf(); node; ++node) {
+        Leaf& leaf = leaves.emplace_back(Leaf{point(node->origin())});
+        for (openvdb::Index v = 0; v < 512; ++v) leaf.values[v] = node->getValue(v);
     }
+    return leaves;
+}
+
+// Puts a leaf into the tree with its mask but without values, which are encoded apart.
+void add_leaf(openvdb::FloatTree& tree, ivec3 origin, const VoxelMask& voxels) {
+    using Node = openvdb::FloatTree::LeafNodeType;
+    auto node = std::make_unique<Node>(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), 0.f);
+    Node::NodeMaskType mask;
+    for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<openvdb::Index64>(w) = voxels[w];
+    node->setValueMask(mask);
+    tree.addLeaf(node.release());
+}
+
+// Tiles and leaves as a tree without the values of leaves; those, in its order.
+EncodedLeaves encode_tree(openvdb::FloatTree& tree, const VdbContent& content, bool half, uint32_t packing) {
+    fill_tiles(tree, content.tiles, half);
+    const Leaves more = leaves_of_tiles(tree);
+    const size_t given = content.origins.size();
+    std::vector<ivec3> origins = content.origins;
+    for (const Leaf& leaf : more) origins.push_back(leaf.origin);
+    const std::vector<uint32_t> order = in_tree_order(origins);
+    const auto fill = [&](size_t n, Leaf& leaf) {
+        const size_t number = order[n];
+        number < given ? content.fill(number, leaf) : void(leaf = more[number - given]);
+    };
+    EncodedLeaves leaves = encode_leaves(order.size(), fill, half, packing);
+    size_t added = 0;
+    for (size_t n = 0; n < order.size(); ++n) {
+        if (count_voxels(leaves.masks[n]) == 0) continue;
+        add_leaf(tree, origins[order[n]], leaves.masks[n]);
+        ++added;
+    }
+    if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
+    return leaves;
 }
 
 // Scale and translation as such, since some readers know no other map; anything else as a matrix.
@@ -140,55 +163,11 @@ openvdb::math::Transform make_transform(const dmat4& matrix) {
     return Transform(std::make_shared<ScaleTranslateMap>(scale, translation));
 }
 
-std::optional<double> number(const std::string& text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
-
-// Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
-openvdb::MetaMap make_metadata(const SparseVolume& volume, const std::string& creator) {
-    constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
-    constexpr std::string_view real[] = {"tyndall_frame",  "tyndall_time_s",           "tyndall_fps",
-                                         "tyndall_unit_m", "tyndall_extinction_per_m", "tyndall_g"};
-    openvdb::MetaMap metadata;
-    for (const auto& [key, text] : volume.metadata) {
-        if (key.empty() || key == "creator") continue;
-        metadata.removeMeta(key);
-        const std::optional<double> value = number(text);
-        const auto is_key = [&](std::string_view name) { return name == key; };
-        if (value && std::ranges::any_of(whole, is_key) && *value == std::floor(*value) && std::abs(*value) < 1e15)
-            metadata.insertMeta(key, openvdb::Int64Metadata(static_cast<int64_t>(*value)));
-        else if (value && std::ranges::any_of(real, is_key))
-            metadata.insertMeta(key, openvdb::DoubleMetadata(*value));
-        else
-            metadata.insertMeta(key, openvdb::StringMetadata(text));
-    }
-    metadata.insertMeta("creator", openvdb::StringMetadata(creator));
-    return metadata;
-}
-
-template<class T> void write_value(std::ostream& stream, T value) {
-    stream.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
-// Where the 36 characters of the UUID stand; the library would fill them at random.
-constexpr size_t uuid_begin = 21, uuid_bytes = 36;
-
-void write_header(std::ostream& stream) {
-    write_value<int64_t>(stream, openvdb::OPENVDB_MAGIC);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_FILE_VERSION);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MAJOR_VERSION);
-    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MINOR_VERSION);
-    write_value<char>(stream, 1); // the grids say where they begin and end
-    stream << "00000000-0000-0000-0000-000000000000";
-}
-
-// As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so.
-void write_grid(std::ostream& stream, openvdb::GridBase& grid, bool blosc) {
+// As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so. What follows the
+// topology are the values; the leaves hold none, but count as if they did in the memory that the grid says it takes.
+void write_grid(std::ostream& stream, openvdb::FloatGrid& grid, uint32_t compression,
+                std::span<const std::string_view> values) {
     using namespace openvdb;
-    const uint32_t compression = io::COMPRESS_ACTIVE_MASK | (blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP);
     io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(stream);
     const std::streampos offsets = stream.tellp();
@@ -198,49 +177,68 @@ void write_grid(std::ostream& stream, openvdb::GridBase& grid, bool blosc) {
     io::setDataCompression(stream, compression);
     write_value(stream, compression);
     grid.addStatsMetadata();
+    const auto memory = static_cast<int64_t>(grid.memUsage() + grid.tree().leafCount() * 512 * sizeof(float));
+    grid.insertMeta(GridBase::META_FILE_MEM_BYTES, Int64Metadata(memory));
     grid.insertMeta(GridBase::META_FILE_COMPRESSION, StringMetadata(io::compressionToString(compression)));
     grid.writeMeta(stream);
     grid.writeTransform(stream);
     grid.writeTopology(stream);
-    descriptor.setBlockPos(stream.tellp());
-    grid.writeBuffers(stream);
-    descriptor.setEndPos(stream.tellp());
+    std::streamoff end = stream.tellp();
+    descriptor.setBlockPos(end);
+    for (const std::string_view piece : values) end += static_cast<std::streamoff>(piece.size());
+    descriptor.setEndPos(end);
 
     stream.seekp(offsets);
     descriptor.writeStreamPos(stream);
 }
 }
 
-DecodedTree decode_tree(std::string bytes, const VdbGridEntry& grid, uint32_t file_version, const std::string& where) {
+DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
+                        uint32_t file_version, const std::string& where) {
     return guarded(ExitCode::refused, where, [&] {
-        return grid.type == "double" ? decoded<openvdb::DoubleGrid>(std::move(bytes), grid, file_version)
-                                     : decoded<openvdb::FloatGrid>(std::move(bytes), grid, file_version);
+        return grid.type == "double" ? decoded<openvdb::DoubleGrid>(bytes, grid, counts, file_version)
+                                     : decoded<openvdb::FloatGrid>(bytes, grid, counts, file_version);
     });
 }
 
-std::string encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where) {
+std::vector<std::string_view> EncodedFog::pieces() const {
+    std::vector<std::string_view> result{head};
+    result.insert(result.end(), leaves.pieces.begin(), leaves.pieces.end());
+    return result;
+}
+
+uint64_t EncodedFog::voxels() const {
+    uint64_t sum = 0;
+    for (const VoxelMask& mask : leaves.masks) sum += count_voxels(mask);
+    return sum;
+}
+
+EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where) {
     return guarded(ExitCode::internal, where, [&] {
-        openvdb::initialize();
-        const openvdb::GridBase::Ptr base = openvdb::GridBase::createGrid(openvdb::FloatGrid::gridType());
-        auto& grid = static_cast<openvdb::FloatGrid&>(*base);
-        fill_tree(grid.tree(), volume, options.half);
-        grid.setName(volume.name);
-        grid.setGridClass(openvdb::GRID_FOG_VOLUME);
+        using namespace openvdb;
+        initialize();
+        const GridBase::Ptr base = GridBase::createGrid(FloatGrid::gridType());
+        auto& grid = static_cast<FloatGrid&>(*base);
+        grid.setName(content.name);
+        grid.setGridClass(GRID_FOG_VOLUME);
         grid.setCreator(options.creator);
         grid.setSaveFloatAsHalf(options.half);
-        grid.setTransform(std::make_shared<openvdb::math::Transform>(make_transform(volume.index_to_world)));
+        grid.setTransform(std::make_shared<math::Transform>(make_transform(content.index_to_world)));
+
+        // The values first: how many bytes they take stands before them.
+        const uint32_t packing = options.blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP;
+        EncodedFog fog;
+        fog.leaves = encode_tree(grid.tree(), content, options.half, packing);
 
         std::ostringstream stream(std::ios::binary);
         stream.exceptions(std::ios::failbit | std::ios::badbit);
-        write_header(stream);
-        make_metadata(volume, options.creator).writeMeta(stream);
-        write_value<int32_t>(stream, 1);
-        write_grid(stream, grid, options.blosc);
+        write_head(stream, content.metadata, options.creator);
+        write_grid(stream, grid, io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.pieces);
+        fog.head = std::move(stream).str();
 
         // The same content gets the same identity.
-        std::string bytes = std::move(stream).str(), hash = content_hash(bytes);
-        for (const size_t hyphen : {8, 13, 18, 23}) hash.insert(hyphen, "-");
-        return bytes.replace(uuid_begin, uuid_bytes, hash);
+        set_identity(fog.head, content_hash(fog.pieces()));
+        return fog;
     });
 }
 }

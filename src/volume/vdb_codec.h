@@ -2,18 +2,17 @@
 // file.
 #pragma once
 #include "volume/vdb.h"
+#include "volume/vdb_leaves.h"
 #include "volume/vdb_prewalk.h"
 
-#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tyndall {
-using VoxelMask = std::array<uint64_t, 8>; // bit x·64 + y·8 + z
-
 // A tree as stored: nothing cleaned, values of double trees rounded to float.
 struct DecodedTree {
-    std::vector<Leaf> leaves;
+    Leaves leaves;
     std::vector<VoxelMask> active; // of the leaves
     std::vector<Tile> active_tiles;
     std::vector<Tile> inactive_tiles; // those whose value is not 0
@@ -21,9 +20,19 @@ struct DecodedTree {
     float background = 0;
 };
 
-// Decodes what walk_tree() has accepted. Throws Error (refused, out_of_memory) naming `where`.
-DecodedTree decode_tree(std::string bytes, const VdbGridEntry& grid, uint32_t file_version, const std::string& where);
+// Decodes what walk_tree() has accepted and counted. Throws Error (refused, out_of_memory) naming `where`.
+DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
+                        uint32_t file_version, const std::string& where);
 
-// The bytes of a file with one fog grid. Throws Error (out_of_memory).
-std::string encode_fog(const SparseVolume& volume, const VdbWriteOptions& options, const std::string& where);
+// The bytes of a file with one fog grid, in order.
+struct EncodedFog {
+    std::string head; // everything before the values of the leaves
+    EncodedLeaves leaves;
+
+    std::vector<std::string_view> pieces() const;
+    uint64_t voxels() const; // in leaves
+};
+
+// Throws Error (out_of_memory).
+EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where);
 }

@@ -37,10 +37,24 @@ float cleaned(float value, uint64_t voxels, Mended& mended) {
     return value;
 }
 
+// As integers, floats that need no mending are those below infinity.
+bool is_clean(const Leaf& leaf, bool& any) {
+    constexpr int32_t bits_of_infinity = 0x7f800000;
+    int32_t all = 0, wrong = 0;
+    for (const float value : leaf.values) {
+        const auto bits = std::bit_cast<int32_t>(value);
+        all |= bits, wrong |= bits >= bits_of_infinity;
+    }
+    any = all != 0;
+    return all >= 0 && !wrong;
+}
+
 // True when anything is left of the leaf.
 bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
     const bool inside = contains(box, leaf.origin, leaf.origin + 7);
     bool any = false;
+    if (inside && is_clean(leaf, any)) return any;
+    any = false;
     for (uint32_t v = 0; v < 512; ++v) {
         const ivec3 at = leaf.origin + voxel(v);
         float& value = leaf.values[v];
@@ -50,7 +64,7 @@ bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
     return any;
 }
 
-void clean_leaves(std::vector<Leaf>& leaves, const ActiveBox& box, Mended& mended) {
+void clean_leaves(Leaves& leaves, const ActiveBox& box, Mended& mended) {
     std::vector<uint8_t> keep(leaves.size());
     std::atomic<uint64_t> non_finite = 0, negative = 0;
     parallel_ranges(static_cast<int64_t>(leaves.size()), 256, [&](int64_t begin, int64_t end) {

@@ -40,6 +40,7 @@ VdbDirectory read_directory(ByteCursor& file);
 struct VdbTreeCounts {
     uint64_t leaves = 0, lower_nodes = 0, upper_nodes = 0, root_tiles = 0;
     uint64_t active_tiles = 0, active_voxels = 0; // the voxels of active tiles included
+    std::vector<uint64_t> leaf_begins;            // where the values of each leaf begin, from the start of the tree
 };
 
 // Grid types whose trees walk_tree can read, and those that hold one density per voxel.

@@ -65,14 +65,17 @@ struct MaskSum {
 class TreeWalk {
 public:
     TreeWalk(ByteCursor& file, const VdbGridEntry& grid, const TreeFormat& format)
-        : file_(file), compression_(grid.compression), format_(format),
+        : file_(file), first_(file.position()), compression_(grid.compression), format_(format),
           stored_bytes_(grid.half && format.half_bytes ? format.half_bytes : format.value_bytes),
           half_(grid.half && format.half_bytes) {}
 
     VdbTreeCounts walk() {
         read_root();
         const uint64_t topology_sum = topology_.value;
-        for (uint64_t leaf = 0; leaf < counts_.leaves; ++leaf) read_leaf_values();
+        for (uint64_t leaf = 0; leaf < counts_.leaves; ++leaf) {
+            counts_.leaf_begins.push_back(file_.position() - first_);
+            read_leaf_values();
+        }
         if (buffers_.value != topology_sum) file_.complain("its voxel masks contradict its topology");
         return counts_;
     }
@@ -88,6 +91,7 @@ private:
     void check_blosc_header(uint64_t chunk, uint64_t bytes);
 
     ByteCursor& file_;
+    uint64_t first_;
     uint32_t compression_;
     const TreeFormat& format_;
     uint64_t stored_bytes_;

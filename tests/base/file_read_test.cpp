@@ -77,6 +77,17 @@ TEST(FileRead, SaysWhenPermissionIsMissing) {
 }
 
 // Published results of MurmurHash3_x64_128 with seed 0.
+TEST(ContentHash, OfPiecesIsThatOfTheWhole) {
+    std::string whole;
+    for (int i = 0; i < 300; ++i) whole += static_cast<char>(i * 7);
+    for (const size_t length : {1, 5, 15, 16, 17, 31, 100, 300}) {
+        std::vector<std::string_view> pieces{""};
+        for (size_t at = 0; at < whole.size(); at += length)
+            pieces.push_back(std::string_view(whole).substr(at, length));
+        EXPECT_EQ(content_hash(pieces), content_hash(whole)) << length;
+    }
+}
+
 TEST(ContentHash, MatchesThePublishedFunction) {
     EXPECT_EQ(content_hash(""), "00000000000000000000000000000000");
     EXPECT_EQ(content_hash("hello"), "cbd8a7b341bd9b025b1e906a48ae1d19");

@@ -108,9 +108,11 @@ TEST(RecipeGrow, BusyFogEqualsItsDefinition) {
 }
 
 TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
-    const SparseVolume volume = grow(busy_fog(), 1);
+    GrowReport report;
+    const SparseVolume volume = grow(busy_fog(), 1, &report);
     ASSERT_FALSE(volume.empty());
     ivec3 low(1 << 30), high(-1), before(-1);
+    int64_t voxels = 0;
     for (const Leaf& leaf : volume.leaves) {
         const ivec3 o = leaf.origin;
         EXPECT_EQ(o % 8, ivec3(0));
@@ -121,7 +123,7 @@ TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
             const float value = leaf.values[i];
             ASSERT_TRUE(value == 0 || (value >= least_density && value <= 1)) << value;
             if (value == 0) continue;
-            any = true;
+            any = true, ++voxels;
             const ivec3 at = o + ivec3(i / 64, i / 8 % 8, i % 8);
             low = glm::min(low, at), high = glm::max(high, at);
         }
@@ -129,6 +131,7 @@ TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
     }
     EXPECT_EQ(volume.active_low, low);
     EXPECT_EQ(volume.active_high, high);
+    EXPECT_EQ(report.voxels, voxels);
     EXPECT_TRUE(volume.tiles.empty());
 }
 

@@ -321,9 +321,9 @@ TEST(VdbRead, MoreThanTheMemoryThereIs) {
 #endif
     const Scratch scratch;
     SparseVolume volume;
-    volume.leaves.resize(20000); // 90 MB with the library's own tree
-    for (int i = 0; i < 20000; ++i) {
-        volume.leaves[static_cast<size_t>(i)].origin = ivec3(i % 100, i / 100, 0) * 8;
+    volume.leaves.resize(40000); // 90 MB
+    for (int i = 0; i < 40000; ++i) {
+        volume.leaves[static_cast<size_t>(i)].origin = ivec3(i % 200, i / 200, 0) * 8;
         volume.leaves[static_cast<size_t>(i)].values.fill(0.5f);
     }
     write_vdb(scratch.path() / "a.vdb", volume);
