@@ -82,7 +82,7 @@ Settings settings_for(Quality quality) {
     ShadowMapSettings& map = settings.shadow_map;
     switch (quality) {
     case Quality::draft:
-        settings.pixel.samples = 1;
+        settings.pixel.samples = 1, settings.pixel.lamp_samples = 1;
         settings.cone.nodes = 6;
         march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
         march.min_transmittance = 1e-2f, march.light_resolution = 32, march.light = LightTransmittance::froxel;
@@ -94,7 +94,7 @@ Settings settings_for(Quality quality) {
     case Quality::preview:
         break;
     case Quality::final:
-        settings.pixel.samples = 16;
+        settings.pixel.samples = 16, settings.pixel.lamp_samples = 64;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128, march.nodes = 6;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
@@ -102,7 +102,7 @@ Settings settings_for(Quality quality) {
         map.steps = 64, map.resolution = 2048, map.pcf = 1;
         break;
     case Quality::reference:
-        settings.pixel.samples = 64;
+        settings.pixel.samples = 64, settings.pixel.lamp_samples = 64;
         settings.cone.nodes = 16;
         march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
         march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;

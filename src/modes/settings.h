@@ -20,6 +20,7 @@ struct PixelSettings {
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1; // pixels
     Jitter jitter = Jitter::interleaved;
+    int lamp_samples = 16; // most times as many rays where a local light is seen
 };
 
 struct MarchSettings {

@@ -12,8 +12,6 @@ float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(
 // random within half its stratum, so that regular steps do not beat with regular shadows.
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
 
-uint32_t batch_size(const View& view) { return static_cast<uint32_t>(view.pixel_samples / view.batches); }
-
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
     const vec2 position = sample_position(view, pixel, sample);
     const vec2 off = position - (vec2(pixel) + 0.5f);
@@ -32,7 +30,8 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     path.seed = hash(index, view.frame, view.seed);
     path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
     path.place = sample_place(view, pixel, sample);
-    if (const uint32_t batch = static_cast<uint32_t>(sample) / batch_size(view)) {
+    path.samples = static_cast<uint32_t>(samples_of(view, pixel) / view.batches);
+    if (const uint32_t batch = static_cast<uint32_t>(sample) / path.samples) {
         path.seed = hash(path.seed, batch);
         path.shift += hash(path.seed, use_jitter);
     }
@@ -100,7 +99,7 @@ RayNumbers ray_numbers(const View& view, int layer, const Stretches& s) {
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];
         const uint32_t id = hash(path.seed, path.place.index, layer, use_id);
-        const uint32_t within = hash(id, use_jitter) / (2 * batch_size(view));
+        const uint32_t within = hash(id, use_jitter) / (2 * path.samples);
         numbers.ids[i] = id;
         const uint32_t shift = path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within;
         numbers.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);

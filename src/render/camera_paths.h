@@ -10,14 +10,15 @@ enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
 
 // A ray on its way: where its next stretch starts and how much of what follows reaches the eye.
 struct Path {
-    Ray ray;            // from the eye or the last BLEND surface
-    float skip = 0;     // surfaces nearer than this are behind: the near plane, or the surface just left
-    float through = 1;  // share of light that gets through fog and BLEND surfaces so far
-    uint32_t seed = 0;  // of the pixel and batch in this frame
-    uint32_t shift = 0; // of its jitter
-    SamplePlace place;  // in the batch
-    vec2 screen{0};     // position in the picture, 0..1
-    vec2 position{0};   // the same in pixels
+    Ray ray;              // from the eye or the last BLEND surface
+    float skip = 0;       // surfaces nearer than this are behind: the near plane, or the surface just left
+    float through = 1;    // share of light that gets through fog and BLEND surfaces so far
+    uint32_t seed = 0;    // of the pixel and batch in this frame
+    uint32_t shift = 0;   // of its jitter
+    SamplePlace place;    // in the batch
+    uint32_t samples = 1; // of the batch
+    vec2 screen{0};       // position in the picture, 0..1
+    vec2 position{0};     // the same in pixels
     int lane = 0;
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };

@@ -81,11 +81,11 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
     if (!wanted) return;
 
     const size_t lights = task.light_layers.size();
-    const int batch_size = view.pixel_samples / view.batches;
+    const int sample_count = samples_of(view, corner), batch_size = sample_count / view.batches;
     PixelSum sums[16];
     PixelSample samples[16];
     std::vector<vec3> light_parts(lights * count), light_sums(lights * count, vec3(0));
-    for (int s = 0; s < view.pixel_samples; ++s) {
+    for (int s = 0; s < sample_count; ++s) {
         trace_samples(task.tracer, {pixels, count}, s, {samples, count}, light_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(layers, pixels[i])) continue;
@@ -102,11 +102,11 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
     }
 
-    const float samples_float = static_cast<float>(view.pixel_samples);
+    const float samples_float = static_cast<float>(sample_count);
     for (size_t i = 0; i < count; ++i) {
         if (!contains(layers, pixels[i])) continue;
         const ivec2 p = pixels[i] - layers.low;
-        store_pixel(sums[i], view.pixel_samples, p, layers);
+        store_pixel(sums[i], sample_count, p, layers);
         for (size_t l = 0; l < lights; ++l)
             layers.lights[task.light_layers[l]].second.at(p.x, p.y) += light_sums[i * lights + l] / samples_float;
     }
@@ -193,6 +193,21 @@ Layers render_pixels(const Mode& mode, const View& view, const Snapshot& snapsho
     return std::move(task.layers);
 }
 
+// Local lights that glow in the fog of the picture, if more samples around them make a difference.
+std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
+    std::vector<View::Lamp> lamps;
+    if (view.lamp_samples <= 1 || view.filter == PixelFilter::center || snapshot.media.empty()) return lamps;
+    for (const Light& light : snapshot.lights) {
+        const std::optional<vec2> at =
+            light.kind == LightKind::sun ? std::nullopt : pixel_of(view.camera, view.size, light.position);
+        if (!at) continue;
+        const vec3 rim = light.position + light.radius * view.camera.right;
+        const vec2 beside = pixel_of(view.camera, view.size, rim).value_or(*at);
+        lamps.push_back({*at, glm::distance(*at, beside)});
+    }
+    return lamps;
+}
+
 // The part of an image a crop window shows.
 template<class T> void crop(Image<T>& image, ivec2 low, ivec2 size) {
     if (image.empty()) return;
@@ -238,9 +253,11 @@ Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot,
 }
 }
 
-Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+Layers render_frame(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options, FrameStats& stats) {
     const bool post = mode.surfaces == Surfaces::post;
+    View view = given;
+    if (mode.surfaces == Surfaces::shared) view.lamps = lamps_in(view, snapshot);
     return (post ? render_post : render_pixels)(mode, view, snapshot, settings, options, stats);
 }
 }

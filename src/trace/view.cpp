@@ -2,6 +2,7 @@
 #include "trace/view.h"
 #include "base/random.h"
 
+#include <algorithm>
 #include <array>
 
 namespace tyndall {
@@ -61,8 +62,22 @@ float warped(PixelFilter filter, float u) {
 }
 }
 
+int samples_of(const View& view, ivec2 pixel) {
+    if (view.lamps.empty()) return view.pixel_samples;
+    constexpr int side = 4;
+    constexpr float reach = 8; // pixels around a lamp in which one sample is too few
+    const vec2 low = vec2(pixel / side * side), high = low + static_cast<float>(side);
+    float nearest = reach;
+    for (const View::Lamp& lamp : view.lamps) {
+        const float away = glm::distance(glm::clamp(lamp.at, low, high), lamp.at);
+        nearest = std::min(nearest, std::max({away, lamp.radius, 1.0f}));
+    }
+    const int wanted = static_cast<int>((reach / nearest) * (reach / nearest));
+    return view.pixel_samples * std::clamp(wanted, 1, view.lamp_samples);
+}
+
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
-    const int size = view.pixel_samples / view.batches, batch = sample / size;
+    const int size = samples_of(view, pixel) / view.batches, batch = sample / size;
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
     return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};
@@ -70,7 +85,7 @@ SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
 
 vec2 sample_position(const View& view, ivec2 pixel, int sample) {
     const vec2 center = vec2(pixel) + 0.5f;
-    if (view.pixel_samples == 1 || view.filter == PixelFilter::center) return center;
+    if (samples_of(view, pixel) == 1 || view.filter == PixelFilter::center) return center;
     const SamplePlace place = sample_place(view, pixel, sample);
     const Sample2 u = sample2(place.index, place.sequence);
     return center + view.filter_radius * vec2(warped(view.filter, u.x), warped(view.filter, u.y));

@@ -4,6 +4,7 @@
 #include "trace/jitter.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace tyndall {
 enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
@@ -17,10 +18,21 @@ struct View {
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;
+    int lamp_samples = 1;   // most times as many samples around a lamp
     bool per_light = false; // whether the parts of single lights are wanted
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
+
+    struct Lamp {
+        vec2 at;      // pixels from the upper left
+        float radius; // pixels
+    };
+    std::vector<Lamp> lamps; // local lights in the picture, around which the fog's glow changes within a pixel
 };
+
+// Samples of a pixel: more around the view's lamps, the same for all pixels of a tile of 4×4. The light that fog
+// scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
+int samples_of(const View& view, ivec2 pixel);
 
 // A sample as part of a low-discrepancy sequence: each pixel and batch has its own.
 struct SamplePlace {

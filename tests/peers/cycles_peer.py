@@ -1,10 +1,11 @@
 """Runs inside Blender: blender -b --factory-startup --python-exit-code 3 -P cycles_peer.py -- JOB.json
 A job renders a scene with Cycles ({scene, vdb, voxel_size, orders, samples, step_rate, seeds, output}: the picture
-OUTPUT#.npy per seed) or turns EXR files into arrays ({exr: [paths]}: a .npy beside each)."""
+OUTPUT#.exr and .npy per seed, and OUTPUT#.seconds) or turns EXR files into arrays ({exr: [paths]}: a .npy beside each)."""
 import json
 import math
 import pathlib
 import sys
+import time
 import types
 
 try:
@@ -156,7 +157,9 @@ def render(job):
     for seed in job.seeds:
         bpy.context.scene.cycles.seed = seed
         bpy.context.scene.render.filepath = f"{job.output}{seed}.exr"
+        start = time.time()
         bpy.ops.render.render(write_still=True)
+        pathlib.Path(f"{job.output}{seed}.seconds").write_text(f"{time.time() - start:.3f}\n")
         np.save(f"{job.output}{seed}.npy", pixels(bpy.context.scene.render.filepath))
 
 
