@@ -139,7 +139,7 @@ void aim_at_points(const Light& light, const RayBatch& batch, size_t step, size_
 // Share of the light that surfaces let through, by packets of shadow rays: one, or one for each point of a soft light.
 Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
                      const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
-    if (march.settings.visibility == Visibility::maps) return lit_share16(march.maps[light_index], points.position);
+    if (march.settings.visibility == Visibility::maps) return lit_share16(*march.maps[light_index], points.position);
     const Occluders* occluders = march.snapshot.occluders.get();
     if (!light.shadows || !occluders || occluders->empty() || march.settings.visibility == Visibility::off) return 1.0f;
     Occluders::ShadowRays rays;

@@ -1,8 +1,8 @@
 // The march of one packet, apart from its preparation.
 #pragma once
 #include "modes/mode.h"
+#include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
-#include "trace/shadow_map.h"
 #include "trace/shadow_slices.h"
 
 #include <vector>
@@ -18,7 +18,7 @@ struct March {
     std::vector<ConeFalloff> cones; // one per light
     std::vector<vec3> near_points;  // positions of the local lights
     ShadowSlices slices;            // with Visibility::slices
-    std::vector<ShadowMap> maps;    // with Visibility::maps, one per light
+    ShadowMaps maps;                // with Visibility::maps, one per light
 };
 
 // The snapshot as march.* and style.* see it: terms that are off are taken out.

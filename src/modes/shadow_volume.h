@@ -3,14 +3,14 @@
 #include "modes/gauss_legendre.h"
 #include "modes/light_along.h"
 #include "modes/mode.h"
+#include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
-#include "trace/shadow_view.h"
 
 namespace tyndall {
 // A light that casts shadows, and its volumes from the camera.
 struct ShadowCaster {
-    ShadowVolumes volumes;
-    ShadowView view;
+    std::shared_ptr<const ShadowVolumes> volumes;
+    std::shared_ptr<const ShadowView> view;
 };
 
 struct ShadowVolumeFrame {
@@ -23,7 +23,7 @@ struct ShadowVolumeFrame {
     std::vector<Box> uneven; // fog that is not what it is taken for
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
-    std::vector<ShadowCaster> casters; // one per light; without mesh where it casts no shadows
+    std::vector<ShadowCaster> casters; // one per light; empty where it casts no shadows
 };
 
 // Where rays are cut: between cuts the fog is smooth, or a step long.

@@ -140,7 +140,7 @@ TEST(LightFroxels, ThreadsDoNotChangeThem) {
         const LightDepth one = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
         set_thread_count(0);
         const LightDepth many = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
-        EXPECT_EQ(one.froxels.depth, many.froxels.depth);
+        EXPECT_EQ(*one.froxels.depth, *many.froxels.depth);
     }
 }
 }
