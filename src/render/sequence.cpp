@@ -255,6 +255,7 @@ uint64_t peak_memory() {
 
 LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot& previous) {
     const auto start = Clock::now();
+    flush_denormals();
     Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), &previous, job.missing);
     return {std::move(snapshot), seconds_since(start)};
 }
