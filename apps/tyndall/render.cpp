@@ -20,8 +20,7 @@ void choose_frames(const Scene& scene, RenderJob& job) {
 }
 
 // Where the mode fails on this scene, from the first frame.
-std::vector<Limit> limits_of(const Scene& scene, const RenderJob& job) {
-    const Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), nullptr, job.missing);
+std::vector<Limit> limits_of(const Scene& scene, const RenderJob& job, const Snapshot& snapshot) {
     View view;
     view.camera = camera_at(scene, find_camera(scene, job.camera), snapshot.seconds);
     view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
@@ -104,15 +103,19 @@ void say_before(const Scene& scene, const std::vector<Limit>& limits, const Rend
     say_limits(scene, limits, globals);
 }
 
-// Renders a job's frames and reports on them; json is the statistics file's name, empty for none.
+// Renders a job's frames and reports on them; json is the statistics file's name, empty for none. The first frame of a
+// job before shares its fog and surfaces, and is replaced by this job's when that is all there is to render.
 Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& texts, const std::string& json,
-                    const std::string& label, const Globals& globals) {
+                    const std::string& label, Snapshot& shared, const Globals& globals) {
     settle_noise(job, globals);
-    const std::vector<Limit> limits = limits_of(scene, job);
+    LoadedFrame first = load_first_frame(scene, job, shared);
+    shared = job.frames.size() == 1 ? first.snapshot : Snapshot{};
+    shared.kept = nullptr; // the time that a mode takes must not depend on the one before it
+    const std::vector<Limit> limits = limits_of(scene, job, first.snapshot);
     say_before(scene, limits, texts, job, globals);
 
     Progress progress(globals.progress, label, static_cast<double>(job.frames.size()), globals.json);
-    RenderReport report = render_sequence(scene, job, progress, cancel_flag());
+    RenderReport report = render_sequence(scene, job, progress, cancel_flag(), std::move(first));
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
     for (const Limit& limit : limits) job.limits_said.push_back(limit_line(limit));
@@ -208,9 +211,10 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
 
     std::vector<Rendered> all;
     std::string reports;
+    Snapshot shared;
     for (const RenderJob& job : jobs) {
-        all.push_back(
-            render_job(scene, job, texts, stats_name(texts, job, several), several ? job.mode : "render", globals));
+        all.push_back(render_job(scene, job, texts, stats_name(texts, job, several), several ? job.mode : "render",
+                                 shared, globals));
         reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().job);
         stop_if_cancelled();
     }

@@ -5,6 +5,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <xmmintrin.h>
 
@@ -52,6 +53,17 @@ void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int6
     const auto start = [&](int64_t piece) { return piece * size + std::min(piece, larger); };
     run(count > 0 ? pieces : 0,
         [&](const tbb::blocked_range<int64_t>& range) { body(start(range.begin()), start(range.end())); });
+}
+
+// Each body waits for its own loops only; whoever waits for the bodies takes part in any.
+void run_together(std::initializer_list<std::function<void()>> bodies) {
+    if (bodies.size() == 0) return;
+    tbb::task_group_context context;
+    context.capture_fp_settings();
+    tbb::task_group group(context);
+    const auto alone = [](const auto& body) { return [&body] { tbb::this_task_arena::isolate(body); }; };
+    for (const std::function<void()>* body = bodies.begin() + 1; body < bodies.end(); ++body) group.run(alone(*body));
+    group.run_and_wait(alone(*bodies.begin()));
 }
 
 void flush_denormals() {

@@ -122,15 +122,38 @@ void place_by_hand(const Snapshot& snapshot, std::vector<BeamCard>& cards) {
             cards.push_back(card);
         }
 }
+
+struct PlacedCards {
+    std::vector<BeamCard> cards;
+    std::vector<float> open; // per light
+};
+
+PlacedCards placed(const Snapshot& snapshot, const BillboardSettings& settings) {
+    PlacedCards result;
+    result.open.assign(snapshot.lights.size(), 0);
+    place_by_hand(snapshot, result.cards);
+    for (size_t l = 0; l < snapshot.lights.size(); ++l)
+        place_for(snapshot, static_cast<int>(l), settings, result.cards, result.open[l]);
+    return result;
 }
+
+// All that cards depend on: the surfaces, where lights and fog are, and how to search.
+KeptKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
+    KeptKey key;
+    key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.lights.size());
+    for (const Light& light : snapshot.lights) {
+        key.add(light).add(light.name.size());
+        key.bits += light.name;
+    }
+    for (const Medium& medium : snapshot.media) key.add(medium.world_bounds);
+    return key.add(settings.cards).add(settings.rays).add(settings.gaps);
+}
+}
+
 std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
                                   std::vector<float>* open) {
-    std::vector<BeamCard> cards;
-    std::vector<float> shares(snapshot.lights.size(), 0);
-    place_by_hand(snapshot, cards);
-    for (size_t l = 0; l < snapshot.lights.size(); ++l)
-        place_for(snapshot, static_cast<int>(l), settings, cards, shares[l]);
-    if (open) *open = shares;
-    return cards;
+    const auto found = kept(snapshot, card_key(snapshot, settings), [&] { return placed(snapshot, settings); });
+    if (open) *open = found->open;
+    return found->cards;
 }
 }

@@ -42,7 +42,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
     if (snapshot.occluders->has_alpha())
         scene.settings.visibility = FroxelVisibility::rays;
     else
-        scene.slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
+        scene.slices = snapshot.occluders->shadow_slices();
 }
 
 // This frame's light, with what the history knows of it; the history then knows this frame.
@@ -101,7 +101,8 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
     picture.grid = make_froxel_grid(view.camera, view.size, settings.froxel.tile);
-    picture.tiles = make_froxel_tiles(picture.grid, frame->scene.snapshot);
+    picture.tiles = *kept(snapshot, KeptKey().add(snapshot.occluders).add(view).add(settings.froxel.tile),
+                          [&] { return make_froxel_tiles(picture.grid, snapshot); });
     const FogDepths depths = fog_depths(picture.grid, picture.tiles, frame->scene.snapshot);
     if (!(depths.far > depths.near)) { // no fog in view
         if (history) history->froxels = nullptr;

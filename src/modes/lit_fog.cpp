@@ -11,8 +11,6 @@ void add_lights(const View& view, LightTransmittance method, int light_resolutio
                 const std::function<ShadowsBy(const Light&)>& by, LitFog& frame) {
     frame.camera = view.camera;
     frame.margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
-    std::vector<ShadowTriangle> triangles;
-    std::shared_ptr<const ShadowMesh> mesh;
     for (const Light& light : frame.snapshot.lights) {
         frame.depths.push_back(make_light_depth(frame.snapshot, light, method, light_resolution, &view));
         frame.depths.back().scale = frame.style.light_depth;
@@ -20,12 +18,10 @@ void add_lights(const View& view, LightTransmittance method, int light_resolutio
         LitShadows& shadows = frame.shadows.emplace_back();
         if (!casts(light, frame.snapshot)) continue;
         shadows.by = by(light);
-        if (triangles.empty()) triangles = frame.snapshot.occluders->shadow_triangles();
-        if (shadows.by == ShadowsBy::slices && frame.slices.nodes.empty()) frame.slices = make_shadow_slices(triangles);
+        if (shadows.by == ShadowsBy::slices) frame.slices = frame.snapshot.occluders->shadow_slices();
         if (shadows.by != ShadowsBy::volumes) continue;
-        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(triangles));
-        shadows.volumes = make_shadow_volumes(mesh, center_of(light));
-        shadows.view = view_from(shadows.volumes, view.camera, view.size, frame.margin);
+        shadows.volumes = kept_shadow_volumes(frame.snapshot, light);
+        shadows.view = kept_shadow_view(frame.snapshot, light, view, frame.margin);
     }
 }
 }

@@ -5,8 +5,8 @@
 #include "modes/light_along.h"
 #include "modes/march_steps.h"
 #include "modes/mode.h"
+#include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
-#include "trace/shadow_view.h"
 
 #include <optional>
 
@@ -17,8 +17,8 @@ enum class ShadowsBy { none, volumes, slices, rays };
 
 struct LitShadows {
     ShadowsBy by = ShadowsBy::none;
-    ShadowVolumes volumes; // with `volumes`, and as the camera sees them
-    ShadowView view;
+    std::shared_ptr<const ShadowView> view; // with `volumes`, and as the camera sees them
+    std::shared_ptr<const ShadowVolumes> volumes;
 };
 
 // The sides of the volumes as bright sheets instead of the light between them.

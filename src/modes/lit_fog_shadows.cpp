@@ -43,18 +43,18 @@ void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, cons
         const Ray ray{batch.rays[i].origin, batch.rays[i].direction,
                       std::nextafter(static_cast<float>(reached[i].high), infinity)};
         const int lane = static_cast<int>(i);
-        if (comes_from(caster.view, frame.camera, ray)) {
-            place_ray(caster.view, ray, lane, rays);
+        if (comes_from(*caster.view, frame.camera, ray)) {
+            place_ray(*caster.view, ray, lane, rays);
         } else { // not a ray of the camera: its origin is an eye of its own
             ShadowRays alone;
             alone.edges = rays.edges;
-            const ShadowView view = view_from(caster.volumes, dvec3(ray.origin));
+            const ShadowView view = view_from(*caster.volumes, dvec3(ray.origin));
             place_ray(view, ray, lane, alone);
             find_in_view(view, alone, crossings, dark);
         }
     }
     if (!rays.active) return;
-    rays.tile = tile_of(caster.view, batch.positions, frame.margin);
-    find_in_view(caster.view, rays, crossings, dark);
+    rays.tile = tile_of(*caster.view, batch.positions, frame.margin);
+    find_in_view(*caster.view, rays, crossings, dark);
 }
 }

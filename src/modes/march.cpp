@@ -99,7 +99,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
     if (settings.march.visibility != Visibility::exact)
         return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
-    if (snapshot.occluders) march->slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
+    if (snapshot.occluders) march->slices = snapshot.occluders->shadow_slices();
     return [march](const RayBatch& batch, std::span<Scatter> results) { march_exact(*march, batch, results); };
 }
 }

@@ -80,7 +80,7 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
 // Share of the light that surfaces let through.
 Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
                      const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
-    if (march.settings.visibility == Visibility::maps) return lit_share16(march.maps[light_index], points.position);
+    if (march.settings.visibility == Visibility::maps) return lit_share16(*march.maps[light_index], points.position);
     if (!casts(light, march.snapshot) || march.settings.visibility == Visibility::off) return 1.0f;
     const auto key = [&](size_t lane) {
         return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));

@@ -2,8 +2,8 @@
 #pragma once
 #include "modes/march_steps.h"
 #include "modes/mode.h"
+#include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
-#include "trace/shadow_map.h"
 #include "trace/shadow_slices.h"
 
 #include <vector>
@@ -18,8 +18,8 @@ struct March {
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     MarchSteps steps;
-    ShadowSlices slices;         // with Visibility::exact
-    std::vector<ShadowMap> maps; // with Visibility::maps, one per light
+    ShadowSlices slices; // with Visibility::exact
+    ShadowMaps maps;     // with Visibility::maps, one per light
 };
 
 // The snapshot as march.* and style.* see it: terms that are off are taken out.

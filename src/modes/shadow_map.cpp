@@ -93,10 +93,10 @@ ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
     return {settings.resolution, settings.cascades, settings.pcf, settings.bias};
 }
 
-std::vector<ShadowMap> make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings) {
-    std::vector<ShadowMap> maps;
+ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings) {
+    ShadowMaps maps;
     for (const Light& light : snapshot.lights)
-        maps.push_back(make_shadow_map(view, snapshot, light, shadow_map_options(settings)));
+        maps.push_back(kept_shadow_map(view, snapshot, light, shadow_map_options(settings)));
     return maps;
 }
 

@@ -1,8 +1,8 @@
 // The march with shadow maps of one packet, apart from its preparation.
 #pragma once
 #include "modes/mode.h"
+#include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
-#include "trace/shadow_map.h"
 
 #include <vector>
 
@@ -15,7 +15,7 @@ struct ShadowMapMarch {
     Camera camera;                  // for style.range
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
-    std::vector<ShadowMap> maps;    // one per light
+    ShadowMaps maps;                // one per light
     float detail = infinity;        // metres: the finest detail of the fog
 };
 
@@ -23,7 +23,7 @@ struct ShadowMapMarch {
 float fog_detail(std::span<const Medium> media);
 
 // Shadow maps of all lights, as the settings ask for them.
-std::vector<ShadowMap> make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings);
+ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings);
 ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings);
 
 // What shadow maps make wrong, whoever looks them up.

@@ -125,7 +125,7 @@ struct RaysInMap {
     Vec3s origin, direction;
 
     HWY_INLINE RaysInMap(const Packet& packet, size_t light)
-        : map(packet.march.maps[light]), origin(map_coordinates(map, packet.origin)),
+        : map(*packet.march.maps[light]), origin(map_coordinates(map, packet.origin)),
           direction(turned_to_map(map, packet.direction)) {}
     HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
     HWY_INLINE Floats lit_share(const Floats& t) const { return lit_share_at(map, at(t)); }

@@ -37,19 +37,19 @@ std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, c
                           "shells are a look: bright sheets where light meets shadow, not light scattered by fog"});
     add_fog_limits(snapshot, settings, limits);
     constexpr size_t many = 20000;
-    std::shared_ptr<const ShadowMesh> mesh;
+    bool shadows = false;
     for (const Light& light : snapshot.lights) {
         if (!casts(light, snapshot)) continue;
         if (is_soft(light))
             limits.push_back(
                 {Severity::degraded, "light " + light.name, "drawn as a point: its shadows have no soft edges"});
-        if (!mesh) mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(snapshot.occluders->shadow_triangles()));
-        const size_t sides = make_shadow_volumes(mesh, center_of(light)).sides.size();
+        shadows = true;
+        const size_t sides = kept_shadow_volumes(snapshot, light)->sides.size();
         if (sides > many)
             limits.push_back({Severity::info, "light " + light.name,
                               std::to_string(sides) + " silhouette edges: every tile of the picture tests many"});
     }
-    if (mesh && snapshot.occluders->has_alpha())
+    if (shadows && snapshot.occluders->has_alpha())
         limits.push_back({Severity::wrong, "occluders",
                           "MASK and BLEND surfaces cast no shadow: silhouettes are those of whole triangles"});
     return limits;

@@ -16,7 +16,9 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <optional>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -33,7 +35,7 @@ struct Work {
     Layers layers;
 };
 
-// What the stages share. Only the stage beside the renderer changes it.
+// What the stages share.
 struct Pipeline {
     const Scene& scene;
     const RenderJob& job;
@@ -42,8 +44,10 @@ struct Pipeline {
     std::atomic<bool>& cancel;
     std::vector<std::string> channels; // of every file
     FileHashes files;
+    LoadedFrame first; // of the job, until it is taken
+    size_t next = 0;   // index of the first frame not yet looked at
     RenderReport report;
-    size_t next = 0; // index of the first frame not yet looked at
+    std::mutex reporting; // held to change the report
 };
 
 float png_exposure(const Pipeline& pipeline, int frame) {
@@ -86,6 +90,28 @@ bool keep(Pipeline& pipeline, Work& work) {
     return true;
 }
 
+// The snapshot of a frame, sharing with the one before; of the job's first frame perhaps the one that is there.
+LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
+    LoadedFrame first = std::exchange(pipeline.first, {});
+    if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
+    const auto start = Clock::now();
+    if (!previous) previous = &first.snapshot;
+    Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.job.missing);
+    return {std::move(snapshot), seconds_since(start)};
+}
+
+void report_frame(Pipeline& pipeline, const Work& work) {
+    const std::scoped_lock lock(pipeline.reporting);
+    pipeline.report.non_finite += work.report.stats.non_finite;
+    pipeline.report.frames.push_back(work.report);
+}
+
+void report_notes(Pipeline& pipeline, const Snapshot& snapshot) {
+    const std::scoped_lock lock(pipeline.reporting);
+    for (const std::string& note : snapshot.notes)
+        if (!std::ranges::count(pipeline.report.notes, note)) pipeline.report.notes.push_back(note);
+}
+
 // The next frame that has to be rendered; kept ones on the way are reported.
 std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
     while (pipeline.next < pipeline.job.frames.size() && !pipeline.cancel) {
@@ -99,37 +125,39 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             work.hash = frame_hash(pipeline.scene, pipeline.job, work.view, pipeline.files);
             if (pipeline.job.resume && keep(pipeline, work)) {
                 work.report.load_seconds = seconds_since(start);
-                pipeline.report.non_finite += work.report.stats.non_finite;
-                pipeline.report.frames.push_back(work.report);
+                report_frame(pipeline, work);
                 continue;
             }
-            const Moment moment = moment_of(pipeline.scene, frame);
-            work.snapshot = make_snapshot(pipeline.scene, moment, previous, pipeline.job.missing);
+            work.report.load_seconds = seconds_since(start);
+            LoadedFrame frame_now = loaded(pipeline, frame, previous);
+            work.report.load_seconds += frame_now.seconds;
+            work.snapshot = std::move(frame_now.snapshot);
         } catch (const Error& error) {
             fail_in_frame(frame, error);
         }
-        for (const std::string& note : work.snapshot.notes)
-            if (!std::ranges::count(pipeline.report.notes, note)) pipeline.report.notes.push_back(note);
-        work.report.load_seconds = seconds_since(start);
+        report_notes(pipeline, work.snapshot);
         return work;
     }
     return {};
 }
 
 // Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
-// the scene's first frame time stands still.
-void warm_up(const Pipeline& pipeline, const Work& work, History& history) {
+// the scene's first frame time stands still. Each shares with the last; the first with what the job's frame before
+// kept.
+void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
-    Snapshot previous;
+    Snapshot previous = work.snapshot;
+    previous.kept = work.snapshot.kept_before;
     for (int back = pipeline.job.history; back > 0 && !pipeline.cancel; --back) {
         const int earlier = std::max(frame - back, first);
-        Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier),
-                                          previous.scene ? &previous : nullptr, pipeline.job.missing);
+        Snapshot snapshot =
+            make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.job.missing);
         View view = view_of(pipeline.scene, pipeline.job, earlier);
         view.frame = frame - back;
         pipeline.mode.prepare(view, snapshot, pipeline.job.settings, &history);
         previous = std::move(snapshot);
     }
+    work.snapshot.kept_before = previous.kept;
 }
 
 void render(const Pipeline& pipeline, Work& work) {
@@ -173,8 +201,7 @@ void write(Pipeline& pipeline, Work& work) {
         fail_in_frame(report.frame, error);
     }
     report.write_seconds = seconds_since(start);
-    pipeline.report.non_finite += report.stats.non_finite;
-    pipeline.report.frames.push_back(report);
+    report_frame(pipeline, work);
 
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
@@ -198,16 +225,11 @@ void run(Pipeline& pipeline) {
     while (current) {
         std::optional<Work> next;
         std::exception_ptr render_error, write_error, load_error;
-        parallel_for(2, [&](int64_t stage) {
-            if (stage == 0) {
-                render_error = caught([&] { render(pipeline, *current); });
-                return;
-            }
-            write_error = caught([&] {
-                if (rendered) write(pipeline, *rendered);
-            });
-            if (!write_error) load_error = caught([&] { next = load_next(pipeline, &current->snapshot); });
-        });
+        run_together({[&] { render_error = caught([&] { render(pipeline, *current); }); },
+                      [&] { load_error = caught([&] { next = load_next(pipeline, &current->snapshot); }); },
+                      [&] {
+                          if (rendered) write_error = caught([&] { write(pipeline, *rendered); });
+                      }});
         if (write_error) std::rethrow_exception(write_error);
         if (render_error && pipeline.cancel) return;
         if (render_error) std::rethrow_exception(render_error);
@@ -231,15 +253,23 @@ uint64_t peak_memory() {
 }
 }
 
+LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot& previous) {
+    const auto start = Clock::now();
+    flush_denormals();
+    Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), &previous, job.missing);
+    return {std::move(snapshot), seconds_since(start)};
+}
+
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
-                             std::atomic<bool>& cancel) {
+                             std::atomic<bool>& cancel, LoadedFrame first) {
     const auto start = Clock::now();
     check_job(scene, job, mode);
     flush_denormals();
 
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);
-    Pipeline pipeline{scene, job, mode, progress, cancel, channel_names(lights, job.exr), {}, {}, 0};
+    Pipeline pipeline{scene, job, mode, progress, cancel, channel_names(lights, job.exr), {}, std::move(first),
+                      0,     {},  {}};
     run(pipeline);
 
     RenderReport& report = pipeline.report;
@@ -254,7 +284,8 @@ RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mod
     return std::move(report);
 }
 
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel) {
-    return render_sequence(scene, job, find_mode(job.mode), progress, cancel);
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
+                             LoadedFrame first) {
+    return render_sequence(scene, job, find_mode(job.mode), progress, cancel, std::move(first));
 }
 }

@@ -53,16 +53,28 @@ struct RenderReport {
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
 
-// Renders the job's frames; while one renders, the next is loaded and the last is written. Output names are tested and
+// A frame of a job, loaded.
+struct LoadedFrame {
+    Snapshot snapshot;
+    double seconds = 0; // it took
+};
+
+// Loads a job's first frame, to look at it before the others. What stands still is shared with `previous`, when that
+// is a frame of the same scene. Throws Error.
+LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot& previous = {});
+
+// Renders the job's frames; while one renders, the next is loaded and the last is written. `first` may hold the first
+// frame; it is not loaded again then. Output names are tested and
 // leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
 // beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
 // channels and size, and its `tyndall:hash` equals that of the job. Throws Error; one of a frame names it, and frames
 // finished before it are written.
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel);
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
+                             LoadedFrame first = {});
 
 // As above with a mode that need not be in the table.
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
-                             std::atomic<bool>& cancel);
+                             std::atomic<bool>& cancel, LoadedFrame first = {});
 
 // JSON of a report, with a schema version.
 std::string stats_json(const RenderReport& report, const RenderJob& job);

@@ -54,6 +54,33 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
     }
     return static_cast<float>(sum / (packets * 16));
 }
+
+// What the depths of the brick media along the way to a light depend on, apart from where they are asked for.
+KeptKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
+    KeptKey key;
+    key.add(light).add(resolution);
+    for (const Medium* medium : bricks) key.add(medium->bricks).add(medium->optics.extinction);
+    return key;
+}
+
+LightDepthFroxels kept_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
+                               int resolution, const View& view) {
+    KeptKey key = depth_key(bricks, light, resolution);
+    return *kept(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
+        LightDepthFroxels froxels = fitted_froxels(view, snapshot.bounds, resolution);
+        if (froxels.size.x > 0) fill_froxels(bricks, light, froxels);
+        return froxels;
+    });
+}
+
+LightDepthGrid kept_grid(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
+                         int resolution) {
+    return *kept(snapshot, depth_key(bricks, light, resolution), [&] {
+        LightDepthGrid grid = fitted_grid(bricks, light, resolution);
+        if (grid.size.x > 0) fill_grid(bricks, grid);
+        return grid;
+    });
+}
 }
 
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
@@ -66,16 +93,13 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
     std::vector<const Medium*> bricks;
     for (const Medium& medium : snapshot.media)
         (medium.kind == DensityKind::bricks ? bricks : depth.analytic).push_back(&medium);
-    if (method == LightTransmittance::froxel && !bricks.empty()) {
-        depth.froxels = fitted_froxels(*view, snapshot.bounds, resolution);
-        if (depth.froxels.size.x > 0) fill_froxels(bricks, light, depth.froxels);
-    }
+    if (method == LightTransmittance::froxel && !bricks.empty())
+        depth.froxels = kept_froxels(snapshot, bricks, light, resolution, *view);
     if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {
         depth.marched = std::move(bricks);
         return depth;
     }
-    depth.grid = fitted_grid(bricks, light, resolution);
-    if (depth.grid.size.x > 0) fill_grid(bricks, depth.grid);
+    depth.grid = kept_grid(snapshot, bricks, light, resolution);
     if (method == LightTransmittance::average) {
         depth.method = LightTransmittance::grid;
         const float mean = mean_depth(depth, snapshot);

@@ -19,6 +19,9 @@
 namespace tyndall {
 enum class LightTransmittance { off, average, froxel, grid, marched };
 
+// Of any number of copies, frames and users.
+using SharedFloats = std::shared_ptr<const std::vector<float>>;
+
 struct LightDepthGrid {
     // How cells lie, by the three above. A point light that sees the fog under a small angle has a `spot` grid, a spot
     // wider than 70° to each side a `point` grid.
@@ -28,8 +31,8 @@ struct LightDepthGrid {
     ivec3 size{0};            // corners along u, v, w
     vec3 scale{1}, offset{0}; // corner number = coordinate · scale + offset
     float start = -infinity;  // w at which the depth begins to count
-    std::vector<float> depth; // [(w·size.y + v)·size.x + u]
-    bool empty() const { return depth.empty(); }
+    SharedFloats depth;       // [(w·size.y + v)·size.x + u]
+    bool empty() const { return !depth; }
 };
 
 // One more cell lies beyond each edge of the picture, so that filters and neighbours find corners there.
@@ -39,8 +42,8 @@ struct LightDepthFroxels {
     vec2 scale{1}, offset{0}; // corner number = (right, up) in the plane at unit depth · scale + offset
     float near = 0, far = 0;  // planar depths of the first and last corners
     float first = 1;          // thickness of the slices at `near`, as a share of their mean
-    std::vector<float> depth; // [(slice·size.y + row)·size.x + column]
-    bool empty() const { return depth.empty(); }
+    SharedFloats depth;       // [(slice·size.y + row)·size.x + column]
+    bool empty() const { return !depth; }
 
     // Planar depth of a slice's corners: near + (far - near) (a s + (1 - a) s²), s = 0..1 and a = `first`.
     float planar_depth(int slice) const {

@@ -139,7 +139,7 @@ HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
             (v <= static_cast<float>(grid.size.y - 1) + slack) & (w > 0.0f);
     if (!any(valid)) return 0.0f;
 
-    return zero_unless(valid, trilinear16(grid.depth, grid.size, {u, v, w}));
+    return zero_unless(valid, trilinear16(*grid.depth, grid.size, {u, v, w}));
 }
 
 // Corner numbers of points among the froxels; `inside` loses those beyond them.
@@ -178,7 +178,7 @@ HWY_INLINE Floats froxel_depth16(const LightDepth& depth, const Vec3s& point, co
     Mask16 inside;
     const Vec3s at = froxel_coordinates(depth.froxels, point, inside);
     Floats found = 0.0f;
-    if (any(inside & active)) found = zero_unless(inside, trilinear16(depth.froxels.depth, depth.froxels.size, at));
+    if (any(inside & active)) found = zero_unless(inside, trilinear16(*depth.froxels.depth, depth.froxels.size, at));
     const Mask16 outside = active & !inside;
     return any(outside) ? found + marched_depth16(depth, point, outside) : found;
 }

@@ -38,12 +38,13 @@ Floats depth_along(const Medium& medium, const LightPaths& paths) {
     return zero_unless(length > 0.0f, sum * step * medium.optics.extinction);
 }
 
-void fill_corners(std::span<const Medium* const> media, const Light& light, int64_t row, LightDepthFroxels& froxels) {
+void fill_corners(std::span<const Medium* const> media, const Light& light, int64_t row,
+                  const LightDepthFroxels& froxels, float* depths) {
     const Camera& camera = froxels.camera;
     const float z = froxels.planar_depth(static_cast<int>(row / froxels.size.y));
     const float spread = camera.ortho_height > 0 ? 1 : z;
     const float up = (static_cast<float>(row % froxels.size.y) - froxels.offset.y) / froxels.scale.y * spread;
-    float* depth = froxels.depth.data() + row * froxels.size.x;
+    float* depth = depths + row * froxels.size.x;
     for (int first = 0; first < froxels.size.x; first += 16) {
         alignas(64) float column[16], found[16];
         for (int i = 0; i < 16; ++i) column[i] = static_cast<float>(std::min(first + i, froxels.size.x - 1));
@@ -105,10 +106,11 @@ LightDepthFroxels fitted_froxels(const View& view, const Box& bounds, int resolu
 }
 
 void fill_froxels(std::span<const Medium* const> media, const Light& light, LightDepthFroxels& froxels) {
-    froxels.depth.assign(static_cast<size_t>(froxels.size.x) * froxels.size.y * froxels.size.z, 0.0f);
+    std::vector<float> depths(static_cast<size_t>(froxels.size.x) * froxels.size.y * froxels.size.z, 0.0f);
     parallel_for(int64_t{froxels.size.y} * froxels.size.z, [&](int64_t row) {
-        HWY_DYNAMIC_DISPATCH(fill_corners)(media, light, row, froxels);
+        HWY_DYNAMIC_DISPATCH(fill_corners)(media, light, row, froxels, depths.data());
     });
+    froxels.depth = std::make_shared<const std::vector<float>>(std::move(depths));
 }
 }
 #endif

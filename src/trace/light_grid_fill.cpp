@@ -58,7 +58,8 @@ Floats depth_between(const Medium& medium, const Columns& columns, float from, f
     return sum * (step * medium.optics.extinction);
 }
 
-void fill_columns(std::span<const Medium* const> media, int first, int row, LightDepthGrid& grid) {
+void fill_columns(std::span<const Medium* const> media, int first, int row, const LightDepthGrid& grid,
+                  std::vector<float>& depths) {
     const Columns columns = columns_at(grid, first, row);
     const size_t count = static_cast<size_t>(std::min(16, grid.size.x - first));
     const auto distance = [&](int k) {
@@ -72,7 +73,7 @@ void fill_columns(std::span<const Medium* const> media, int first, int row, Ligh
         alignas(64) float depth[16];
         store(sum, depth);
         const size_t at = (static_cast<size_t>(k) * grid.size.y + row) * grid.size.x + first;
-        std::copy_n(depth, count, grid.depth.begin() + static_cast<int64_t>(at));
+        std::copy_n(depth, count, depths.begin() + static_cast<int64_t>(at));
     }
 }
 }
@@ -83,12 +84,13 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(fill_columns);
 void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid) {
-    grid.depth.assign(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z, 0.0f);
+    std::vector<float> depths(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z, 0.0f);
     const int packets = (grid.size.x + 15) / 16;
     parallel_for(int64_t{packets} * grid.size.y, [&](int64_t i) {
         const int first = static_cast<int>(i % packets) * 16, row = static_cast<int>(i / packets);
-        HWY_DYNAMIC_DISPATCH(fill_columns)(media, first, row, grid);
+        HWY_DYNAMIC_DISPATCH(fill_columns)(media, first, row, grid, depths);
     });
+    grid.depth = std::make_shared<const std::vector<float>>(std::move(depths));
 }
 }
 #endif

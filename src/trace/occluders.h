@@ -10,6 +10,9 @@
 #include <vector>
 
 namespace tyndall {
+struct ShadowMesh;
+struct ShadowSlices;
+
 // What 16 rays meet first. instance < 0 = nothing, and t is infinite.
 struct Hits {
     std::array<float, 16> t;
@@ -72,6 +75,10 @@ public:
     // The very triangles that shadow rays meet, for exact shadows; and whether any of them has alpha.
     std::vector<ShadowTriangle> shadow_triangles() const;
     bool has_alpha() const;
+
+    // Made of them when first asked for, once, by any thread.
+    const ShadowSlices& shadow_slices() const;
+    std::shared_ptr<const ShadowMesh> shadow_mesh() const;
 
 private:
     Occluders();

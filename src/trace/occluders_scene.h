@@ -4,6 +4,8 @@
 
 #include <embree3/rtcore.h>
 
+#include <mutex>
+
 namespace tyndall {
 // Embree's limit for ray and vertex coordinates is 1.844e18; beyond it the packaged library aborts.
 inline constexpr float largest_coordinate = 1e18f;
@@ -66,6 +68,11 @@ struct Occluders::Impl {
     const Scene* scene = nullptr;
     std::shared_ptr<const OccluderSet> still, moving;
     std::vector<const OccluderGeometry*> by_instance; // null = no triangles
+
+    // Made when first asked for.
+    std::once_flag sliced, meshed;
+    std::shared_ptr<const ShadowSlices> slices;
+    std::shared_ptr<const ShadowMesh> mesh;
 };
 
 // Triangles of some instances at their places, ready to trace. Throws Error.

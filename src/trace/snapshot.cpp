@@ -87,6 +87,9 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     add_media(scene, moment, previous, missing, snapshot);
 
     snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);
+    if (previous && snapshot.occluders->shares_with(*previous->occluders)) snapshot.occluders = previous->occluders;
+    snapshot.kept = std::make_shared<Kept>();
+    if (previous) snapshot.kept_before = previous->kept;
     const uint64_t dropped = snapshot.occluders->dropped();
     if (dropped > 0 && !(previous && previous->occluders->dropped() == dropped))
         snapshot.notes.push_back(std::to_string(dropped) + " triangles without area or out of range left out");

@@ -2,6 +2,7 @@
 #pragma once
 #include "scene/camera.h"
 #include "scene/scene.h"
+#include "trace/kept.h"
 #include "trace/occluders.h"
 #include "volume/medium.h"
 
@@ -38,6 +39,8 @@ struct Snapshot {
     Box bounds;                         // of meshes, local lights and bounded media
     std::vector<std::string> notes;     // what was mended in the files of this frame; say once
     std::vector<FogSource> fog_sources; // one per medium of the scene: what the next frame can use again
+    std::shared_ptr<Kept> kept;         // made for this frame so far; null in snapshots made by hand
+    std::shared_ptr<Kept> kept_before;  // for the frame before; null of the first
 };
 
 struct Moment {

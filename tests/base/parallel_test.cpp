@@ -7,8 +7,10 @@
 #include <xmmintrin.h>
 
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -38,6 +40,50 @@ TEST(Parallel, PiecesCoverTheRangeAndAreNeverSmallerThanTheGrain) {
             EXPECT_GE(smallest, std::min(grain, count)) << count << " by " << grain;
         }
     }
+}
+
+// Waits for something another thread does, at most ten seconds.
+bool happens(const auto& condition) {
+    for (int i = 0; i < 10000 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return condition();
+}
+
+TEST(Parallel, RunsBodiesTogetherAndWhoIsDoneHelps) {
+    if (usable_cores() < 2) GTEST_SKIP() << "one core";
+    set_thread_count(2);
+    std::atomic<bool> begun = false;
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    const auto seen = [&] {
+        const std::scoped_lock lock(mutex);
+        return threads.size();
+    };
+    // The second body's loop goes on only when both threads work at it, though the first is long over.
+    run_together({[&] { EXPECT_TRUE(happens([&] { return begun.load(); })); },
+                  [&] {
+                      begun = true;
+                      parallel_for(64, [&](int64_t) {
+                          {
+                              const std::scoped_lock lock(mutex);
+                              threads.insert(std::this_thread::get_id());
+                          }
+                          EXPECT_TRUE(happens([&] { return seen() == 2; }));
+                      });
+                  }});
+    set_thread_count(0);
+    EXPECT_EQ(seen(), 2u);
+}
+
+TEST(Parallel, RunsEveryBodyOnceOnOneThread) {
+    for (const int count : {1, 2}) {
+        set_thread_count(count);
+        std::atomic<int> calls = 0;
+        run_together({});
+        run_together({[&] { ++calls; }, [&] { calls += 10; }, [&] { calls += 100; }});
+        EXPECT_EQ(calls, 111);
+        EXPECT_THROW(run_together({[] {}, [] { throw std::runtime_error("no"); }}), std::runtime_error);
+    }
+    set_thread_count(0);
 }
 
 TEST(Parallel, AnExceptionStopsTheLoopAndArrivesUnchanged) {

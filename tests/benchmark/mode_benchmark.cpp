@@ -97,7 +97,8 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     const Scene scene = load_scene(option("TYNDALL_SCENE", "scenes/window.json"));
     Settings settings = settings_for(quality_named(option("TYNDALL_QUALITY", "preview")));
     for (const std::string& assignment : parts_of(option("TYNDALL_SET", ""), ' ')) apply_setting(settings, assignment);
-    const Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
+    Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
+    snapshot.kept = nullptr; // every preparation begins with nothing
     View view;
     view.camera = camera_at(scene, find_camera(scene, ""), snapshot.seconds);
     const PictureRays picture = picture_rays(view, snapshot);

@@ -81,7 +81,7 @@ TEST(LightFroxels, CornersAreExactUpToTheirQuadrature) {
                 const Camera& camera = stage.view.camera;
                 const vec3 point =
                     camera.position + z * camera.forward + across.x * camera.right + across.y * camera.up;
-                const float found = f.depth[static_cast<size_t>((at.z * f.size.y + at.y) * f.size.x + at.x)];
+                const float found = (*f.depth)[static_cast<size_t>((at.z * f.size.y + at.y) * f.size.x + at.x)];
                 EXPECT_NEAR(depths_at(depth, {point})[0], found, 1e-3f + 1e-3f * found);
                 const LightDepth exact = make_light_depth(stage.snapshot, light, LightTransmittance::marched, 1);
                 EXPECT_NEAR(found, depths_at(exact, {point})[0], 0.03f);
@@ -140,7 +140,7 @@ TEST(LightFroxels, ThreadsDoNotChangeThem) {
         const LightDepth one = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
         set_thread_count(0);
         const LightDepth many = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
-        EXPECT_EQ(one.froxels.depth, many.froxels.depth);
+        EXPECT_EQ(*one.froxels.depth, *many.froxels.depth);
     }
 }
 }

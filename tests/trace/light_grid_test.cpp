@@ -183,7 +183,7 @@ TEST(LightGrid, SameBitsAtAnyThreadCount) {
     set_thread_count(3);
     const LightDepth three = make_light_depth(snapshot, light, LightTransmittance::grid, 24);
     set_thread_count(0);
-    EXPECT_EQ(one.grid.depth, three.grid.depth);
+    EXPECT_EQ(*one.grid.depth, *three.grid.depth);
 }
 }
 }
