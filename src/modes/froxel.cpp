@@ -2,6 +2,7 @@
 // again for every camera ray.
 #include "modes/froxel_lookup.h"
 #include "modes/froxel_memory.h"
+#include "modes/froxel_still.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
@@ -9,8 +10,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tail_slices = 12; // for fog that goes on behind the scene
-
 struct FroxelFrame {
     FroxelScene scene;
     FroxelPicture picture;
@@ -39,32 +38,52 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.cones.push_back(cone_falloff(light));
     }
     if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
-    if (snapshot.occluders->has_alpha())
-        scene.settings.visibility = FroxelVisibility::rays;
-    else
-        scene.slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
+    if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
+}
+
+// The tiles as the pixels of a picture of their own.
+Camera tile_camera(const FroxelGrid& grid) {
+    Camera camera = grid.camera;
+    const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.picture.y);
+    camera.vertical_fov = 2 * std::atan(std::tan(0.5f * camera.vertical_fov) * wider);
+    camera.ortho_height *= wider;
+    return camera;
+}
+
+// What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
+void set_shadows(FroxelFrame& frame, FroxelStill& still) {
+    FroxelScene& scene = frame.scene;
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (scene.settings.visibility != FroxelVisibility::slices || !occluders || occluders->empty()) return;
+    const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
+    constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
+    for (const Light& light : scene.snapshot.lights) {
+        scene.views.emplace_back();
+        if (!light.shadows) continue;
+        if (is_soft(light) && spread) {
+            if (scene.slices.nodes.empty()) scene.slices = make_shadow_slices(occluders->shadow_triangles());
+            continue;
+        }
+        const ShadowVolumes volumes = make_shadow_volumes(shadow_mesh_of(still), center_of(light));
+        scene.views.back() = std::make_unique<const ShadowView>(
+            view_from(volumes, tile_camera(still.grid), still.grid.size, margin));
+    }
 }
 
 // This frame's light, with what the history knows of it; the history then knows this frame.
-FroxelLight light_with_history(FroxelFrame& frame, History& history) {
-    const FroxelGrid& grid = frame.picture.grid;
-    const FroxelTiles& tiles = frame.picture.tiles;
+FroxelLight light_with_history(FroxelFrame& frame, const FroxelMemory* memory, FroxelStill& still) {
     const FroxelSettings& settings = frame.scene.settings;
-    FroxelLight light;
-    if (frame.frame == 0 || !history.froxels) {
-        light = fill_froxels(frame.scene, grid, tiles, {});
-    } else {
-        const FroxelLight remembered = recall(*history.froxels, grid, tiles);
-        std::vector<uint8_t> stale;
-        if (settings.amortise) stale = stale_froxels(grid, remembered, frame.scene.snapshot.lights, frame.frame);
-        const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-        light = fill_froxels(frame.scene, grid, tiles, {-1, frame.frame, skipped});
-        const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-        blend_history(grid, tiles, remembered, skipped, std::min(settings.history, most), light);
-        frame.has_history = true;
-    }
-    history.froxels = std::make_shared<const FroxelMemory>(memory_of(grid, tiles, light));
-    return light;
+    if (frame.frame == 0 || !memory) return fill_still_froxels(frame.scene, still, {});
+    FroxelLight found;
+    if (!still.same_fog) found = recall(*memory, still.grid, still.tiles);
+    const FroxelLight& remembered = still.same_fog ? memory->light : found;
+    std::vector<uint8_t> stale;
+    if (settings.amortise) stale = stale_froxels(still.grid, remembered, frame.scene.snapshot.lights, frame.frame);
+    const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
+    const FroxelLight light = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped});
+    const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
+    frame.has_history = true;
+    return blend_history(still.grid, still.tiles, remembered, skipped, std::min(settings.history, most), light);
 }
 
 void make_parts(FroxelFrame& frame) {
@@ -98,22 +117,23 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     if (settings.froxel.history == 0) frame->frame = 0;
     set_scene(view, snapshot, settings, frame->scene);
 
-    FroxelPicture& picture = frame->picture;
-    picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
-    picture.grid = make_froxel_grid(view.camera, view.size, settings.froxel.tile);
-    picture.tiles = make_froxel_tiles(picture.grid, frame->scene.snapshot);
-    const FogDepths depths = fog_depths(picture.grid, picture.tiles, frame->scene.snapshot);
-    if (!(depths.far > depths.near)) { // no fog in view
+    const FroxelMemory* memory = history ? history->froxels.get() : nullptr;
+    FroxelStill still = look_at_scene(view, frame->scene.snapshot, settings.froxel, memory ? &memory->still : nullptr);
+    if (still.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
         return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
     }
-    set_slices(picture.grid, depths.near, depths.far, settings.froxel.depth_slices, settings.froxel.depth_growth,
-               depths.end, tail_slices);
-    set_trust(picture.grid, picture.tiles);
+    set_shadows(*frame, still);
 
-    const FroxelLight light =
-        history ? light_with_history(*frame, *history) : fill_froxels(frame->scene, picture.grid, picture.tiles, {});
+    FroxelPicture& picture = frame->picture;
+    picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
+    picture.grid = still.grid, picture.tiles = still.tiles;
+    FroxelLight light = history ? light_with_history(*frame, memory, still)
+                                : fill_froxels(frame->scene, picture.grid, picture.tiles, {});
     picture.sums = integrate_froxels(picture.grid, picture.tiles, light, picture.view_depth);
+    if (history)
+        history->froxels = std::make_shared<const FroxelMemory>(
+            memory_of(picture.grid, picture.tiles, std::move(light), std::move(still)));
     return [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.per_light.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);

@@ -10,6 +10,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
+using SumTag = hn::CappedTag<float, 4>;
+
 // One tile. Optical depths are summed first; then the weights T (1-e^-D) of 16 slices at a time.
 void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light, float view_depth,
                     size_t tile, float* sums) {
@@ -17,7 +19,7 @@ void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const Frox
     const float slant = grid.slants[tile];
     std::fill_n(sums, 4, 0.0f);
     const float* froxel = light.at(grid, tile, 0);
-    float sum[3] = {};
+    auto sum = hn::Zero(SumTag());
     double depth = 0; // rounds less than the differences that look-ups take of it
     for (int first = 0; first < slices; first += 16) {
         alignas(64) float before[16] = {}, across[16] = {}, weight[16];
@@ -34,8 +36,14 @@ void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const Frox
         }
         const Floats crossed = load(across);
         store(exp(load(before) * -view_depth) * crossed * mean_transmittance(crossed * view_depth), weight);
-        for (int i = 0; i < count; ++i)
-            for (int c = 0; c < 3; ++c) sums[4 * (first + i + 1) + c] = sum[c] += weight[i] * source[i][c];
+        const SumTag tag;
+        for (int i = 0; i < count; ++i) {
+            float* to = sums + 4 * (first + i + 1);
+            const float up_to = to[3];
+            sum = hn::MulAdd(hn::Set(tag, weight[i]), hn::LoadU(tag, source[i]), sum);
+            hn::StoreU(sum, tag, to);
+            to[3] = up_to;
+        }
     }
 }
 

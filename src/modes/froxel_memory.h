@@ -1,6 +1,6 @@
 // The light of froxels as it was in the last frame, found again from this frame's.
 #pragma once
-#include "modes/froxel_fill.h"
+#include "modes/froxel_still.h"
 
 #include <span>
 
@@ -10,9 +10,10 @@ namespace tyndall {
 struct FroxelMemory {
     FroxelGrid grid;
     FroxelLight light;
+    FroxelStill still;
 };
 
-FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light);
+FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStill still = {});
 
 // The light and extinction remembered at the centre of each froxel of `grid`; zeros where the last frame did not see
 // it.
@@ -23,8 +24,8 @@ FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const Fro
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
                                    int frame);
 
-// Blends this frame's light and extinction with what is remembered, weighted `weight`, after clamping it to what the
+// This frame's light and extinction blended with what is remembered, weighted `weight`, after clamping it to what the
 // froxels around show in this frame. Stale froxels (may be null) are what they were, within those bounds.
-void blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                   const uint8_t* stale, float weight, FroxelLight& light);
+FroxelLight blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                          const uint8_t* stale, float weight, const FroxelLight& light);
 }

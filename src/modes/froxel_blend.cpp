@@ -1,0 +1,195 @@
+// Remembered light held to what this frame shows around it, and mixed with it: four froxels of a tile at a time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/froxel_blend.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/froxel_memory.h"
+
+#include "base/parallel.h"
+#include "base/simd.h"
+
+#include <cstring>
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+constexpr ivec2 block_size{16, 8}; // tiles
+
+// The extinction of each froxel in all of its four lanes.
+HWY_INLINE Floats extinctions(const Floats& light) {
+    Floats r;
+    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::Broadcast<3>(light.part[i]);
+    return r;
+}
+
+// 0 in all lanes of a froxel whose values are finite, else NaN.
+HWY_INLINE Floats finite_sums(const Floats& light) {
+    Floats r;
+    for (size_t i = 0; i < parts; ++i) {
+        const auto zero = hn::Mul(light.part[i], hn::Zero(FloatTag()));
+        const auto pairs = hn::Add(zero, hn::Shuffle2301(zero));
+        r.part[i] = hn::Add(pairs, hn::Shuffle1032(pairs));
+    }
+    return r;
+}
+
+HWY_INLINE Mask16 extinction_lanes() {
+    alignas(64) float is[16];
+    for (int i = 0; i < 16; ++i) is[i] = i % 4 == 3 ? 1.0f : 0.0f;
+    return load(is) > 0.0f;
+}
+
+// Lanes of froxels that keep what they were.
+HWY_INLINE Mask16 stale_lanes(const uint8_t* stale, size_t count) {
+    alignas(64) float is[16] = {};
+    for (size_t i = 0; stale && i < count; ++i)
+        if (stale[i / 4]) is[i] = 1;
+    return load(is) > 0.0f;
+}
+
+HWY_INLINE Floats load_some(const float* from, size_t count) {
+    if (count >= 16) return load(from);
+    alignas(64) float values[16] = {};
+    std::copy_n(from, count, values);
+    return load(values);
+}
+
+// Least and most among the froxels of a tile and their neighbours in depth; least > most where there are none. Of light
+// only new froxels count that hold fog. One froxel more at either end.
+struct Bounds {
+    RecycledFloats low, high;
+    size_t stride = 0; // of a tile
+
+    void resize(size_t tiles, size_t values) {
+        stride = (values + 15) / 16 * 16 + 32;
+        low.resize(tiles * stride), high.resize(tiles * stride);
+    }
+};
+
+struct Blend {
+    const FroxelGrid& grid;
+    const FroxelTiles& tiles;
+    const FroxelLight &remembered, &light;
+    const uint8_t* stale;
+    float weight;
+    FroxelLight& result;
+
+    const uint8_t* stale_at(size_t tile, size_t first) const {
+        return stale ? stale + tile * static_cast<size_t>(grid.slices()) + first / 4 : nullptr;
+    }
+    // Values of the froxels that a tile sees.
+    size_t seen(size_t tile) const {
+        const auto behind = std::ranges::lower_bound(grid.faces.begin(), grid.faces.end() - 1, tiles.farthest[tile]);
+        return 4 * static_cast<size_t>(behind - grid.faces.begin());
+    }
+};
+
+void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
+    static thread_local RecycledFloats least, most;
+    const size_t count = blend.seen(tile), padded = (count + 15) / 16 * 16;
+    least.resize(padded + 32), most.resize(padded + 32);
+    const auto clear = [&](size_t at) HWY_ATTR { store(infinity, &least[at]), store(-infinity, &most[at]); };
+    clear(0), clear(padded + 16);
+    const float* light = blend.light.at(blend.grid, tile, 0);
+    const Mask16 is_extinction = extinction_lanes();
+    for (size_t i = 0; i < count; i += 16) {
+        const size_t here = std::min<size_t>(16, count - i);
+        const Floats values = load_some(light + i, here);
+        Mask16 valid = (extinctions(values) > 0.0f) & (finite_sums(values) <= 0.0f);
+        if (blend.stale) valid = valid & !stale_lanes(blend.stale_at(tile, i), here);
+        valid = valid | is_extinction;
+        store(select(valid, values, infinity), &least[16 + i]), store(select(valid, values, -infinity), &most[16 + i]);
+    }
+    if (count < padded)
+        for (size_t i = count; i < padded; ++i) least[16 + i] = infinity, most[16 + i] = -infinity;
+    for (size_t i = 0; i < padded + 16; i += 16) {
+        const float *a = &least[i + 12], *b = &most[i + 12]; // one slice before
+        if (i == padded) {
+            store(infinity, low + i), store(-infinity, high + i);
+            for (size_t c = 0; c < 4; ++c) low[i + c] = a[c], high[i + c] = b[c];
+            continue;
+        }
+        store(min(min(load(a), load(a + 4)), load(a + 8)), low + i);
+        store(max(max(load(b), load(b + 4)), load(b + 8)), high + i);
+    }
+}
+
+void blend_tile(const Blend& blend, const Bounds& bounds, const size_t (&around)[9], size_t neighbours, size_t tile,
+                const size_t (&counts)[9]) {
+    const size_t count = blend.seen(tile), all = 4 * static_cast<size_t>(blend.grid.slices());
+    const float *before = blend.remembered.at(blend.grid, tile, 0), *now = blend.light.at(blend.grid, tile, 0);
+    float* result = blend.result.at(blend.grid, tile, 0);
+    const Mask16 is_extinction = extinction_lanes();
+    for (size_t i = 0; i < count; i += 16) {
+        const size_t here = std::min<size_t>(16, count - i);
+        Floats low = infinity, high = -infinity;
+        for (size_t n = 0; n < neighbours; ++n) {
+            if (i >= counts[n]) continue;
+            low = min(low, load(&bounds.low[around[n] * bounds.stride + i]));
+            high = max(high, load(&bounds.high[around[n] * bounds.stride + i]));
+        }
+        const Floats was = load_some(before + i, here), is = load_some(now + i, here);
+        const Floats kept = select(low <= high, max(low, min(was, high)), was);
+        Floats mixed = is + (kept - is) * blend.weight;
+        if (blend.stale) // extinction is new everywhere
+            mixed = select(stale_lanes(blend.stale_at(tile, i), here) & !is_extinction, kept, mixed);
+        mixed = select(extinctions(was) > 0.0f, mixed, is);
+        if (here == 16) {
+            store(mixed, result + i);
+        } else {
+            alignas(64) float values[16];
+            store(mixed, values), std::copy_n(values, here, result + i);
+        }
+    }
+    std::fill(result + count, result + all, 0.0f);
+}
+
+void blend_block(const Blend& blend, ivec2 corner) {
+    static thread_local Bounds bounds;
+    const ivec2 size = blend.grid.size, from = glm::max(corner - 1, 0), to = glm::min(corner + block_size + 1, size);
+    const int width = to.x - from.x;
+    const size_t values = 4 * static_cast<size_t>(blend.grid.slices());
+    bounds.resize(static_cast<size_t>(width) * static_cast<size_t>(to.y - from.y), values);
+    const auto place = [&](ivec2 at) { return static_cast<size_t>((at.y - from.y) * width + at.x - from.x); };
+    for (int y = from.y; y < to.y; ++y)
+        for (int x = from.x; x < to.x; ++x) {
+            const size_t at = place({x, y}) * bounds.stride;
+            find_bounds(blend, blend.grid.tile_index({x, y}), &bounds.low[at], &bounds.high[at]);
+        }
+    const ivec2 end = glm::min(corner + block_size, size);
+    for (int y = corner.y; y < end.y; ++y)
+        for (int x = corner.x; x < end.x; ++x) {
+            size_t around[9], counts[9], neighbours = 0;
+            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size.y - 1); ++j)
+                for (int i = std::max(x - 1, 0); i <= std::min(x + 1, size.x - 1); ++i) {
+                    // One slice behind what a neighbour sees is bounded by it too.
+                    const size_t seen = blend.seen(blend.grid.tile_index({i, j}));
+                    counts[neighbours] = seen + 4, around[neighbours++] = place({i, j});
+                }
+            blend_tile(blend, bounds, around, neighbours, blend.grid.tile_index({x, y}), counts);
+        }
+}
+
+void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                  const uint8_t* stale, float weight, const FroxelLight& light, FroxelLight& result) {
+    const Blend blend{grid, tiles, remembered, light, stale, weight, result};
+    const ivec2 blocks = (grid.size + block_size - 1) / block_size;
+    parallel_for(int64_t{blocks.x} * blocks.y,
+                 [&](int64_t b) { blend_block(blend, block_size * ivec2(b % blocks.x, b / blocks.x)); });
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(blend_kernel);
+FroxelLight blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                          const uint8_t* stale, float weight, const FroxelLight& light) {
+    FroxelLight result;
+    result.values.resize(light.values.size());
+    HWY_DYNAMIC_DISPATCH(blend_kernel)(grid, tiles, remembered, stale, weight, light, result);
+    return result;
+}
+}
+#endif
