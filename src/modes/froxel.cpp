@@ -32,9 +32,17 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         if (!terms.emission) medium.optics.emission = vec3(0);
     }
     if (!terms.ambient) scene.snapshot.ambient = vec3(0);
+    std::vector<const Medium*> bricks;
+    for (const Medium& medium : scene.snapshot.media)
+        if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
+    scene.depths.reserve(snapshot.lights.size()); // columns know their grid by its place
     for (const Light& light : scene.snapshot.lights) {
-        scene.depths.push_back(make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view));
-        scene.depths.back().scale = settings.style.light_depth;
+        scene.depths.push_back(
+            make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));
+        LightDepth& depth = scene.depths.back();
+        depth.scale = settings.style.light_depth;
+        const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0;
+        scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
     if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
@@ -65,8 +73,8 @@ void set_shadows(FroxelFrame& frame, FroxelStill& still) {
             continue;
         }
         const ShadowVolumes volumes = make_shadow_volumes(shadow_mesh_of(still), center_of(light));
-        scene.views.back() = std::make_unique<const ShadowView>(
-            view_from(volumes, tile_camera(still.grid), still.grid.size, margin));
+        scene.views.back() =
+            std::make_unique<const ShadowView>(view_from(volumes, tile_camera(still.grid), still.grid.size, margin));
     }
 }
 

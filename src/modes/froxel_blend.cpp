@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 
+#include <array>
 #include <cstring>
 
 HWY_BEFORE_NAMESPACE();
@@ -39,11 +40,13 @@ HWY_INLINE Mask16 extinction_lanes() {
     return load(is) > 0.0f;
 }
 
-// Lanes of froxels that keep what they were.
+// Lanes of froxels that keep what they were: mostly all of a tile or none.
 HWY_INLINE Mask16 stale_lanes(const uint8_t* stale, size_t count) {
-    alignas(64) float is[16] = {};
-    for (size_t i = 0; stale && i < count; ++i)
-        if (stale[i / 4]) is[i] = 1;
+    uint32_t four = 0;
+    if (stale) std::memcpy(&four, stale, count / 4);
+    if (four == 0 || four == 0x01010101) return Floats(four ? 1.0f : 0.0f) > 0.0f;
+    alignas(64) float is[16];
+    for (size_t i = 0; i < 16; ++i) is[i] = static_cast<float>(four >> (i / 4 * 8) & 1);
     return load(is) > 0.0f;
 }
 
@@ -114,8 +117,32 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     }
 }
 
-void blend_tile(const Blend& blend, const Bounds& bounds, const size_t (&around)[9], size_t neighbours, size_t tile,
-                const size_t (&counts)[9]) {
+// Bounds of a tile and those above and below it, as far as they go.
+struct Place {
+    size_t tile = 0, bounds = 0;
+};
+void join_rows(const Blend& blend, const Bounds& bounds, std::span<const Place> column, float* low, float* high,
+               size_t& reach) {
+    reach = 0;
+    for (const Place& place : column) {
+        // One slice behind what a tile sees is bounded by it too.
+        const size_t count = blend.seen(place.tile) + 4;
+        const float *a = &bounds.low[place.bounds], *b = &bounds.high[place.bounds];
+        for (size_t i = 0; i < count; i += 16) {
+            const bool fresh = i >= reach;
+            store(fresh ? load(a + i) : min(load(low + i), load(a + i)), low + i);
+            store(fresh ? load(b + i) : max(load(high + i), load(b + i)), high + i);
+        }
+        reach = std::max(reach, (count + 15) / 16 * 16);
+    }
+}
+
+struct Joined {
+    RecycledFloats low, high;
+    size_t reach = 0; // values
+};
+
+void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile) {
     const size_t count = blend.seen(tile), all = 4 * static_cast<size_t>(blend.grid.slices());
     const float *before = blend.remembered.at(blend.grid, tile, 0), *now = blend.light.at(blend.grid, tile, 0);
     float* result = blend.result.at(blend.grid, tile, 0);
@@ -123,11 +150,8 @@ void blend_tile(const Blend& blend, const Bounds& bounds, const size_t (&around)
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
         Floats low = infinity, high = -infinity;
-        for (size_t n = 0; n < neighbours; ++n) {
-            if (i >= counts[n]) continue;
-            low = min(low, load(&bounds.low[around[n] * bounds.stride + i]));
-            high = max(high, load(&bounds.high[around[n] * bounds.stride + i]));
-        }
+        for (const Joined& column : columns)
+            if (i < column.reach) low = min(low, load(&column.low[i])), high = max(high, load(&column.high[i]));
         const Floats was = load_some(before + i, here), is = load_some(now + i, here);
         const Floats kept = select(low <= high, max(low, min(was, high)), was);
         Floats mixed = is + (kept - is) * blend.weight;
@@ -146,32 +170,39 @@ void blend_tile(const Blend& blend, const Bounds& bounds, const size_t (&around)
 
 void blend_block(const Blend& blend, ivec2 corner) {
     static thread_local Bounds bounds;
+    static thread_local std::array<Joined, block_size.x + 2> joined;
     const ivec2 size = blend.grid.size, from = glm::max(corner - 1, 0), to = glm::min(corner + block_size + 1, size);
-    const int width = to.x - from.x;
-    const size_t values = 4 * static_cast<size_t>(blend.grid.slices());
-    bounds.resize(static_cast<size_t>(width) * static_cast<size_t>(to.y - from.y), values);
-    const auto place = [&](ivec2 at) { return static_cast<size_t>((at.y - from.y) * width + at.x - from.x); };
+    const size_t width = static_cast<size_t>(to.x - from.x), values = 4 * static_cast<size_t>(blend.grid.slices());
+    bounds.resize(width * static_cast<size_t>(to.y - from.y), values);
+    const auto place = [&](int x, int y) {
+        const size_t at = static_cast<size_t>(y - from.y) * width + static_cast<size_t>(x - from.x);
+        return Place{blend.grid.tile_index({x, y}), at * bounds.stride};
+    };
     for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) {
-            const size_t at = place({x, y}) * bounds.stride;
-            find_bounds(blend, blend.grid.tile_index({x, y}), &bounds.low[at], &bounds.high[at]);
+            const auto [tile, at] = place(x, y);
+            find_bounds(blend, tile, &bounds.low[at], &bounds.high[at]);
         }
     const ivec2 end = glm::min(corner + block_size, size);
-    for (int y = corner.y; y < end.y; ++y)
-        for (int x = corner.x; x < end.x; ++x) {
-            size_t around[9], counts[9], neighbours = 0;
-            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size.y - 1); ++j)
-                for (int i = std::max(x - 1, 0); i <= std::min(x + 1, size.x - 1); ++i) {
-                    // One slice behind what a neighbour sees is bounded by it too.
-                    const size_t seen = blend.seen(blend.grid.tile_index({i, j}));
-                    counts[neighbours] = seen + 4, around[neighbours++] = place({i, j});
-                }
-            blend_tile(blend, bounds, around, neighbours, blend.grid.tile_index({x, y}), counts);
+    for (int y = corner.y; y < end.y; ++y) {
+        for (int x = from.x; x < to.x; ++x) {
+            Joined& column = joined[static_cast<size_t>(x - from.x)];
+            column.low.resize(bounds.stride), column.high.resize(bounds.stride);
+            Place rows[3];
+            size_t count = 0;
+            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size.y - 1); ++j) rows[count++] = place(x, j);
+            join_rows(blend, bounds, {rows, count}, column.low.data(), column.high.data(), column.reach);
         }
+        for (int x = corner.x; x < end.x; ++x) {
+            const int first = std::max(x - 1, from.x), last = std::min(x + 1, to.x - 1);
+            blend_tile(blend, {&joined[static_cast<size_t>(first - from.x)], static_cast<size_t>(last - first + 1)},
+                       blend.grid.tile_index({x, y}));
+        }
+    }
 }
 
-void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                  const uint8_t* stale, float weight, const FroxelLight& light, FroxelLight& result) {
+void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered, const uint8_t* stale,
+                  float weight, const FroxelLight& light, FroxelLight& result) {
     const Blend blend{grid, tiles, remembered, light, stale, weight, result};
     const ivec2 blocks = (grid.size + block_size - 1) / block_size;
     parallel_for(int64_t{blocks.x} * blocks.y,

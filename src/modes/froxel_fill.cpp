@@ -16,7 +16,7 @@ namespace {
 // What a packet keeps from slice to slice.
 struct Packet {
     Lanes where;
-    size_t index = 0; // among the grid's packets
+    size_t index = 0;                        // among the grid's packets
     std::vector<FirstRays> first;            // per sample
     std::vector<FroxelLit> exact;            // likewise
     std::vector<std::array<float, 16>> here; // extinction of each medium, of the sample under way
@@ -31,8 +31,8 @@ Floats find_extinctions(const Fill& fill, Packet& packet, const FroxelLanes& lan
     const size_t place = ((packet.index * slices + k) * samples + static_cast<size_t>(sample)) * media.size() * 16;
     Floats sum = 0.0f;
     for (size_t m = 0; m < media.size(); ++m) {
-        const Floats one = fill.pass.known ? load(fill.pass.known + place + 16 * m)
-                                           : mean_extinction(media[m], lanes, thickness);
+        const Floats one =
+            fill.pass.known ? load(fill.pass.known + place + 16 * m) : mean_extinction(media[m], lanes, thickness);
         if (fill.pass.noted) store(one, fill.pass.noted + place + 16 * m);
         store(one, packet.here[m].data());
         sum = sum + one;
@@ -50,7 +50,21 @@ void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, co
         if (where.there[i]) std::memcpy(fill.light.at(fill.grid, where.tile[i], slice), rgbs + 4 * i, 16);
 }
 
+// Whether no lane of a slice is to be lit anew and the extinctions are known already.
+bool is_remembered(const Fill& fill, const Packet& packet, int slice) {
+    if (!fill.pass.stale || !fill.pass.known) return false;
+    const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
+    uint8_t all = 1;
+    for (size_t i = 0; i < 16; ++i)
+        all &= fill.pass.stale[packet.where.tile[i] * slices + k] | !(packet.where.farthest[i] > fill.grid.faces[k]);
+    return all;
+}
+
 void fill_slice(const Fill& fill, Packet& packet, int slice) {
+    if (is_remembered(fill, packet, slice)) {
+        const Floats total = find_extinctions(fill, packet, {}, slice, 0);
+        return put(fill, packet.where, slice, splat(vec3(0)), total);
+    }
     const Snapshot& snapshot = fill.scene.snapshot;
     const auto* extinction = reinterpret_cast<const float(*)[16]>(packet.here.data());
 
@@ -157,7 +171,8 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(fill_kernel);
 size_t extinction_count(const FroxelScene& scene, const FroxelGrid& grid) {
-    const size_t tiles = static_cast<size_t>((grid.size.x + 7) / 8 * 8) * static_cast<size_t>((grid.size.y + 7) / 8 * 8);
+    const size_t tiles =
+        static_cast<size_t>((grid.size.x + 7) / 8 * 8) * static_cast<size_t>((grid.size.y + 7) / 8 * 8);
     return tiles * static_cast<size_t>(grid.slices() * scene.settings.shadow_rays) * scene.snapshot.media.size();
 }
 

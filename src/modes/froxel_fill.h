@@ -3,7 +3,7 @@
 #include "base/recycled.h"
 #include "modes/froxel_tiles.h"
 #include "modes/settings.h"
-#include "trace/light_depth.h"
+#include "trace/light_grid.h"
 #include "trace/shadow_slices.h"
 #include "trace/shadow_view.h"
 
@@ -13,8 +13,9 @@ struct FroxelScene {
     Snapshot snapshot; // media as the settings see them
     FroxelSettings settings;
     StyleSettings style;
-    std::vector<LightDepth> depths; // one per light
-    std::vector<ConeFalloff> cones; // one per light
+    std::vector<LightDepth> depths;                          // one per light
+    std::vector<std::unique_ptr<const GridColumns>> columns; // of their grids; null where there is none
+    std::vector<ConeFalloff> cones;                          // one per light
     // With FroxelVisibility::slices: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;

@@ -18,31 +18,29 @@ void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const Frox
     const int slices = grid.slices();
     const float slant = grid.slants[tile];
     std::fill_n(sums, 4, 0.0f);
-    const float* froxel = light.at(grid, tile, 0);
-    auto sum = hn::Zero(SumTag());
+    const SumTag tag;
+    auto sum = hn::Zero(tag);
     double depth = 0; // rounds less than the differences that look-ups take of it
+    int seen = 0;
+    while (seen < slices && !is_hidden(grid, tiles, tile, seen)) ++seen;
     for (int first = 0; first < slices; first += 16) {
-        alignas(64) float before[16] = {}, across[16] = {}, weight[16];
-        const float* source[16];
+        alignas(64) float before[16] = {}, across[16] = {}, up_to[16], weight[16];
         const int count = std::min(16, slices - first);
+        const auto source = [&](int i) { return light.at(grid, tile, std::max(std::min(first + i, seen - 1), 0)); };
         for (int i = 0; i < count; ++i) {
-            const int k = first + i;
-            if (!is_hidden(grid, tiles, tile, k)) froxel = light.at(grid, tile, k);
-            source[i] = froxel;
-            const float thickness = grid.faces[static_cast<size_t>(k) + 1] - grid.faces[static_cast<size_t>(k)];
-            before[i] = static_cast<float>(depth) * slant, across[i] = froxel[3] * thickness * slant;
-            depth += froxel[3] * thickness;
-            sums[4 * (k + 1) + 3] = static_cast<float>(depth);
+            const size_t k = static_cast<size_t>(first + i);
+            const float extinction = source(i)[3] * (grid.faces[k + 1] - grid.faces[k]);
+            before[i] = static_cast<float>(depth), across[i] = extinction;
+            depth += extinction;
+            up_to[i] = static_cast<float>(depth);
         }
-        const Floats crossed = load(across);
-        store(exp(load(before) * -view_depth) * crossed * mean_transmittance(crossed * view_depth), weight);
-        const SumTag tag;
+        const Floats crossed = load(across) * slant;
+        store(exp(load(before) * (-view_depth * slant)) * crossed * mean_transmittance(crossed * view_depth), weight);
         for (int i = 0; i < count; ++i) {
             float* to = sums + 4 * (first + i + 1);
-            const float up_to = to[3];
-            sum = hn::MulAdd(hn::Set(tag, weight[i]), hn::LoadU(tag, source[i]), sum);
+            sum = hn::MulAdd(hn::Set(tag, weight[i]), hn::LoadU(tag, source(i)), sum);
             hn::StoreU(sum, tag, to);
-            to[3] = up_to;
+            to[3] = up_to[i];
         }
     }
 }

@@ -289,8 +289,7 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
     lit.arrivals.assign(all_suns ? 0 : lights.size() * slices, {});
     for (size_t i = 0; i < lights.size(); ++i)
         if (is_sun(lights[i]))
-            add_sun(scene, grid, i,
-                    find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices),
+            add_sun(scene, grid, i, find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices),
                     lit.depths.data() + i * slices);
         else
             add_local(scene, grid, tiles, i, lanes, ray, indices, lit.arrivals.data() + i * slices);

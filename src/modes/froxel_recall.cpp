@@ -47,10 +47,12 @@ void find(const Recall& recall, const Vec3s& points, Recalled& found) {
     const float per_tile = 1 / static_cast<float>(grid.tile);
     const Floats x = fused(place.x, per_tile, 0.5f), y = fused(place.y, per_tile, 0.5f);
     const float right = static_cast<float>(grid.size.x - 1), bottom = static_cast<float>(grid.size.y - 1);
-    const Mask16 inside = (x >= 0.0f) & (y >= 0.0f) & (x <= right) & (y <= bottom) &
-                          (place.z >= grid.faces.front()) & (place.z <= grid.faces.back()) & (place.z > 0.0f);
-    const Floats held_x = zero_unless(inside, x), held_y = zero_unless(inside, y);
-    const Ints column = min(truncate(held_x), Ints(grid.size.x - 2)), row = min(truncate(held_y), Ints(grid.size.y - 2));
+    const Mask16 inside = (x >= 0.0f) & (y >= 0.0f) & (x <= right) & (y <= bottom) & (place.z >= grid.faces.front()) &
+                          (place.z <= grid.faces.back()) & (place.z > 0.0f);
+    const Floats held_x = max(min(zero_unless(inside, x), right), 0.0f);
+    const Floats held_y = max(min(zero_unless(inside, y), bottom), 0.0f);
+    const Ints column = min(truncate(held_x), Ints(grid.size.x - 2)),
+               row = min(truncate(held_y), Ints(grid.size.y - 2));
 
     // Between the centres of two slices.
     const Floats z = select(inside, place.z, grid.faces.front());
@@ -87,8 +89,11 @@ HWY_INLINE void mix(const Recall& recall, const Recalled& found, size_t lane, fl
         }
     }
     const auto total = hn::Broadcast<3>(known); // of the extinctions
-    const auto enough = hn::Gt(total, hn::Set(tag, least));
-    hn::StoreU(hn::IfThenElseZero(enough, hn::Div(sum, hn::IfThenElse(enough, total, hn::Set(tag, 1.0f)))), tag, result);
+    const auto zero = hn::Mul(sum, hn::Zero(tag)), pairs = hn::Add(zero, hn::Shuffle2301(zero));
+    const auto finite = hn::Eq(hn::Add(pairs, hn::Shuffle1032(pairs)), hn::Zero(tag));
+    const auto enough = hn::And(hn::Gt(total, hn::Set(tag, least)), finite);
+    const auto mean = hn::Div(sum, hn::IfThenElse(enough, total, hn::Set(tag, 1.0f)));
+    hn::StoreU(hn::IfThenElseZero(enough, mean), tag, result);
 }
 
 void recall_tile(const Recall& recall, ivec2 at) {

@@ -8,6 +8,7 @@
 
 #include "modes/froxel_lit.h"
 #include "modes/froxel_look_simd.h"
+#include "trace/light_grid_simd.h"
 #include "volume/phase_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -124,6 +125,7 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
         const Floats weight = load(job.extinction[m]) * phase_value(optics.phase, cosine);
         scattering = fused(splat(optics.albedo), weight, scattering);
     }
+    if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], arrived.point, reached);
     const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arrived.point, reached));
     const Floats amount = zero_unless(reached, arrived.amount * dimmed);
     return scattering * amount * splat(light.intensity * light.volume_scale);

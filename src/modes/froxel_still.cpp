@@ -50,8 +50,7 @@ FroxelStill look_at_scene(const View& view, const Snapshot& snapshot, const Frox
 }
 
 const std::shared_ptr<const ShadowMesh>& shadow_mesh_of(FroxelStill& still) {
-    if (!still.mesh)
-        still.mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(still.occluders->shadow_triangles()));
+    if (!still.mesh) still.mesh = std::make_shared<ShadowMesh>(make_shadow_mesh(still.occluders->shadow_triangles()));
     return still.mesh;
 }
 
@@ -59,7 +58,8 @@ FroxelLight fill_still_froxels(const FroxelScene& scene, FroxelStill& still, Fil
     const bool one_look = scene.settings.visibility == FroxelVisibility::slices && scene.settings.shadow_rays == 1;
     if (!one_look || !still.same_fog) return fill_froxels(scene, still.grid, still.tiles, pass);
     still.extinctions.resize(still.tiles.rays());
-    std::shared_ptr<const RecycledFloats>& here = still.extinctions[static_cast<size_t>(pass.frame) % still.tiles.rays()];
+    std::shared_ptr<const RecycledFloats>& here =
+        still.extinctions[static_cast<size_t>(pass.frame) % still.tiles.rays()];
     if (here) {
         pass.known = here->data();
         return fill_froxels(scene, still.grid, still.tiles, pass);

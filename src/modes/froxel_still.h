@@ -9,7 +9,7 @@ struct FroxelStill {
     FroxelTiles tiles;
     std::vector<Medium> media;
     std::shared_ptr<const Occluders> occluders;
-    std::shared_ptr<const ShadowMesh> mesh; // theirs; made when first asked for
+    std::shared_ptr<const ShadowMesh> mesh;   // theirs; made when first asked for
     bool same_view = false, same_fog = false; // as in the frame before; fog and what is seen of it
 
     // Extinctions by the turn of the tiles' rays, of fog that has stood still for a frame at least.

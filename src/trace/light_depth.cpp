@@ -57,7 +57,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 }
 
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
-                            const View* view) {
+                            const View* view, bool filled) {
     if (method == LightTransmittance::froxel && !view) method = LightTransmittance::grid;
     LightDepth depth;
     depth.method = method;
@@ -75,7 +75,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
         return depth;
     }
     depth.grid = fitted_grid(bricks, light, resolution);
-    if (depth.grid.size.x > 0) fill_grid(bricks, depth.grid);
+    if (depth.grid.size.x > 0 && (filled || method != LightTransmittance::grid)) fill_grid(bricks, depth.grid);
     if (method == LightTransmittance::average) {
         depth.method = LightTransmittance::grid;
         const float mean = mean_depth(depth, snapshot);
