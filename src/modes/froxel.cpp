@@ -78,20 +78,32 @@ void set_shadows(FroxelFrame& frame, FroxelStill& still) {
     }
 }
 
-// This frame's light, with what the history knows of it; the history then knows this frame.
-FroxelLight light_with_history(FroxelFrame& frame, const FroxelMemory* memory, FroxelStill& still) {
+// This frame's light with what the history knows of it; the history then knows this frame.
+FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<const FroxelMemory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
-    if (frame.frame == 0 || !memory) return fill_still_froxels(frame.scene, still, {});
-    FroxelLight found;
-    if (!still.same_fog) found = recall(*memory, still.grid, still.tiles);
-    const FroxelLight& remembered = still.same_fog ? memory->light : found;
-    std::vector<uint8_t> stale;
-    if (settings.amortise) stale = stale_froxels(still.grid, remembered, frame.scene.snapshot.lights, frame.frame);
-    const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-    const FroxelLight light = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped});
-    const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-    frame.has_history = true;
-    return blend_history(still.grid, still.tiles, remembered, skipped, std::min(settings.history, most), light);
+    const float view_depth = frame.picture.view_depth;
+    FroxelLight light;
+    FroxelSums sums;
+    if (frame.frame == 0 || !memory) {
+        light = fill_still_froxels(frame.scene, still, {});
+        sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
+        clean(still.grid, still.tiles, light);
+    } else {
+        FroxelLight found;
+        if (!still.same_fog) found = recall(*memory, still.grid, still.tiles);
+        const FroxelLight& remembered = still.same_fog ? memory->light : found;
+        const std::vector<Light>& lights = frame.scene.snapshot.lights;
+        std::vector<uint8_t> stale;
+        if (settings.amortise) stale = stale_froxels(still.grid, remembered, lights, frame.frame, still.same_fog);
+        const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
+        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, still.same_fog});
+        const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
+        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, still.same_fog};
+        sums = blend_history(still.grid, still.tiles, remembered, now, pass, light);
+        frame.has_history = true;
+    }
+    memory = std::make_shared<const FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
+    return sums;
 }
 
 void make_parts(FroxelFrame& frame) {
@@ -99,8 +111,8 @@ void make_parts(FroxelFrame& frame) {
     const int lights = static_cast<int>(frame.scene.snapshot.lights.size());
     for (int part = 0; part < lights + frame.has_history; ++part)
         frame.parts.push_back(integrate_froxels(
-            picture.grid, picture.tiles,
-            fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame, nullptr}), picture.view_depth));
+            picture.grid, picture.tiles, fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame}),
+            picture.view_depth));
 }
 
 // The lights' parts are those of this frame alone; where the history changed their sum they change alike.
@@ -136,12 +148,10 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
     picture.grid = still.grid, picture.tiles = still.tiles;
-    FroxelLight light = history ? light_with_history(*frame, memory, still)
-                                : fill_froxels(frame->scene, picture.grid, picture.tiles, {});
-    picture.sums = integrate_froxels(picture.grid, picture.tiles, light, picture.view_depth);
-    if (history)
-        history->froxels = std::make_shared<const FroxelMemory>(
-            memory_of(picture.grid, picture.tiles, std::move(light), std::move(still)));
+    picture.sums =
+        history ? sums_with_history(*frame, still, history->froxels)
+                : integrate_froxels(picture.grid, picture.tiles,
+                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
     return [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.per_light.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);

@@ -6,7 +6,7 @@
 #include "modes/froxel_memory.h"
 
 #include "base/parallel.h"
-#include "base/simd.h"
+#include "modes/froxel_integrate_simd.h"
 
 #include <array>
 #include <cstring>
@@ -73,12 +73,16 @@ struct Blend {
     const FroxelGrid& grid;
     const FroxelTiles& tiles;
     const FroxelLight &remembered, &light;
-    const uint8_t* stale;
-    float weight;
+    const BlendPass& pass;
     FroxelLight& result;
+    FroxelSums& sums;
 
     const uint8_t* stale_at(size_t tile, size_t first) const {
-        return stale ? stale + tile * static_cast<size_t>(grid.slices()) + first / 4 : nullptr;
+        return pass.stale ? pass.stale + tile * static_cast<size_t>(grid.slices()) + first / 4 : nullptr;
+    }
+    // Whether all that is seen of a tile is what it was.
+    bool stands(size_t tile) const {
+        return pass.still && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
     }
     // Values of the froxels that a tile sees.
     size_t seen(size_t tile) const {
@@ -92,6 +96,10 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     const size_t count = blend.seen(tile), padded = (count + 15) / 16 * 16;
     least.resize(padded + 32), most.resize(padded + 32);
     const auto clear = [&](size_t at) HWY_ATTR { store(infinity, &least[at]), store(-infinity, &most[at]); };
+    if (blend.stands(tile)) {
+        for (size_t i = 0; i < padded + 16; i += 16) store(infinity, low + i), store(-infinity, high + i);
+        return;
+    }
     clear(0), clear(padded + 16);
     const float* light = blend.light.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
@@ -99,7 +107,7 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
         const size_t here = std::min<size_t>(16, count - i);
         const Floats values = load_some(light + i, here);
         Mask16 valid = (extinctions(values) > 0.0f) & (finite_sums(values) <= 0.0f);
-        if (blend.stale) valid = valid & !stale_lanes(blend.stale_at(tile, i), here);
+        if (blend.pass.stale) valid = valid & !stale_lanes(blend.stale_at(tile, i), here);
         valid = valid | is_extinction;
         store(select(valid, values, infinity), &least[16 + i]), store(select(valid, values, -infinity), &most[16 + i]);
     }
@@ -142,9 +150,23 @@ struct Joined {
     size_t reach = 0; // values
 };
 
+// Zeros where there is no fog or light is not finite.
+void forget_unknown(float* light, size_t count) {
+    for (size_t i = 0; i < count; i += 16) {
+        const size_t here = std::min<size_t>(16, count - i);
+        const Floats values = load_some(light + i, here);
+        const Mask16 known = (extinctions(values) > 0.0f) & (finite_sums(values) <= 0.0f);
+        if (!any(!known)) continue;
+        alignas(64) float kept[16];
+        store(zero_unless(known, values), kept), std::copy_n(kept, here, light + i);
+    }
+}
+
 void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile) {
     const size_t count = blend.seen(tile), all = 4 * static_cast<size_t>(blend.grid.slices());
-    const float *before = blend.remembered.at(blend.grid, tile, 0), *now = blend.light.at(blend.grid, tile, 0);
+    const bool stands = blend.stands(tile);
+    const float* before = blend.remembered.at(blend.grid, tile, 0);
+    const float* now = stands ? before : blend.light.at(blend.grid, tile, 0);
     float* result = blend.result.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
     for (size_t i = 0; i < count; i += 16) {
@@ -154,9 +176,12 @@ void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile
             if (i < column.reach) low = min(low, load(&column.low[i])), high = max(high, load(&column.high[i]));
         const Floats was = load_some(before + i, here), is = load_some(now + i, here);
         const Floats kept = select(low <= high, max(low, min(was, high)), was);
-        Floats mixed = is + (kept - is) * blend.weight;
-        if (blend.stale) // extinction is new everywhere
-            mixed = select(stale_lanes(blend.stale_at(tile, i), here) & !is_extinction, kept, mixed);
+        Floats mixed = is + (kept - is) * blend.pass.weight;
+        if (blend.pass.stale) {
+            const Mask16 stale = stale_lanes(blend.stale_at(tile, i), here);
+            mixed = select(stale & !is_extinction, kept, mixed);
+            if (blend.pass.still) mixed = select(stale & is_extinction, was, mixed);
+        }
         mixed = select(extinctions(was) > 0.0f, mixed, is);
         if (here == 16) {
             store(mixed, result + i);
@@ -166,6 +191,9 @@ void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile
         }
     }
     std::fill(result + count, result + all, 0.0f);
+    integrate_tile(blend.grid, blend.tiles, blend.result, blend.pass.view_depth, tile,
+                   blend.sums.values.data() + 4 * tile * blend.grid.faces.size());
+    forget_unknown(result, count);
 }
 
 void blend_block(const Blend& blend, ivec2 corner) {
@@ -201,9 +229,9 @@ void blend_block(const Blend& blend, ivec2 corner) {
     }
 }
 
-void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered, const uint8_t* stale,
-                  float weight, const FroxelLight& light, FroxelLight& result) {
-    const Blend blend{grid, tiles, remembered, light, stale, weight, result};
+void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                  const FroxelLight& light, const BlendPass& pass, FroxelLight& result, FroxelSums& sums) {
+    const Blend blend{grid, tiles, remembered, light, pass, result, sums};
     const ivec2 blocks = (grid.size + block_size - 1) / block_size;
     parallel_for(int64_t{blocks.x} * blocks.y,
                  [&](int64_t b) { blend_block(blend, block_size * ivec2(b % blocks.x, b / blocks.x)); });
@@ -215,12 +243,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(blend_kernel);
-FroxelLight blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                          const uint8_t* stale, float weight, const FroxelLight& light) {
-    FroxelLight result;
+FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                         const FroxelLight& light, const BlendPass& pass, FroxelLight& result) {
+    FroxelSums sums;
+    sums.values.resize(4 * grid.tiles() * grid.faces.size());
     result.values.resize(light.values.size());
-    HWY_DYNAMIC_DISPATCH(blend_kernel)(grid, tiles, remembered, stale, weight, light, result);
-    return result;
+    HWY_DYNAMIC_DISPATCH(blend_kernel)(grid, tiles, remembered, light, pass, result, sums);
+    return sums;
 }
 }
 #endif

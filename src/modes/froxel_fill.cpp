@@ -50,21 +50,7 @@ void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, co
         if (where.there[i]) std::memcpy(fill.light.at(fill.grid, where.tile[i], slice), rgbs + 4 * i, 16);
 }
 
-// Whether no lane of a slice is to be lit anew and the extinctions are known already.
-bool is_remembered(const Fill& fill, const Packet& packet, int slice) {
-    if (!fill.pass.stale || !fill.pass.known) return false;
-    const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
-    uint8_t all = 1;
-    for (size_t i = 0; i < 16; ++i)
-        all &= fill.pass.stale[packet.where.tile[i] * slices + k] | !(packet.where.farthest[i] > fill.grid.faces[k]);
-    return all;
-}
-
-void fill_slice(const Fill& fill, Packet& packet, int slice) {
-    if (is_remembered(fill, packet, slice)) {
-        const Floats total = find_extinctions(fill, packet, {}, slice, 0);
-        return put(fill, packet.where, slice, splat(vec3(0)), total);
-    }
+HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     const Snapshot& snapshot = fill.scene.snapshot;
     const auto* extinction = reinterpret_cast<const float(*)[16]>(packet.here.data());
 
@@ -98,16 +84,16 @@ bool is_wanted(const Fill& fill, const Lanes& lanes, int i) {
     return false;
 }
 
-// Exact light for every sample of 16 tiles.
-void find_all_lit(const Fill& fill, Packet& packet) {
+// Exact light for every sample of the tiles that are wanted.
+void find_all_lit(const Fill& fill, const bool (&wanted)[16], Packet& packet) {
     const Lanes& lanes = packet.where;
-    ivec2 wanted[16];
-    for (int i = 0; i < 16; ++i) wanted[i] = is_wanted(fill, lanes, i) ? lanes.at[i] : fill.grid.size;
+    ivec2 at[16];
+    for (int i = 0; i < 16; ++i) at[i] = wanted[i] ? lanes.at[i] : fill.grid.size;
     packet.exact.resize(static_cast<size_t>(fill.samples()));
     for (int sample = 0; sample < fill.samples(); ++sample) {
         uint32_t indices[16];
         for (int i = 0; i < 16; ++i) indices[i] = spread_index(fill, lanes.at[i], sample);
-        find_froxel_lit(fill.scene, fill.grid, fill.tiles, wanted, first_ray(fill, sample),
+        find_froxel_lit(fill.scene, fill.grid, fill.tiles, at, first_ray(fill, sample),
                         fill.spreads() ? indices : nullptr, packet.exact[static_cast<size_t>(sample)]);
     }
 }
@@ -135,7 +121,8 @@ int stride_of(const FroxelScene& scene) { return scene.settings.amortise ? 2 : 1
 
 // A block of tiles through all slices.
 void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
-    static thread_local Packet packet;
+    static thread_local Packet memory;
+    Packet& packet = memory;
     packet.here.resize(fill.scene.snapshot.media.size());
     for (int phase = 0; phase < stride * stride; ++phase) {
         if (!set_lanes(fill, corner + ivec2(phase % stride, phase / stride), stride, packet.where)) continue;
@@ -143,7 +130,10 @@ void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
         packet.first.clear();
         for (int sample = 0; sample < fill.samples(); ++sample)
             packet.first.push_back(first_rays(fill, packet.where, sample));
-        if (fill.exact()) find_all_lit(fill, packet);
+        bool wanted[16], any_wanted = false;
+        for (int i = 0; i < 16; ++i) any_wanted |= wanted[i] = is_wanted(fill, packet.where, i);
+        if (fill.pass.still && !any_wanted && !fill.pass.noted) continue;
+        if (fill.exact()) find_all_lit(fill, wanted, packet);
         for (int slice = 0; slice < packet.where.last; ++slice) fill_slice(fill, packet, slice);
         const size_t behind = static_cast<size_t>(fill.grid.slices() - packet.where.last);
         for (size_t i = 0; i < 16; ++i)

@@ -37,6 +37,8 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
     const float* columns[16]; // of the tiles around, where those are the same for all rays
     for (int t = 0; t < places.count && places.together; ++t)
         columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
+    for (int t = 0; t < places.count && places.together; ++t)
+        for (size_t lane = 0; lane < 16; lane += 3) __builtin_prefetch(columns[t] + 4 * slice[lane]);
     for (size_t lane = 0; lane < 16; ++lane) {
         hn::Vec<TapTag> total[tap_parts];
         for (size_t p = 0; p < tap_parts; ++p) total[p] = hn::Zero(tag);

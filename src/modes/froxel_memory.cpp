@@ -29,20 +29,23 @@ bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const 
 bool all_finite(const float* v) { return std::isfinite(v[0] + v[1] + v[2]); }
 }
 
-FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStill still) {
-    FroxelMemory memory{grid, std::move(light), std::move(still)};
+void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light) {
     for_tiles(grid, [&](ivec2, size_t tile) {
         for (int k = 0; k < grid.slices(); ++k) {
-            float* v = memory.light.at(grid, tile, k);
+            float* v = light.at(grid, tile, k);
             const bool known = !is_hidden(grid, tiles, tile, k) && v[3] > 0 && all_finite(v);
             for (int c = 0; c < 4 && !known; ++c) v[c] = 0;
         }
     });
-    return memory;
+}
+
+FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStill still) {
+    clean(grid, tiles, light);
+    return {grid, std::move(light), std::move(still)};
 }
 
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
-                                   int frame) {
+                                   int frame, bool still) {
     const ivec2 turns[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
     const ivec2 turn = turns[frame % 4];
     const auto is_local = [](const Light& light) { return light.kind != LightKind::sun; };
@@ -52,9 +55,11 @@ std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& re
     for_tiles(grid, [&](ivec2 at, size_t tile) {
         if ((at.x & 1) == turn.x && (at.y & 1) == turn.y) return;
         const float* extinction = remembered.at(grid, tile, 0) + 3;
+        uint8_t* column = stale.data() + tile * slices;
+        if (still && !local) return void(std::fill_n(column, slices, uint8_t{1}));
         for (size_t k = 0; k < slices; ++k)
-            stale[tile * slices + k] =
-                extinction[4 * k] > 0 && !(local && is_near_light(grid, at, static_cast<int>(k), lights));
+            column[k] =
+                (still || extinction[4 * k] > 0) && !(local && is_near_light(grid, at, static_cast<int>(k), lights));
     });
     return stale;
 }

@@ -162,7 +162,7 @@ bool from_the_eye(const Camera& camera, const RayBatch& batch) {
     return off == 0;
 }
 
-void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
+inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
     const FroxelGrid& grid = picture.grid;
     alignas(64) float along[16], start[16] = {}, length[16];
     if (batch.rays.size() == 16 && batch.positions.size() == 16 && from_the_eye(grid.camera, batch)) {
