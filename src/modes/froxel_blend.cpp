@@ -96,10 +96,6 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     const size_t count = blend.seen(tile), padded = (count + 15) / 16 * 16;
     least.resize(padded + 32), most.resize(padded + 32);
     const auto clear = [&](size_t at) HWY_ATTR { store(infinity, &least[at]), store(-infinity, &most[at]); };
-    if (blend.stands(tile)) {
-        for (size_t i = 0; i < padded + 16; i += 16) store(infinity, low + i), store(-infinity, high + i);
-        return;
-    }
     clear(0), clear(padded + 16);
     const float* light = blend.light.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
@@ -125,29 +121,31 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     }
 }
 
-// Bounds of a tile and those above and below it, as far as they go.
-struct Place {
-    size_t tile = 0, bounds = 0;
+// Bounds of tiles one above the other, as far as they go.
+struct Column {
+    const float *low = nullptr, *high = nullptr;
+    size_t reach = 0; // values
 };
-void join_rows(const Blend& blend, const Bounds& bounds, std::span<const Place> column, float* low, float* high,
-               size_t& reach) {
-    reach = 0;
-    for (const Place& place : column) {
-        // One slice behind what a tile sees is bounded by it too.
-        const size_t count = blend.seen(place.tile) + 4;
-        const float *a = &bounds.low[place.bounds], *b = &bounds.high[place.bounds];
-        for (size_t i = 0; i < count; i += 16) {
-            const bool fresh = i >= reach;
-            store(fresh ? load(a + i) : min(load(low + i), load(a + i)), low + i);
-            store(fresh ? load(b + i) : max(load(high + i), load(b + i)), high + i);
-        }
-        reach = std::max(reach, (count + 15) / 16 * 16);
-    }
-}
 
+// Up to three rows as one. Rows of tiles that stand show nothing new.
 struct Joined {
     RecycledFloats low, high;
-    size_t reach = 0; // values
+
+    Column join(std::span<const Column> rows, size_t stride) {
+        if (rows.empty()) return {};
+        if (rows.size() == 1) return rows[0];
+        low.resize(stride), high.resize(stride);
+        size_t reach = 0;
+        for (const Column& row : rows) {
+            for (size_t i = 0; i < row.reach; i += 16) {
+                const bool fresh = i >= reach;
+                store(fresh ? load(row.low + i) : min(load(&low[i]), load(row.low + i)), &low[i]);
+                store(fresh ? load(row.high + i) : max(load(&high[i]), load(row.high + i)), &high[i]);
+            }
+            reach = std::max(reach, (row.reach + 15) / 16 * 16);
+        }
+        return {low.data(), high.data(), reach};
+    }
 };
 
 // Zeros where there is no fog or light is not finite.
@@ -162,7 +160,7 @@ void forget_unknown(float* light, size_t count) {
     }
 }
 
-void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile) {
+void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile) {
     const size_t count = blend.seen(tile), all = 4 * static_cast<size_t>(blend.grid.slices());
     const bool stands = blend.stands(tile);
     const float* before = blend.remembered.at(blend.grid, tile, 0);
@@ -172,8 +170,8 @@ void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
         Floats low = infinity, high = -infinity;
-        for (const Joined& column : columns)
-            if (i < column.reach) low = min(low, load(&column.low[i])), high = max(high, load(&column.high[i]));
+        for (const Column& column : columns)
+            if (i < column.reach) low = min(low, load(column.low + i)), high = max(high, load(column.high + i));
         const Floats was = load_some(before + i, here), is = load_some(now + i, here);
         const Floats kept = select(low <= high, max(low, min(was, high)), was);
         Floats mixed = is + (kept - is) * blend.pass.weight;
@@ -199,31 +197,35 @@ void blend_tile(const Blend& blend, std::span<const Joined> columns, size_t tile
 void blend_block(const Blend& blend, ivec2 corner) {
     static thread_local Bounds bounds;
     static thread_local std::array<Joined, block_size.x + 2> joined;
+    static thread_local std::vector<Column> rows; // of all tiles
     const ivec2 size = blend.grid.size, from = glm::max(corner - 1, 0), to = glm::min(corner + block_size + 1, size);
-    const size_t width = static_cast<size_t>(to.x - from.x), values = 4 * static_cast<size_t>(blend.grid.slices());
-    bounds.resize(width * static_cast<size_t>(to.y - from.y), values);
-    const auto place = [&](int x, int y) {
-        const size_t at = static_cast<size_t>(y - from.y) * width + static_cast<size_t>(x - from.x);
-        return Place{blend.grid.tile_index({x, y}), at * bounds.stride};
-    };
+    const int width = to.x - from.x;
+    const size_t tiles = static_cast<size_t>(width) * static_cast<size_t>(to.y - from.y);
+    bounds.resize(tiles, 4 * static_cast<size_t>(blend.grid.slices()));
+    rows.assign(tiles, {});
+    const auto place = [&](int x, int y) { return static_cast<size_t>((y - from.y) * width + x - from.x); };
     for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) {
-            const auto [tile, at] = place(x, y);
+            const size_t tile = blend.grid.tile_index({x, y}), at = place(x, y) * bounds.stride;
+            if (blend.stands(tile)) continue;
             find_bounds(blend, tile, &bounds.low[at], &bounds.high[at]);
+            // One slice behind what a tile sees is bounded by it too.
+            rows[place(x, y)] = {&bounds.low[at], &bounds.high[at], blend.seen(tile) + 4};
         }
     const ivec2 end = glm::min(corner + block_size, size);
     for (int y = corner.y; y < end.y; ++y) {
+        std::array<Column, block_size.x + 2> columns;
         for (int x = from.x; x < to.x; ++x) {
-            Joined& column = joined[static_cast<size_t>(x - from.x)];
-            column.low.resize(bounds.stride), column.high.resize(bounds.stride);
-            Place rows[3];
+            Column some[3];
             size_t count = 0;
-            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size.y - 1); ++j) rows[count++] = place(x, j);
-            join_rows(blend, bounds, {rows, count}, column.low.data(), column.high.data(), column.reach);
+            for (int j = std::max(y - 1, 0); j <= std::min(y + 1, size.y - 1); ++j)
+                if (const Column& row = rows[place(x, j)]; row.reach > 0) some[count++] = row;
+            const size_t at = static_cast<size_t>(x - from.x);
+            columns[at] = joined[at].join({some, count}, bounds.stride);
         }
         for (int x = corner.x; x < end.x; ++x) {
             const int first = std::max(x - 1, from.x), last = std::min(x + 1, to.x - 1);
-            blend_tile(blend, {&joined[static_cast<size_t>(first - from.x)], static_cast<size_t>(last - first + 1)},
+            blend_tile(blend, {&columns[static_cast<size_t>(first - from.x)], static_cast<size_t>(last - first + 1)},
                        blend.grid.tile_index({x, y}));
         }
     }

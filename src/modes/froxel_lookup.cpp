@@ -22,16 +22,15 @@ struct FaceSums {
 
 FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
     const FroxelGrid& grid = picture.grid;
-    const Ints slices = slices_of(grid, z);
+    const SliceLanes slices = slices_around(grid, z);
     FaceSums result;
-    const Floats before = gather(grid.faces.data(), slices);
-    result.behind = gather(grid.faces.data() + 1, slices);
-    result.share = max(min((z - before) / (result.behind - before), 1.0f), 0.0f);
+    result.behind = slices.behind;
+    result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
 
     // Both faces of a slice lie side by side in memory: eight floats per tile.
     alignas(64) int32_t slice[16];
     alignas(64) float values[2][64]; // [face][4 · lane + channel]
-    store(slices, slice);
+    store(slices.slice, slice);
     const TapTag tag;
     const hn::CappedTag<float, 4> face_tag;
     const float* columns[16]; // of the tiles around, where those are the same for all rays

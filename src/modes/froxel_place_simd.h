@@ -39,6 +39,30 @@ HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
     }
 }
 
+// The slices that hold planar depths, and their faces. Neighbouring rays mostly end within a few slices.
+struct SliceLanes {
+    Ints slice;
+    Floats before, behind;
+};
+HWY_INLINE SliceLanes slices_around(const FroxelGrid& grid, const Floats& z) {
+    constexpr int few = 6;
+    auto least = z.part[0];
+    for (size_t i = 1; i < parts; ++i) least = hn::Min(least, z.part[i]);
+    const int first = slice_of(grid, hn::GetLane(hn::MinOfLanes(FloatTag(), least))), last = grid.slices() - 1;
+    const float* faces = grid.faces.data() + first;
+    SliceLanes found{first, faces[0], faces[1]};
+    for (int k = 1; first + k <= last; ++k) {
+        const Mask16 more = z >= faces[k];
+        if (!any(more)) return found;
+        if (k == few) break;
+        found.slice = found.slice + truncate(select(more, 1.0f, 0.0f));
+        found.before = select(more, faces[k], found.before), found.behind = select(more, faces[k + 1], found.behind);
+    }
+    if (first + few > last) return found;
+    const Ints slice = slices_of(grid, z);
+    return {slice, gather(grid.faces.data(), slice), gather(grid.faces.data() + 1, slice)};
+}
+
 // First tile and weights along one axis: 2 of a linear look-up, 4 of a cubic B-spline.
 struct Axis {
     Ints first;
@@ -54,6 +78,16 @@ HWY_INLINE Axis axis_of(const Floats& place, int size, bool cubic) {
     return {cell - Ints(1),
             {g2 * g * sixth, (4.0f - f2 * (2.0f - f) * 3.0f) * sixth, (4.0f - g2 * (2.0f - g) * 3.0f) * sixth,
              f2 * f * sixth}};
+}
+
+HWY_INLINE bool all_same(const Ints& index) {
+    const Floats difference = abs(to_floats(index ^ Ints(hn::GetLane(index.part[0]))));
+    return !any(difference > 0.0f);
+}
+
+// As gather(), which takes its time where all lanes want the same.
+HWY_INLINE Floats value_at(const float* values, const Ints& index) {
+    return all_same(index) ? Floats(values[hn::GetLane(index.part[0])]) : gather(values, index);
 }
 
 // Behind what a tile sees its sums mean nothing; only where no tile sees far enough are they taken after all.
@@ -124,8 +158,8 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     at_x = zero_unless(places.seen, at_x), at_y = zero_unless(places.seen, at_y);
     const auto whole = [](const Floats& at, int size)
                            HWY_ATTR { return truncate(max(min(at + 0.5f, static_cast<float>(size - 1)), 0.0f)); };
-    places.nearest =
-        gather(picture.tiles.nearest.data(), whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x));
+    const Ints own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
+    places.nearest = value_at(picture.tiles.nearest.data(), own);
     if (picture.lookup == FroxelLookup::jittered) jitter_places(batch, at_x, at_y);
 
     const bool cubic = picture.lookup == FroxelLookup::tricubic;
@@ -141,10 +175,8 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
         }
     // The tile at or before the pixel knows whether all around it see far enough.
     const Ints cell = (y.first + Ints(cubic)) * grid.size.x + (x.first + Ints(cubic));
-    const Floats tile = to_floats(load(places.tiles[0]));
-    places.together =
-        !any(tile > static_cast<float>(places.tiles[0][0])) && !any(tile < static_cast<float>(places.tiles[0][0]));
-    const Mask16 blind = places.end > gather(picture.tiles.trusted_around.data(), cell);
+    places.together = all_same(cell);
+    const Mask16 blind = places.end > value_at(picture.tiles.trusted_around.data(), cell);
     if (any(blind)) distrust_blind(picture.tiles, blind, places);
     for (int t = 0; t < places.count; ++t) {
         const Floats slant = places.together ? Floats(grid.slants[static_cast<size_t>(places.tiles[t][0])])

@@ -47,8 +47,9 @@ void find(const Recall& recall, const Vec3s& points, Recalled& found) {
     const float per_tile = 1 / static_cast<float>(grid.tile);
     const Floats x = fused(place.x, per_tile, 0.5f), y = fused(place.y, per_tile, 0.5f);
     const float right = static_cast<float>(grid.size.x - 1), bottom = static_cast<float>(grid.size.y - 1);
-    const Mask16 inside = (x >= 0.0f) & (y >= 0.0f) & (x <= right) & (y <= bottom) & (place.z >= grid.faces.front()) &
-                          (place.z <= grid.faces.back()) & (place.z > 0.0f);
+    constexpr float slack = 1e-3f; // of a tile: the outermost centres belong to the picture
+    const Mask16 inside = (x >= -slack) & (y >= -slack) & (x <= right + slack) & (y <= bottom + slack) &
+                          (place.z >= grid.faces.front()) & (place.z <= grid.faces.back()) & (place.z > 0.0f);
     const Floats held_x = max(min(zero_unless(inside, x), right), 0.0f);
     const Floats held_y = max(min(zero_unless(inside, y), bottom), 0.0f);
     const Ints column = min(truncate(held_x), Ints(grid.size.x - 2)),
