@@ -94,11 +94,12 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared
         const FroxelLight& remembered = still.same_fog ? memory->light : found;
         const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
-        if (settings.amortise) stale = stale_froxels(still.grid, remembered, lights, frame.frame, still.same_fog);
+        const bool settled = still.settled();
+        if (settings.amortise) stale = stale_froxels(still.grid, remembered, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, still.same_fog});
+        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, still.same_fog};
+        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled};
         sums = blend_history(still.grid, still.tiles, remembered, now, pass, light);
         frame.has_history = true;
     }

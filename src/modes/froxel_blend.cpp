@@ -18,20 +18,35 @@ constexpr ivec2 block_size{16, 8}; // tiles
 
 // The extinction of each froxel in all of its four lanes.
 HWY_INLINE Floats extinctions(const Floats& light) {
+#if HWY_TARGET == HWY_SCALAR
+    alignas(64) float values[16];
+    store(light, values);
+    for (size_t i = 0; i < 16; ++i) values[i] = values[i | 3];
+    return load(values);
+#else
     Floats r;
     for (size_t i = 0; i < parts; ++i) r.part[i] = hn::Broadcast<3>(light.part[i]);
     return r;
+#endif
 }
 
 // 0 in all lanes of a froxel whose values are finite, else NaN.
 HWY_INLINE Floats finite_sums(const Floats& light) {
+    const Floats zeros = light * 0.0f;
+#if HWY_TARGET == HWY_SCALAR
+    alignas(64) float values[16], sums[16];
+    store(zeros, values);
+    for (size_t i = 0; i < 16; ++i)
+        sums[i] = values[i | 3] + values[(i | 3) - 1] + values[(i | 3) - 2] + values[(i | 3) - 3];
+    return load(sums);
+#else
     Floats r;
     for (size_t i = 0; i < parts; ++i) {
-        const auto zero = hn::Mul(light.part[i], hn::Zero(FloatTag()));
-        const auto pairs = hn::Add(zero, hn::Shuffle2301(zero));
+        const auto pairs = hn::Add(zeros.part[i], hn::Shuffle2301(zeros.part[i]));
         r.part[i] = hn::Add(pairs, hn::Shuffle1032(pairs));
     }
     return r;
+#endif
 }
 
 HWY_INLINE Mask16 extinction_lanes() {
@@ -173,12 +188,12 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
         for (const Column& column : columns)
             if (i < column.reach) low = min(low, load(column.low + i)), high = max(high, load(column.high + i));
         const Floats was = load_some(before + i, here), is = load_some(now + i, here);
-        const Floats kept = select(low <= high, max(low, min(was, high)), was);
+        Floats kept = select(low <= high, max(low, min(was, high)), was);
+        if (blend.pass.still) kept = select(is_extinction, was, kept); // nothing to be held to
         Floats mixed = is + (kept - is) * blend.pass.weight;
         if (blend.pass.stale) {
             const Mask16 stale = stale_lanes(blend.stale_at(tile, i), here);
-            mixed = select(stale & !is_extinction, kept, mixed);
-            if (blend.pass.still) mixed = select(stale & is_extinction, was, mixed);
+            mixed = select(blend.pass.still ? stale : stale & !is_extinction, kept, mixed);
         }
         mixed = select(extinctions(was) > 0.0f, mixed, is);
         if (here == 16) {

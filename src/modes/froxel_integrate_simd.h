@@ -12,6 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 using SumTag = hn::CappedTag<float, 4>;
+constexpr size_t sum_lanes = hn::MaxLanes(SumTag()), sum_parts = 4 / sum_lanes;
 
 // One tile. Optical depths are summed first; then the weights T (1-e^-D) of 16 slices at a time.
 HWY_INLINE void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light,
@@ -20,7 +21,8 @@ HWY_INLINE void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles,
     const float slant = grid.slants[tile];
     std::fill_n(sums, 4, 0.0f);
     const SumTag tag;
-    auto sum = hn::Zero(tag);
+    hn::Vec<SumTag> sum[sum_parts];
+    for (size_t p = 0; p < sum_parts; ++p) sum[p] = hn::Zero(tag);
     double depth = 0; // rounds less than the differences that look-ups take of it
     int seen = 0;
     while (seen < slices && !is_hidden(grid, tiles, tile, seen)) ++seen;
@@ -39,8 +41,11 @@ HWY_INLINE void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles,
         store(exp(load(before) * (-view_depth * slant)) * crossed * mean_transmittance(crossed * view_depth), weight);
         for (int i = 0; i < count; ++i) {
             float* to = sums + 4 * (first + i + 1);
-            sum = hn::MulAdd(hn::Set(tag, weight[i]), hn::LoadU(tag, source(i)), sum);
-            hn::StoreU(sum, tag, to);
+            for (size_t p = 0; p < sum_parts; ++p) {
+                const auto froxel = hn::LoadU(tag, source(i) + p * sum_lanes);
+                sum[p] = hn::MulAdd(hn::Set(tag, weight[i]), froxel, sum[p]);
+                hn::StoreU(sum[p], tag, to + p * sum_lanes);
+            }
             to[3] = up_to[i];
         }
     }

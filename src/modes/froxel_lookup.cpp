@@ -32,7 +32,6 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
     alignas(64) float values[2][64]; // [face][4 · lane + channel]
     store(slices.slice, slice);
     const TapTag tag;
-    const hn::CappedTag<float, 4> face_tag;
     const float* columns[16]; // of the tiles around, where those are the same for all rays
     for (int t = 0; t < places.count && places.together; ++t)
         columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
@@ -50,10 +49,13 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
                 total[p] = hn::MulAdd(weight, hn::LoadU(tag, from + p * tap_lanes), total[p]);
         }
 #if HWY_MAX_BYTES >= 32
+        const hn::CappedTag<float, 4> face_tag;
         hn::Store(hn::LowerHalf(total[0]), face_tag, values[0] + 4 * lane);
         hn::Store(hn::UpperHalf(face_tag, total[0]), face_tag, values[1] + 4 * lane);
 #else
-        for (size_t p = 0; p < 2; ++p) hn::Store(total[p], face_tag, values[p] + 4 * lane);
+        alignas(32) float both[8];
+        for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, both + p * tap_lanes);
+        std::copy_n(both, 4, values[0] + 4 * lane), std::copy_n(both + 4, 4, values[1] + 4 * lane);
 #endif
     }
     for (size_t i = 0; i < parts; ++i) {

@@ -12,6 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 using FroxelTag = hn::CappedTag<float, 4>;
+constexpr size_t froxel_lanes = hn::MaxLanes(FroxelTag()), froxel_parts = 4 / froxel_lanes;
 
 // Where the centres of sixteen froxels lie among the remembered ones: cells of tiles, slices before and behind, and how
 // far between them. Not `known`: outside.
@@ -79,22 +80,24 @@ HWY_INLINE void mix(const Recall& recall, const Recalled& found, size_t lane, fl
     const size_t tiles[] = {tile, tile + 1, tile + row, tile + row + 1};
     const float x = found.x[lane], y = found.y[lane], depth = found.depth[lane];
     const float across[] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
-    auto sum = hn::Zero(tag), known = hn::Zero(tag);
+    hn::Vec<FroxelTag> sum[froxel_parts], known[froxel_parts];
+    for (size_t p = 0; p < froxel_parts; ++p) sum[p] = known[p] = hn::Zero(tag);
     const size_t step = 4 * static_cast<size_t>(found.step[lane]);
     for (size_t i = 0; i < 4; ++i) {
         const float* from = recall.memory.light.at(grid, tiles[i], found.near[lane]);
-        for (const auto& [at, share] : {std::pair{from, 1 - depth}, std::pair{from + step, depth}}) {
-            const auto light = hn::LoadU(tag, at), weight = hn::Set(tag, across[i] * share);
-            sum = hn::MulAdd(weight, light, sum);
-            known = hn::Add(known, hn::IfThenElseZero(hn::Gt(light, hn::Zero(tag)), weight));
-        }
+        for (const auto& [at, share] : {std::pair{from, 1 - depth}, std::pair{from + step, depth}})
+            for (size_t p = 0; p < froxel_parts; ++p) {
+                const auto light = hn::LoadU(tag, at + p * froxel_lanes), weight = hn::Set(tag, across[i] * share);
+                sum[p] = hn::MulAdd(weight, light, sum[p]);
+                known[p] = hn::Add(known[p], hn::IfThenElseZero(hn::Gt(light, hn::Zero(tag)), weight));
+            }
     }
-    const auto total = hn::Broadcast<3>(known); // of the extinctions
-    const auto zero = hn::Mul(sum, hn::Zero(tag)), pairs = hn::Add(zero, hn::Shuffle2301(zero));
-    const auto finite = hn::Eq(hn::Add(pairs, hn::Shuffle1032(pairs)), hn::Zero(tag));
-    const auto enough = hn::And(hn::Gt(total, hn::Set(tag, least)), finite);
-    const auto mean = hn::Div(sum, hn::IfThenElse(enough, total, hn::Set(tag, 1.0f)));
-    hn::StoreU(hn::IfThenElseZero(enough, mean), tag, result);
+    alignas(16) float total[4], there[4];
+    for (size_t p = 0; p < froxel_parts; ++p)
+        hn::Store(sum[p], tag, total + p * froxel_lanes), hn::Store(known[p], tag, there + p * froxel_lanes);
+    const float extinctions = there[3];
+    const bool enough = extinctions > least && std::isfinite(total[0] + total[1] + total[2] + total[3]);
+    for (size_t c = 0; c < 4; ++c) result[c] = enough ? total[c] / extinctions : 0;
 }
 
 void recall_tile(const Recall& recall, ivec2 at) {

@@ -37,6 +37,7 @@ FroxelStill look_at_scene(const View& view, const Snapshot& snapshot, const Frox
     if (before && same(before->occluders, snapshot.occluders)) still.mesh = before->mesh;
     if (still.same_fog) {
         still.grid = before->grid, still.tiles = before->tiles, still.extinctions = before->extinctions;
+        still.stood = before->stood + 1;
         return still;
     }
     still.grid = make_froxel_grid(view.camera, view.size, settings.tile);

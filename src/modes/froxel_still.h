@@ -11,6 +11,10 @@ struct FroxelStill {
     std::shared_ptr<const Occluders> occluders;
     std::shared_ptr<const ShadowMesh> mesh;   // theirs; made when first asked for
     bool same_view = false, same_fog = false; // as in the frame before; fog and what is seen of it
+    int stood = 0;                            // frames for which that has been so
+
+    // Whether what is remembered of the fog is its mean over the rays of each tile.
+    bool settled() const { return stood >= 2 * static_cast<int>(tiles.rays()); }
 
     // Extinctions by the turn of the tiles' rays, of fog that has stood still for a frame at least.
     std::vector<std::shared_ptr<const RecycledFloats>> extinctions;
