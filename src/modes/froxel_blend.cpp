@@ -45,10 +45,9 @@ struct Blend {
         return pass.still && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
     }
     // Values of the froxels that a tile sees.
-    size_t seen(size_t tile) const {
-        const auto behind = std::ranges::lower_bound(grid.faces.begin(), grid.faces.end() - 1, tiles.farthest[tile]);
-        return 4 * static_cast<size_t>(behind - grid.faces.begin());
-    }
+    size_t seen(size_t tile) const { return 4 * size_t{slices[tile]}; }
+
+    std::vector<uint32_t> slices{}; // seen, of each tile
 };
 
 void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
@@ -193,7 +192,12 @@ void blend_block(const Blend& blend, ivec2 corner) {
 
 void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
                   const FroxelLight& light, const BlendPass& pass, FroxelLight& result, FroxelSums& sums) {
-    const Blend blend{grid, tiles, remembered, light, pass, result, sums};
+    Blend blend{grid, tiles, remembered, light, pass, result, sums};
+    blend.slices.resize(grid.tiles());
+    parallel_ranges(static_cast<int64_t>(grid.tiles()), 1024, [&](int64_t begin, int64_t end) {
+        for (size_t tile = static_cast<size_t>(begin); tile < static_cast<size_t>(end); ++tile)
+            blend.slices[tile] = static_cast<uint32_t>(seen_slices(grid, tiles, tile));
+    });
     const ivec2 blocks = (grid.size + block_size - 1) / block_size;
     parallel_for(int64_t{blocks.x} * blocks.y,
                  [&](int64_t b) { blend_block(blend, block_size * ivec2(b % blocks.x, b / blocks.x)); });

@@ -100,7 +100,6 @@ void find_all_lit(const Fill& fill, const bool (&wanted)[16], Packet& packet) {
 
 // Lanes `stride` tiles apart, from a corner; false when none is there.
 bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
-    const int slices = fill.grid.slices();
     bool some = false;
     lanes.last = 0;
     for (int i = 0; i < 16; ++i) {
@@ -109,8 +108,8 @@ bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
         lanes.tile[i] = lanes.there[i] ? fill.grid.tile_index(lanes.at[i]) : 0;
         lanes.farthest[i] = lanes.there[i] ? fill.tiles.farthest[lanes.tile[i]] : -infinity;
         some |= lanes.there[i];
-        while (lanes.last < slices && lanes.farthest[i] > fill.grid.faces[static_cast<size_t>(lanes.last)])
-            ++lanes.last;
+        if (lanes.there[i])
+            lanes.last = std::max(lanes.last, static_cast<int>(seen_slices(fill.grid, fill.tiles, lanes.tile[i])));
     }
     return some;
 }

@@ -7,6 +7,8 @@
 #include "trace/shadow_slices.h"
 #include "trace/shadow_view.h"
 
+#include <algorithm>
+
 namespace tyndall {
 // What filling needs besides the grid, made once per frame.
 struct FroxelScene {
@@ -47,6 +49,12 @@ size_t extinction_count(const FroxelScene& scene, const FroxelGrid& grid);
 // Whether a froxel lies wholly behind what all rays of its tile meet.
 inline bool is_hidden(const FroxelGrid& grid, const FroxelTiles& tiles, size_t tile, int slice) {
     return !(tiles.farthest[tile] > grid.faces[static_cast<size_t>(slice)]);
+}
+
+// Slices of which some ray of a tile sees something: those before the first hidden one.
+inline size_t seen_slices(const FroxelGrid& grid, const FroxelTiles& tiles, size_t tile) {
+    const auto behind = std::lower_bound(grid.faces.begin(), grid.faces.end() - 1, tiles.farthest[tile]);
+    return static_cast<size_t>(behind - grid.faces.begin());
 }
 
 FroxelLight fill_froxels(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,

@@ -24,8 +24,7 @@ HWY_INLINE void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles,
     hn::Vec<SumTag> sum[sum_parts];
     for (size_t p = 0; p < sum_parts; ++p) sum[p] = hn::Zero(tag);
     double depth = 0; // rounds less than the differences that look-ups take of it
-    int seen = 0;
-    while (seen < slices && !is_hidden(grid, tiles, tile, seen)) ++seen;
+    const int seen = static_cast<int>(seen_slices(grid, tiles, tile));
     for (int first = 0; first < slices; first += 16) {
         alignas(64) float before[16] = {}, across[16] = {}, up_to[16], weight[16];
         const int count = std::min(16, slices - first);

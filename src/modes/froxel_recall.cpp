@@ -106,8 +106,7 @@ void recall_tile(const Recall& recall, ivec2 at) {
     float* result = recall.result.at(grid, tile, 0);
     const vec2 pixel = grid.pixel_of(vec2(at));
     const vec3 origin = grid.origin + pixel.x * grid.origin_x + pixel.y * grid.origin_y, step = grid.line_step(pixel);
-    size_t seen = 0;
-    while (seen < slices && !is_hidden(grid, recall.tiles, tile, static_cast<int>(seen))) ++seen;
+    const size_t seen = seen_slices(grid, recall.tiles, tile);
     for (size_t first = 0; first < seen; first += 16) {
         alignas(64) float z[16];
         for (size_t i = 0; i < 16; ++i) {
