@@ -2,6 +2,7 @@
 // again for every camera ray.
 #include "modes/froxel_lookup.h"
 #include "modes/froxel_memory.h"
+#include "modes/froxel_still.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
@@ -9,8 +10,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tail_slices = 12; // for fog that goes on behind the scene
-
 struct FroxelFrame {
     FroxelScene scene;
     FroxelPicture picture;
@@ -33,38 +32,79 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         if (!terms.emission) medium.optics.emission = vec3(0);
     }
     if (!terms.ambient) scene.snapshot.ambient = vec3(0);
+    std::vector<const Medium*> bricks;
+    for (const Medium& medium : scene.snapshot.media)
+        if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
+    scene.depths.reserve(snapshot.lights.size()); // columns know their grid by its place
     for (const Light& light : scene.snapshot.lights) {
-        scene.depths.push_back(make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view));
-        scene.depths.back().scale = settings.style.light_depth;
+        scene.depths.push_back(
+            make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));
+        LightDepth& depth = scene.depths.back();
+        depth.scale = settings.style.light_depth;
+        const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0;
+        scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
     if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
-    if (snapshot.occluders->has_alpha())
-        scene.settings.visibility = FroxelVisibility::rays;
-    else
-        scene.slices = snapshot.occluders->shadow_slices();
+    if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
 }
 
-// This frame's light, with what the history knows of it; the history then knows this frame.
-FroxelLight light_with_history(FroxelFrame& frame, History& history) {
-    const FroxelGrid& grid = frame.picture.grid;
-    const FroxelTiles& tiles = frame.picture.tiles;
+// The tiles as the pixels of a picture of their own.
+Camera tile_camera(const FroxelGrid& grid) {
+    Camera camera = grid.camera;
+    const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.picture.y);
+    camera.vertical_fov = 2 * std::atan(std::tan(0.5f * camera.vertical_fov) * wider);
+    camera.ortho_height *= wider;
+    return camera;
+}
+
+// What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
+void set_shadows(FroxelFrame& frame, FroxelStill& still) {
+    FroxelScene& scene = frame.scene;
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (scene.settings.visibility != FroxelVisibility::slices || !occluders || occluders->empty()) return;
+    const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
+    constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
+    for (const Light& light : scene.snapshot.lights) {
+        scene.views.emplace_back();
+        if (!light.shadows) continue;
+        if (is_soft(light) && spread) {
+            scene.slices = occluders->shadow_slices();
+            continue;
+        }
+        const std::shared_ptr<const ShadowVolumes> volumes = kept_shadow_volumes(scene.snapshot, light);
+        scene.views.back() =
+            std::make_unique<const ShadowView>(view_from(*volumes, tile_camera(still.grid), still.grid.size, margin));
+    }
+}
+
+// This frame's light with what the history knows of it; the history then knows this frame.
+FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<const FroxelMemory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
+    const float view_depth = frame.picture.view_depth;
     FroxelLight light;
-    if (frame.frame == 0 || !history.froxels) {
-        light = fill_froxels(frame.scene, grid, tiles, {});
+    FroxelSums sums;
+    if (frame.frame == 0 || !memory) {
+        light = fill_still_froxels(frame.scene, still, {});
+        sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
+        clean(still.grid, still.tiles, light);
     } else {
-        const FroxelLight remembered = recall(*history.froxels, grid, tiles);
+        FroxelLight found;
+        if (!still.same_fog) found = recall(*memory, still.grid, still.tiles);
+        const FroxelLight& remembered = still.same_fog ? memory->light : found;
+        const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
-        if (settings.amortise) stale = stale_froxels(grid, remembered, frame.scene.snapshot.lights, frame.frame);
+        const bool settled = still.settled();
+        if (settings.amortise) stale = stale_froxels(still.grid, remembered, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-        light = fill_froxels(frame.scene, grid, tiles, {-1, frame.frame, skipped});
+        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-        blend_history(grid, tiles, remembered, skipped, std::min(settings.history, most), light);
+        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled};
+        sums = blend_history(still.grid, still.tiles, remembered, now, pass, light);
         frame.has_history = true;
     }
-    history.froxels = std::make_shared<const FroxelMemory>(memory_of(grid, tiles, light));
-    return light;
+    memory = std::make_shared<const FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
+    return sums;
 }
 
 void make_parts(FroxelFrame& frame) {
@@ -72,8 +112,8 @@ void make_parts(FroxelFrame& frame) {
     const int lights = static_cast<int>(frame.scene.snapshot.lights.size());
     for (int part = 0; part < lights + frame.has_history; ++part)
         frame.parts.push_back(integrate_froxels(
-            picture.grid, picture.tiles,
-            fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame, nullptr}), picture.view_depth));
+            picture.grid, picture.tiles, fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame}),
+            picture.view_depth));
 }
 
 // The lights' parts are those of this frame alone; where the history changed their sum they change alike.
@@ -98,23 +138,21 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     if (settings.froxel.history == 0) frame->frame = 0;
     set_scene(view, snapshot, settings, frame->scene);
 
-    FroxelPicture& picture = frame->picture;
-    picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
-    picture.grid = make_froxel_grid(view.camera, view.size, settings.froxel.tile);
-    picture.tiles = *kept(snapshot, KeptKey().add(snapshot.occluders).add(view).add(settings.froxel.tile),
-                          [&] { return make_froxel_tiles(picture.grid, snapshot); });
-    const FogDepths depths = fog_depths(picture.grid, picture.tiles, frame->scene.snapshot);
-    if (!(depths.far > depths.near)) { // no fog in view
+    const FroxelMemory* memory = history ? history->froxels.get() : nullptr;
+    FroxelStill still = look_at_scene(view, frame->scene.snapshot, settings.froxel, memory ? &memory->still : nullptr);
+    if (still.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
         return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
     }
-    set_slices(picture.grid, depths.near, depths.far, settings.froxel.depth_slices, settings.froxel.depth_growth,
-               depths.end, tail_slices);
-    set_trust(picture.grid, picture.tiles);
+    set_shadows(*frame, still);
 
-    const FroxelLight light =
-        history ? light_with_history(*frame, *history) : fill_froxels(frame->scene, picture.grid, picture.tiles, {});
-    picture.sums = integrate_froxels(picture.grid, picture.tiles, light, picture.view_depth);
+    FroxelPicture& picture = frame->picture;
+    picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
+    picture.grid = still.grid, picture.tiles = still.tiles;
+    picture.sums =
+        history ? sums_with_history(*frame, still, history->froxels)
+                : integrate_froxels(picture.grid, picture.tiles,
+                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
     return [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.per_light.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);

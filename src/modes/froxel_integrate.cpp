@@ -5,40 +5,11 @@
 #include "modes/froxel_integrate.h"
 
 #include "base/parallel.h"
-#include "base/simd.h"
+#include "modes/froxel_integrate_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// One tile. Optical depths are summed first; then the weights T (1-e^-D) of 16 slices at a time.
-void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light, float view_depth,
-                    size_t tile, float* sums) {
-    const int slices = grid.slices();
-    const float slant = grid.slants[tile];
-    std::fill_n(sums, 4, 0.0f);
-    const float* froxel = light.at(grid, tile, 0);
-    float sum[3] = {};
-    double depth = 0; // rounds less than the differences that look-ups take of it
-    for (int first = 0; first < slices; first += 16) {
-        alignas(64) float before[16] = {}, across[16] = {}, weight[16];
-        const float* source[16];
-        const int count = std::min(16, slices - first);
-        for (int i = 0; i < count; ++i) {
-            const int k = first + i;
-            if (!is_hidden(grid, tiles, tile, k)) froxel = light.at(grid, tile, k);
-            source[i] = froxel;
-            const float thickness = grid.faces[static_cast<size_t>(k) + 1] - grid.faces[static_cast<size_t>(k)];
-            before[i] = static_cast<float>(depth) * slant, across[i] = froxel[3] * thickness * slant;
-            depth += froxel[3] * thickness;
-            sums[4 * (k + 1) + 3] = static_cast<float>(depth);
-        }
-        const Floats crossed = load(across);
-        store(exp(load(before) * -view_depth) * crossed * mean_transmittance(crossed * view_depth), weight);
-        for (int i = 0; i < count; ++i)
-            for (int c = 0; c < 3; ++c) sums[4 * (first + i + 1) + c] = sum[c] += weight[i] * source[i][c];
-    }
-}
-
 void integrate_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light, float view_depth,
                       FroxelSums& sums) {
     const size_t row = static_cast<size_t>(grid.size.x);

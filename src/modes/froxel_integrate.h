@@ -6,7 +6,7 @@ namespace tyndall {
 // Per tile and face of the slices, front to back [tile · faces + face]: light that reaches the eye from before the face
 // (red, green, blue), and the optical depth up to it per metre of slant: times |step of a line| it is the line's own.
 struct FroxelSums {
-    std::vector<float> values;
+    RecycledFloats values;
     const float* at(const FroxelGrid& grid, size_t tile, int face) const {
         return values.data() + 4 * (tile * grid.faces.size() + static_cast<size_t>(face));
     }

@@ -15,7 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Sixteen froxels of one slice: where light is asked for, and the stretch of a camera ray that each stands for.
 struct FroxelLanes {
-    Vec3s point;         // in front of every surface
+    Vec3s point, step;   // in front of every surface; along the line, per metre of planar depth
+    Floats z;            // planar depth of the point
     Vec3s start, toward; // of the stretch; unit direction
     Floats length;       // of the stretch, metres
     Floats width2;       // squared radius of the disc as large as the froxel is across

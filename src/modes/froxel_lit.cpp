@@ -3,6 +3,8 @@
 #include "base/random.h"
 #include "modes/light_along.h"
 
+#include <array>
+
 namespace tyndall {
 namespace {
 LightPoint light_point(const Light& light, const Ray& ray, uint32_t index, uint32_t seed) {
@@ -58,184 +60,190 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, Stretch stretc
     }
 }
 
-// A line through a tile as a light sees it.
-struct LitLine {
-    size_t lane;
-    double per_metre; // of planar depth, per metre of the line
+// Lines through up to 16 tiles, up to the surface.
+struct Lines {
+    std::array<Ray, 16> rays;
+    std::array<double, 16> per_metre; // of planar depth, per metre of the line
+    std::array<LightPoint, 16> points;
+    uint32_t active = 0; // bits
+    int bin = 0;         // of 8×8 tiles, that all lie in
 };
 
-// The lines of up to 16 tiles, side by side: of a spot all rays of each tile, as the edge of a narrow cone runs through
-// froxels; elsewhere one.
-struct LitLines {
-    std::vector<LitLine> lines;
-    std::vector<Ray> rays; // up to the surface
-    std::vector<LightPoint> points;
-};
-
-void find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& light, uint32_t light_index,
-                const ivec2* lanes, size_t ray, const uint32_t* indices, LitLines& found) {
-    found.lines.clear(), found.rays.clear(), found.points.clear();
-    const bool all = light.kind == LightKind::spot;
+Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& light, uint32_t light_index,
+                 const ivec2* lanes, size_t ray, const uint32_t* indices) {
+    Lines lines;
     for (size_t lane = 0; lane < 16; ++lane) {
         const ivec2 at = lanes[lane];
         if (at.x >= grid.size.x || at.y >= grid.size.y) continue;
-        for (size_t i = all ? 0 : ray; i < (all ? tiles.rays() : ray + 1); ++i) {
-            Ray line = line_ray(grid, grid.pixel_of(vec2(at) + tiles.offsets[i]));
-            const double per_metre = glm::dot(line.direction, grid.camera.forward);
-            const float surface = tiles.depth[grid.tile_index(at) * tiles.rays() + i];
-            line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / per_metre);
-            // Other points for each 4×4 tiles: the same ones again would show as a pattern.
-            const auto block = static_cast<uint32_t>((at.y >> 2) * grid.size.x + (at.x >> 2));
-            found.points.push_back(indices ? light_point(light, line, indices[lane], hash(block, light_index))
-                                           : center_of(light));
-            found.lines.push_back({lane, per_metre}), found.rays.push_back(line);
+        Ray& line = lines.rays[lane] = line_ray(grid, grid.pixel_of(vec2(at) + tiles.offsets[ray]));
+        lines.per_metre[lane] = glm::dot(line.direction, grid.camera.forward);
+        const float surface = tiles.depth[grid.tile_index(at) * tiles.rays() + ray];
+        line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / lines.per_metre[lane]);
+        if (!(line.t_max * lines.per_metre[lane] > grid.faces.front())) continue;
+        // Other points for each 4×4 tiles: the same ones again would show as a pattern.
+        const auto block = static_cast<uint32_t>((at.y >> 2) * grid.size.x + (at.x >> 2));
+        lines.points[lane] =
+            indices ? light_point(light, line, indices[lane], hash(block, light_index)) : center_of(light);
+        lines.active |= 1u << lane;
+        lines.bin = (at.y / shadow_tile_side) * ((grid.size.x + shadow_tile_side - 1) / shadow_tile_side) +
+                    at.x / shadow_tile_side;
+    }
+    return lines;
+}
+
+// The stretches from which the light is seen: by shadow volumes where all lines see the same point of it, else by
+// slices, else all.
+using Stretches = std::vector<Stretch>[16];
+void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, Stretches& lit) {
+    for (std::vector<Stretch>& stretches : lit) stretches.clear();
+    if (!lines.active) return;
+    const bool shadows = scene.snapshot.lights[light].shadows;
+    if (shadows && light < scene.views.size() && scene.views[light]) {
+        static thread_local std::vector<ShadowCrossing> crossings;
+        ShadowRays rays;
+        Stretch ranges[16];
+        int dark[16];
+        std::fill(dark, dark + 16, scene.views[light]->dark);
+        rays.edges = false, rays.tile = lines.bin;
+        for (size_t lane = 0; lane < 16; ++lane) {
+            if (!(lines.active >> lane & 1)) continue;
+            place_ray(*scene.views[light], lines.rays[lane], static_cast<int>(lane), rays);
+            ranges[lane] = {0, lines.rays[lane].t_max};
         }
+        crossings.clear();
+        find_crossings(*scene.views[light], rays, crossings);
+        return append_lit(dark, crossings, ranges, lit);
+    }
+    static thread_local std::vector<Ray> rays;
+    static thread_local std::vector<LightPoint> points;
+    rays.clear(), points.clear();
+    for (size_t lane = 0; lane < 16; ++lane)
+        if (lines.active >> lane & 1) rays.push_back(lines.rays[lane]), points.push_back(lines.points[lane]);
+    const ShadowSlices near = shadows ? near_rays(scene.slices, rays, points) : ShadowSlices{};
+    for (size_t lane = 0, i = 0; lane < 16; ++lane)
+        if (lines.active >> lane & 1) find_lit(near, rays[i], points[i], lit[lane]), ++i;
+}
+
+// Adds a lit stretch of a sun, in planar depth, to the slices it crosses.
+void add_depths(const FroxelGrid& grid, float low, float high, size_t lane, FroxelLit::Depths* slices) {
+    low = std::max(low, grid.faces.front());
+    for (int k = slice_of(grid, low); k < grid.slices() && low < high; ++k) {
+        const float end = std::min(high, grid.faces[static_cast<size_t>(k) + 1]);
+        if (!(end > low)) continue;
+        slices[k].length[lane] += end - low, slices[k].first[lane] += (end - low) * (0.5f * (low + end));
+        low = end;
     }
 }
 
-// Adds the light on one line of a tile: sums over the line of amounts and of points times amounts, and its length in
-// each slice.
-void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, FroxelArrival* sums,
-              std::vector<double>& lengths) {
+void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, const Lines& lines,
+             FroxelLit::Depths* slices) {
+    static thread_local Stretches lit;
+    find_stretches(scene, light, lines, lit);
+    for (size_t lane = 0; lane < 16; ++lane)
+        for (const Stretch& stretch : lit[lane])
+            add_depths(grid, static_cast<float>(stretch.low * lines.per_metre[lane]),
+                       static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
+}
+
+// Adds the light on one line of a tile: sums over the line of amounts and of points times amounts.
+void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, size_t lane,
+              FroxelLit::Arrivals* slices) {
     static thread_local std::vector<Moments> moments;
-    const double start = grid.faces.front() / per_metre, end = line.t_max;
-    moments.assign(lengths.size(), {});
+    const double start = grid.faces.front() / per_metre;
+    moments.assign(static_cast<size_t>(grid.slices()), {});
     for (const Stretch& s : along.lit) add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
-    for (size_t k = 0; k < lengths.size(); ++k) {
-        const double length = std::min<double>(grid.faces[k + 1] / per_metre, end) - grid.faces[k] / per_metre;
-        if (!(length > 0)) break;
-        lengths[k] += length;
+    for (size_t k = 0; k < moments.size(); ++k) {
         if (!(moments[k].amount > 0)) continue;
         const auto amount = static_cast<float>(moments[k].amount);
-        sums[k].amount += amount;
-        sums[k].point += amount * line.at(static_cast<float>(moments[k].first / moments[k].amount));
+        const vec3 point = line.at(static_cast<float>(moments[k].first / moments[k].amount));
+        slices[k].amount[lane] += amount;
+        for (int c = 0; c < 3; ++c) slices[k].point[c][lane] += amount * point[c];
     }
 }
 
-// Sums of a tile's lines to what arrives on average.
-void settle(const std::vector<double>& lengths, FroxelArrival* arrivals) {
+// What two ascending lists of stretches share.
+void keep_common(const std::vector<Stretch>& other, std::vector<Stretch>& stretches) {
+    static thread_local std::vector<Stretch> common;
+    common.clear();
+    for (size_t i = 0, j = 0; i < stretches.size() && j < other.size();) {
+        const Stretch both{std::max(stretches[i].low, other[j].low), std::min(stretches[i].high, other[j].high)};
+        if (!both.empty()) common.push_back(both);
+        (stretches[i].high < other[j].high ? i : j) += 1;
+    }
+    std::swap(common, stretches);
+}
+
+// One line of each tile. What the light does not reach needs no shadows.
+void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, Lines lines,
+               FroxelLit::Arrivals* slices) {
+    static thread_local LightAlong along[16];
+    static thread_local Stretches lit;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!(lines.active >> lane & 1)) continue;
+        Ray& ray = lines.rays[lane];
+        find_light(scene.snapshot.lights[light], lines.points[lane], ray, nullptr, {}, along[lane]);
+        if (along[lane].lit.empty())
+            lines.active &= ~(1u << lane);
+        else
+            ray.t_max = std::min(ray.t_max, std::nextafter(static_cast<float>(along[lane].lit.back().high), infinity));
+    }
+    find_stretches(scene, light, lines, lit);
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!(lines.active >> lane & 1)) continue;
+        keep_common(lit[lane], along[lane].lit);
+        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], lane, slices);
+    }
+}
+
+// Lengths of a tile's lines in each slice.
+void add_lengths(const FroxelGrid& grid, const Lines& lines, size_t lane, std::vector<double>& lengths) {
+    const Ray& line = lines.rays[lane];
+    const double per_metre = lines.per_metre[lane];
     for (size_t k = 0; k < lengths.size(); ++k) {
-        if (!(arrivals[k].amount > 0)) continue;
-        arrivals[k].point /= arrivals[k].amount;
-        arrivals[k].amount /= static_cast<float>(lengths[k]);
+        const double length = std::min<double>(grid.faces[k + 1] / per_metre, line.t_max) - grid.faces[k] / per_metre;
+        if (!(length > 0)) return;
+        lengths[k] += length;
     }
 }
 
-// One line of a froxel as a light near it sees it.
-struct NearLine {
-    vec3 start, direction;
-    float length, nearest, h; // nearest, h: where the line passes the light, and how near
-    float from, to;           // angles of its ends
-    float width2;             // of the light's 1/r²: at least that of the part of the froxel the line stands for
-};
-
-size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, int slice, const Light& light,
-                  NearLine* lines) {
-    const float low = grid.faces[static_cast<size_t>(slice)], high = grid.faces[static_cast<size_t>(slice) + 1];
-    const float* depth = tiles.depth.data() + grid.tile_index(at) * tiles.rays();
-    size_t count = 0;
-    for (size_t ray = 0; ray < tiles.rays() && count < 16; ++ray) {
-        if (!(depth[ray] > low)) continue;
-        const vec2 pixel = grid.pixel_of(vec2(at) + tiles.offsets[ray]);
-        const vec3 start = grid.point(pixel, low), step = grid.line_step(pixel), offset = light.position - start;
-        const float slant = glm::length(step);
-        const vec3 direction = step / slant;
-        lines[count++] = {start,
-                          direction,
-                          slant * (std::min(high, depth[ray]) - low),
-                          glm::dot(offset, direction),
-                          glm::length(glm::cross(offset, direction)),
-                          0,
-                          0,
-                          0};
+// A local light on the tiles' lines: of a spot all rays of each tile, as the edge of a narrow cone runs through
+// froxels; elsewhere one.
+void add_local(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
+               const ivec2* lanes, size_t ray, const uint32_t* indices, FroxelLit::Arrivals* slices) {
+    static thread_local std::vector<double> lengths[16];
+    const Light& shining = scene.snapshot.lights[light];
+    const bool all = shining.kind == LightKind::spot;
+    for (std::vector<double>& of_lane : lengths) of_lane.assign(static_cast<size_t>(grid.slices()), 0);
+    for (size_t i = all ? 0 : ray; i < (all ? tiles.rays() : ray + 1); ++i) {
+        const Lines lines = find_lines(grid, tiles, shining, static_cast<uint32_t>(light), lanes, i, indices);
+        for (size_t lane = 0; lane < 16; ++lane)
+            if (lines.active >> lane & 1) add_lengths(grid, lines, lane, lengths[lane]);
+        add_lines(scene, grid, light, lines, slices);
     }
-    const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
-    for (size_t i = 0; i < count; ++i) {
-        NearLine& line = lines[i];
-        line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), smallest_radius * smallest_radius);
-        line.h = std::sqrt(line.h * line.h + line.width2);
-        line.from = std::atan(-line.nearest / line.h), line.to = std::atan((line.length - line.nearest) / line.h);
-    }
-    return count;
-}
-
-// Factor on a light's intensity at a point, as arrival() of scene/light.h, with 1/r² of at most 1/width2.
-float falloff_at(const Light& light, vec3 point, float width2) {
-    Light unit = light;
-    unit.intensity = vec3(1);
-    const Arrival arriving = arrival(unit, point);
-    const float reach = std::max(light.radius, smallest_radius);
-    const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
-    return arriving.irradiance.x * squared / std::max(squared, width2);
-}
-}
-
-FroxelLit find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles,
-                          const ivec2* lanes, size_t ray, const uint32_t* indices) {
-    const std::vector<Light>& lights = scene.snapshot.lights;
-    FroxelLit lit;
-    lit.lights = lights.size(), lit.slices = static_cast<size_t>(grid.slices());
-    lit.arrivals.assign(16 * lit.lights * lit.slices, {});
-    static thread_local LitLines found;
-    static thread_local LightAlong along;
-    static thread_local std::vector<double> lengths;
-    for (size_t i = 0; i < lights.size(); ++i) {
-        find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices, found);
-        if (found.lines.empty()) continue;
-        const ShadowSlices near =
-            lights[i].shadows ? near_rays(scene.slices, found.rays, found.points) : ShadowSlices{};
-        lengths.assign(lit.slices, 0);
-        for (size_t k = 0; k < found.lines.size(); ++k) {
-            const auto [lane, per_metre] = found.lines[k];
-            FroxelArrival* arrivals = &lit.arrivals[(lane * lit.lights + i) * lit.slices];
-            find_light(lights[i], found.points[k], found.rays[k], &near, {}, along);
-            add_line(grid, found.rays[k], per_metre, along, arrivals, lengths);
-            if (k + 1 < found.lines.size() && found.lines[k + 1].lane == lane) continue;
-            settle(lengths, arrivals);
-            lengths.assign(lit.slices, 0);
+    // Sums of a tile's lines to what arrives on average.
+    for (size_t k = 0; k < lengths[0].size(); ++k)
+        for (size_t lane = 0; lane < 16; ++lane) {
+            float& amount = slices[k].amount[lane];
+            if (!(amount > 0)) continue;
+            for (int c = 0; c < 3; ++c) slices[k].point[c][lane] /= amount;
+            amount /= static_cast<float>(lengths[lane][k]);
         }
-    }
-    return lit;
+}
 }
 
-FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,
-                           int slice, size_t light_index, uint32_t index) {
-    const Light& light = scene.snapshot.lights[light_index];
-    NearLine lines[16];
-    const size_t count = near_lines(grid, tiles, at, slice, light, lines);
-    if (count == 0) return {};
-
-    // The points take the lines in turn and have equal shares of the angle that the light sees of a line.
-    Occluders::ShadowRays shadow;
-    alignas(64) float visible[16], weight[16];
-    vec3 points[16];
-    for (size_t i = 0; i < 16; ++i) {
-        const NearLine& line = lines[i % count];
-        const auto on_line = static_cast<float>((16 - i % count + count - 1) / count);
-        const uint32_t key = hash(index, static_cast<uint32_t>(light_index), static_cast<uint32_t>(i));
-        const float u = (static_cast<float>(i / count) + to_unit(key)) / on_line;
-        const float tangent = std::tan(line.from + u * (line.to - line.from));
-        points[i] = line.start + (line.nearest + line.h * tangent) * line.direction;
-        weight[i] = (line.to - line.from) * line.h * (1 + tangent * tangent) /
-                    (on_line * line.length * static_cast<float>(count));
-        weight[i] *= falloff_at(light, points[i], line.width2);
-
-        const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
-        shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;
-        shadow.dx[i] = ray.direction.x, shadow.dy[i] = ray.direction.y, shadow.dz[i] = ray.direction.z;
-        shadow.t_min[i] = 0, shadow.t_max[i] = ray.t_max;
-        shadow.active[i] = weight[i] > 0 ? -1 : 0, visible[i] = 1;
-    }
-    const Occluders* occluders = scene.snapshot.occluders.get();
-    if (light.shadows && occluders && !occluders->empty() && scene.settings.visibility != FroxelVisibility::off)
-        occluders->transmission(shadow, visible);
-
-    FroxelArrival result;
-    for (size_t i = 0; i < 16; ++i) {
-        const float amount = weight[i] > 0 ? weight[i] * visible[i] : 0;
-        result.amount += amount, result.point += amount * points[i];
-    }
-    if (result.amount > 0) result.point /= result.amount;
-    return result;
+void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, const ivec2* lanes,
+                     size_t ray, const uint32_t* indices, FroxelLit& lit) {
+    const std::vector<Light>& lights = scene.snapshot.lights;
+    const size_t slices = static_cast<size_t>(grid.slices());
+    const auto is_sun = [](const Light& light) { return light.kind == LightKind::sun; };
+    const bool suns = std::ranges::any_of(lights, is_sun), all_suns = std::ranges::all_of(lights, is_sun);
+    lit.depths.assign(suns ? lights.size() * slices : 0, {});
+    lit.arrivals.assign(all_suns ? 0 : lights.size() * slices, {});
+    for (size_t i = 0; i < lights.size(); ++i)
+        if (is_sun(lights[i]))
+            add_sun(scene, grid, i, find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices),
+                    lit.depths.data() + i * slices);
+        else
+            add_local(scene, grid, tiles, i, lanes, ray, indices, lit.arrivals.data() + i * slices);
 }
 }

@@ -28,17 +28,25 @@ struct Fill {
     int samples() const { return scene.settings.shadow_rays; }
 };
 
-// 4×4 tiles of one slice. Lanes beyond the grid's edge are not there.
+// 4×4 tiles. Lanes beyond the grid's edge are not there.
 struct Lanes {
     ivec2 at[16];
     size_t tile[16];
     bool there[16];
+    alignas(64) float farthest[16]; // surface that any ray of the tile meets; before the first slice where not there
+    int last = 0;                   // slice that any lane sees something of, and 1
+};
+
+// The rays of a sample's first turn: pixels, and the surfaces they meet.
+struct FirstRays {
+    size_t ray;
+    alignas(64) float x[16], y[16], depth[16];
 };
 
 // Where the lanes look: a ray of the tile that still sees this slice, and a depth.
 struct Looks {
     alignas(64) float x[16], y[16], z[16], active[16], lit[16], low[16], high[16];
-    int ray[16];
+    alignas(64) float first[16]; // 1 where the ray is the one whose turn it is
 };
 
 // Numbers that spread over 4×4 neighbouring tiles, samples and frames; other ones for each slice and use.
@@ -56,38 +64,66 @@ size_t first_ray(const Fill& fill, int sample) {
     return static_cast<size_t>(fill.pass.frame + sample) % fill.tiles.rays();
 }
 
-Looks look(const Fill& fill, const Lanes& lanes, int slice, int sample) {
-    const FroxelTiles& tiles = fill.tiles;
-    const size_t rays = tiles.rays(), k = static_cast<size_t>(slice);
-    const float near = fill.grid.faces[k], far = fill.grid.faces[k + 1];
-    const int samples = fill.samples(), frame = fill.pass.frame;
-    Looks looks{};
+FirstRays first_rays(const Fill& fill, const Lanes& lanes, int sample) {
+    FirstRays first;
+    first.ray = first_ray(fill, sample);
     for (size_t i = 0; i < 16; ++i) {
-        looks.low[i] = near, looks.high[i] = far, looks.z[i] = 0.5f * (near + far);
-        if (!lanes.there[i] || is_hidden(fill.grid, tiles, lanes.tile[i], slice)) continue;
-        float u = fill.exact() ? 0.5f : halton(frame);
-        const size_t first = first_ray(fill, sample);
-        if (samples > 1 && !fill.exact()) {
-            const uint32_t index = spread_index(fill, lanes.at[i], sample);
-            u = (static_cast<float>(sample) + to_unit(hash(index, k))) / static_cast<float>(samples);
-        }
-        // The first ray in turn that is not yet stopped at that depth; or the deepest, just before it is.
-        const float* depth = tiles.depth.data() + lanes.tile[i] * rays;
-        float z = near + u * (far - near);
-        size_t ray = static_cast<size_t>(tiles.deepest[lanes.tile[i]]);
-        if (fill.exact() && depth[first] > near) ray = first;
-        if (depth[ray] <= z) z = 0.5f * (near + depth[ray]);
-        for (size_t j = 0; j < rays && ray != first; ++j)
-            if (const size_t next = (first + j) % rays; depth[next] > z) {
-                ray = next;
-                break;
-            }
-        const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + tiles.offsets[ray]);
-        looks.x[i] = pixel.x, looks.y[i] = pixel.y, looks.z[i] = z, looks.ray[i] = static_cast<int>(ray);
-        looks.high[i] = std::min(far, depth[ray]);
-        const size_t froxel = lanes.tile[i] * static_cast<size_t>(fill.grid.slices()) + k;
-        looks.active[i] = 1, looks.lit[i] = fill.pass.stale && fill.pass.stale[froxel] ? 0.0f : 1.0f;
+        const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + fill.tiles.offsets[first.ray]);
+        first.x[i] = pixel.x, first.y[i] = pixel.y;
+        first.depth[i] = lanes.there[i] ? fill.tiles.depth[lanes.tile[i] * fill.tiles.rays() + first.ray] : -infinity;
     }
+    return first;
+}
+
+// Lanes whose light is wanted.
+void set_lit(const Fill& fill, const Lanes& lanes, int slice, Looks& looks) {
+    if (!fill.pass.stale) return store(Floats(1.0f), looks.lit);
+    const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
+    for (size_t i = 0; i < 16; ++i) looks.lit[i] = fill.pass.stale[lanes.tile[i] * slices + k] ? 0.0f : 1.0f;
+}
+
+// One lane: the first ray in turn that is not yet stopped at that depth; or the deepest, just before it is.
+void look_along(const Fill& fill, const Lanes& lanes, int slice, int sample, size_t i, Looks& looks) {
+    const FroxelTiles& tiles = fill.tiles;
+    const size_t rays = tiles.rays(), k = static_cast<size_t>(slice), first = first_ray(fill, sample);
+    const float near = fill.grid.faces[k], far = fill.grid.faces[k + 1];
+    const int samples = fill.samples();
+    float u = fill.exact() ? 0.5f : halton(fill.pass.frame);
+    if (samples > 1 && !fill.exact()) {
+        const uint32_t index = spread_index(fill, lanes.at[i], sample);
+        u = (static_cast<float>(sample) + to_unit(hash(index, k))) / static_cast<float>(samples);
+    }
+    const float* depth = tiles.depth.data() + lanes.tile[i] * rays;
+    float z = near + u * (far - near);
+    size_t ray = static_cast<size_t>(tiles.deepest[lanes.tile[i]]);
+    if (fill.exact() && depth[first] > near) ray = first;
+    if (depth[ray] <= z) z = 0.5f * (near + depth[ray]);
+    for (size_t j = 0; j < rays && ray != first; ++j)
+        if (const size_t next = (first + j) % rays; depth[next] > z) {
+            ray = next;
+            break;
+        }
+    const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + tiles.offsets[ray]);
+    looks.x[i] = pixel.x, looks.y[i] = pixel.y, looks.z[i] = z;
+    looks.high[i] = std::min(far, depth[ray]), looks.first[i] = ray == first ? 1.0f : 0.0f;
+}
+
+Looks look(const Fill& fill, const Lanes& lanes, const FirstRays& first, int slice, int sample) {
+    const float near = fill.grid.faces[static_cast<size_t>(slice)];
+    const float far = fill.grid.faces[static_cast<size_t>(slice) + 1];
+    Looks looks;
+    const Mask16 active = load(lanes.farthest) > near;
+    const Floats depth = load(first.depth), middle = 0.5f * (near + far);
+    const Mask16 seen = active & (depth > near);
+    store(select(active, 1.0f, 0.0f), looks.active), store(Floats(near), looks.low);
+    store(select(seen, 1.0f, 0.0f), looks.first), store(min(Floats(far), depth), looks.high);
+    store(load(first.x), looks.x), store(load(first.y), looks.y);
+    store(select(seen & (depth <= middle), (near + depth) * 0.5f, middle), looks.z);
+    set_lit(fill, lanes, slice, looks);
+    if (fill.exact() && !any(active & !seen)) return looks;
+    for (size_t i = 0; i < 16; ++i)
+        if (looks.active[i] > 0 && !(fill.exact() && looks.first[i] > 0))
+            look_along(fill, lanes, slice, sample, i, looks);
     return looks;
 }
 
@@ -105,7 +141,7 @@ FroxelLanes froxel_lanes(const FroxelGrid& grid, const Looks& looks) {
     const Lines lines = lines_of(grid, looks);
     const Floats slant = sqrt(dot(lines.step, lines.step)), z = load(looks.z), low = load(looks.low);
     FroxelLanes lanes;
-    lanes.point = fused(lines.step, z, lines.origin);
+    lanes.point = fused(lines.step, z, lines.origin), lanes.step = lines.step, lanes.z = z;
     lanes.start = fused(lines.step, low, lines.origin);
     lanes.toward = lines.step * (1.0f / slant);
     lanes.length = slant * max(load(looks.high) - low, 0.0f);

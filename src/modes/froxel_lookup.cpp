@@ -22,31 +22,49 @@ struct FaceSums {
 
 FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
     const FroxelGrid& grid = picture.grid;
-    const Ints slices = slices_of(grid, z);
+    const SliceLanes slices = slices_around(grid, z);
     FaceSums result;
-    const Floats before = gather(grid.faces.data(), slices);
-    result.behind = gather(grid.faces.data() + 1, slices);
-    result.share = max(min((z - before) / (result.behind - before), 1.0f), 0.0f);
+    result.behind = slices.behind;
+    result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
 
     // Both faces of a slice lie side by side in memory: eight floats per tile.
     alignas(64) int32_t slice[16];
-    alignas(64) float values[8][16];
-    store(slices, slice);
+    alignas(64) float values[2][64]; // [face][4 · lane + channel]
+    store(slices.slice, slice);
     const TapTag tag;
+    const float* columns[16]; // of the tiles around, where those are the same for all rays
+    for (int t = 0; t < places.count && places.together; ++t)
+        columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
+    for (int t = 0; t < places.count && places.together; ++t)
+        for (size_t lane = 0; lane < 16; lane += 3) __builtin_prefetch(columns[t] + 4 * slice[lane]);
     for (size_t lane = 0; lane < 16; ++lane) {
         hn::Vec<TapTag> total[tap_parts];
         for (size_t p = 0; p < tap_parts; ++p) total[p] = hn::Zero(tag);
         for (int t = 0; t < places.count; ++t) {
-            const float* from = sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
+            const float* from = places.together
+                                    ? columns[t] + 4 * slice[lane]
+                                    : sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
             const auto weight = hn::Set(tag, places.weights[t][lane]);
             for (size_t p = 0; p < tap_parts; ++p)
                 total[p] = hn::MulAdd(weight, hn::LoadU(tag, from + p * tap_lanes), total[p]);
         }
-        alignas(64) float of_lane[8];
-        for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, of_lane + p * tap_lanes);
-        for (int c = 0; c < 8; ++c) values[c][lane] = of_lane[c];
+#if HWY_MAX_BYTES >= 32
+        const hn::CappedTag<float, 4> face_tag;
+        hn::Store(hn::LowerHalf(total[0]), face_tag, values[0] + 4 * lane);
+        hn::Store(hn::UpperHalf(face_tag, total[0]), face_tag, values[1] + 4 * lane);
+#else
+        alignas(32) float both[8];
+        for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, both + p * tap_lanes);
+        std::copy_n(both, 4, values[0] + 4 * lane), std::copy_n(both + 4, 4, values[1] + 4 * lane);
+#endif
     }
-    for (int c = 0; c < 4; ++c) result.near[c] = load(values[c]), result.far[c] = load(values[4 + c]);
+    for (size_t i = 0; i < parts; ++i) {
+        const auto load_four = [&](const float* from, Floats(&to)[4]) HWY_ATTR {
+            hn::LoadInterleaved4(FloatTag(), from + 4 * i * lane_step, to[0].part[i], to[1].part[i], to[2].part[i],
+                                 to[3].part[i]);
+        };
+        load_four(values[0], result.near), load_four(values[1], result.far);
+    }
     return result;
 }
 
@@ -115,10 +133,10 @@ void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::sp
     store(exp(start.depth - max(end.depth, start.depth)), through);
     store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end), valid);
     for (size_t i = 0; i < batch.rays.size(); ++i) {
-        results[i] = Scatter{.validity = 0};
-        if (!(seen[i] > 0)) continue;
-        results[i].radiance = {rgb[0][i], rgb[1][i], rgb[2][i]};
-        results[i].transmittance = through[i], results[i].validity = valid[i], results[i].steps = places.count;
+        if (seen[i] > 0)
+            results[i] = {{rgb[0][i], rgb[1][i], rgb[2][i]}, through[i], valid[i], places.count, vec3(0)};
+        else
+            results[i] = Scatter{.validity = 0};
     }
 
     for (size_t part = 0; part < parts.size(); ++part) {

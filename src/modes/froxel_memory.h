@@ -1,6 +1,7 @@
 // The light of froxels as it was in the last frame, found again from this frame's.
 #pragma once
-#include "modes/froxel_fill.h"
+#include "modes/froxel_integrate.h"
+#include "modes/froxel_still.h"
 
 #include <span>
 
@@ -10,21 +11,31 @@ namespace tyndall {
 struct FroxelMemory {
     FroxelGrid grid;
     FroxelLight light;
+    FroxelStill still;
 };
 
-FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light);
+// Frees light from what is not known.
+void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light);
+FroxelMemory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStill still = {});
 
 // The light and extinction remembered at the centre of each froxel of `grid`; zeros where the last frame did not see
 // it.
 FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles);
 
 // 1 for each froxel that need not be lit anew in this frame: all remembered ones but a quarter, another one each frame,
-// and but those near a local light, whose peak their neighbours do not show.
+// and but those near a local light, whose peak their neighbours do not show. In `still` fog also those without fog.
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
-                                   int frame);
+                                   int frame, bool still = false);
 
-// Blends this frame's light and extinction with what is remembered, weighted `weight`, after clamping it to what the
-// froxels around show in this frame. Stale froxels (may be null) are what they were, within those bounds.
-void blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                   const uint8_t* stale, float weight, FroxelLight& light);
+struct BlendPass {
+    float weight = 0;               // of what is remembered
+    float view_depth = 1;           // of the sums
+    const uint8_t* stale = nullptr; // per froxel, 1 = it is what it was
+    bool still = false;             // its extinction too; else that is new everywhere
+};
+
+// Blends this frame's light and extinction with what is remembered, after clamping it to what the froxels around show
+// in this frame. What the next frame is to remember goes to `result`.
+FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
+                         const FroxelLight& light, const BlendPass& pass, FroxelLight& result);
 }

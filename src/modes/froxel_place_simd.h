@@ -19,6 +19,7 @@ struct Places {
     Floats tile_slant;                 // mean of the tiles' lines
     Mask16 seen;                       // by the grid's camera
     int count = 4;                     // of tiles around a ray
+    bool together = false;             // all rays lie between the same tiles
     alignas(64) int32_t tiles[16][16]; // [tile][ray]
     alignas(64) float weights[16][16]; // sum 1
     Floats kept;                       // weight of the tiles that see as far as the ray
@@ -38,6 +39,30 @@ HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
     }
 }
 
+// The slices that hold planar depths, and their faces. Neighbouring rays mostly end within a few slices.
+struct SliceLanes {
+    Ints slice;
+    Floats before, behind;
+};
+HWY_INLINE SliceLanes slices_around(const FroxelGrid& grid, const Floats& z) {
+    constexpr int few = 6;
+    auto least = z.part[0];
+    for (size_t i = 1; i < parts; ++i) least = hn::Min(least, z.part[i]);
+    const int first = slice_of(grid, hn::GetLane(hn::MinOfLanes(FloatTag(), least))), last = grid.slices() - 1;
+    const float* faces = grid.faces.data() + first;
+    SliceLanes found{first, faces[0], faces[1]};
+    for (int k = 1; first + k <= last; ++k) {
+        const Mask16 more = z >= faces[k];
+        if (!any(more)) return found;
+        if (k == few) break;
+        found.slice = found.slice + truncate(select(more, 1.0f, 0.0f));
+        found.before = select(more, faces[k], found.before), found.behind = select(more, faces[k + 1], found.behind);
+    }
+    if (first + few > last) return found;
+    const Ints slice = slices_of(grid, z);
+    return {slice, gather(grid.faces.data(), slice), gather(grid.faces.data() + 1, slice)};
+}
+
 // First tile and weights along one axis: 2 of a linear look-up, 4 of a cubic B-spline.
 struct Axis {
     Ints first;
@@ -55,14 +80,27 @@ HWY_INLINE Axis axis_of(const Floats& place, int size, bool cubic) {
              f2 * f * sixth}};
 }
 
+HWY_INLINE bool all_same(const Ints& index) {
+    const Floats difference = abs(to_floats(index ^ Ints(hn::GetLane(index.part[0]))));
+    return !any(difference > 0.0f);
+}
+
+// As gather(), which takes its time where all lanes want the same.
+HWY_INLINE Floats value_at(const float* values, const Ints& index) {
+    return all_same(index) ? Floats(values[hn::GetLane(index.part[0])]) : gather(values, index);
+}
+
 // Behind what a tile sees its sums mean nothing; only where no tile sees far enough are they taken after all.
 void distrust_blind(const FroxelTiles& tiles, const Mask16& blind, Places& places) {
     constexpr float least = 1e-5f;
     Floats total = 0.0f, kept = 0.0f, weights[16];
     for (int t = 0; t < places.count; ++t) {
         const Ints tile = load(places.tiles[t]);
-        const Floats behind = max(places.end - gather(tiles.trusted.data(), tile), 0.0f);
-        const Floats trusted = max(1.0f - behind * gather(tiles.distrust.data(), tile), 0.0f);
+        const size_t first = static_cast<size_t>(places.tiles[t][0]);
+        const Floats far = places.together ? Floats(tiles.trusted[first]) : gather(tiles.trusted.data(), tile);
+        const Floats distrust = places.together ? Floats(tiles.distrust[first]) : gather(tiles.distrust.data(), tile);
+        const Floats behind = max(places.end - far, 0.0f);
+        const Floats trusted = max(1.0f - behind * distrust, 0.0f);
         const Floats weight = load(places.weights[t]);
         kept = fused(weight, trusted, kept);
         weights[t] = weight * max(trusted, least);
@@ -74,10 +112,19 @@ void distrust_blind(const FroxelTiles& tiles, const Mask16& blind, Places& place
     places.kept = select(blind, kept, 1.0f);
 }
 
-// Pixels of the rays, in tiles.
-void tile_places(const FroxelPicture& picture, const RayBatch& batch, const Places& places, float (&x)[16],
-                 float (&y)[16]) {
-    alignas(64) float start[16], slant[16];
+// Pixels of the rays.
+struct Pixels {
+    Floats x, y;
+};
+HWY_INLINE Pixels pixels_of(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
+    Pixels at;
+    if (batch.rays.size() == 16 && batch.positions.size() == 16) {
+        const auto* from = reinterpret_cast<const float*>(batch.positions.data());
+        for (size_t i = 0; i < parts; ++i)
+            hn::LoadInterleaved2(FloatTag(), from + 2 * i * lane_step, at.x.part[i], at.y.part[i]);
+        return at;
+    }
+    alignas(64) float x[16], y[16], start[16], slant[16];
     store(places.start, start), store(places.slant, slant);
     for (size_t i = 0; i < 16; ++i) {
         const size_t ray = std::min(i, batch.rays.size() - 1);
@@ -87,29 +134,36 @@ void tile_places(const FroxelPicture& picture, const RayBatch& batch, const Plac
         else
             pixel = vec2(project(picture.grid,
                                  batch.rays[ray].at(std::max(picture.grid.faces.back() - start[i], 1.0f) * slant[i])));
-        const vec2 at = picture.grid.tile_of(pixel);
-        x[i] = at.x, y[i] = at.y;
+        x[i] = pixel.x, y[i] = pixel.y;
     }
+    return {load(x), load(y)};
+}
+
+void jitter_places(const RayBatch& batch, Floats& x, Floats& y) {
+    alignas(64) float at_x[16], at_y[16];
+    store(x, at_x), store(y, at_y);
+    for (size_t i = 0; i < 16; ++i) {
+        at_x[i] += (i < batch.jitter.size() ? batch.jitter[i] : 0.5f) - 0.5f;
+        at_y[i] += to_unit(hash(i < batch.ids.size() ? batch.ids[i] : 0u, 0x66726fu)) - 0.5f;
+    }
+    x = load(at_x), y = load(at_y);
 }
 
 void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
     const FroxelGrid& grid = picture.grid;
-    alignas(64) float at_x[16], at_y[16];
-    tile_places(picture, batch, places, at_x, at_y);
-    const auto whole = [&](const float(&at)[16], int size)
-                           HWY_ATTR { return truncate(max(min(load(at) + 0.5f, static_cast<float>(size - 1)), 0.0f)); };
-    const Mask16 finite = abs(load(at_x) + load(at_y)) < infinity;
-    places.seen = places.seen & finite;
-    store(zero_unless(places.seen, load(at_x)), at_x), store(zero_unless(places.seen, load(at_y)), at_y);
-    places.nearest =
-        gather(picture.tiles.nearest.data(), whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x));
-    for (size_t i = 0; i < 16 && picture.lookup == FroxelLookup::jittered; ++i) {
-        at_x[i] += (i < batch.jitter.size() ? batch.jitter[i] : 0.5f) - 0.5f;
-        at_y[i] += to_unit(hash(i < batch.ids.size() ? batch.ids[i] : 0u, 0x66726fu)) - 0.5f;
-    }
+    const Pixels pixels = pixels_of(picture, batch, places);
+    const float per_tile = 1 / static_cast<float>(grid.tile);
+    Floats at_x = fused(pixels.x, per_tile, 0.5f), at_y = fused(pixels.y, per_tile, 0.5f); // as tile_of()
+    places.seen = places.seen & (abs(at_x + at_y) < infinity);
+    at_x = zero_unless(places.seen, at_x), at_y = zero_unless(places.seen, at_y);
+    const auto whole = [](const Floats& at, int size)
+                           HWY_ATTR { return truncate(max(min(at + 0.5f, static_cast<float>(size - 1)), 0.0f)); };
+    const Ints own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
+    places.nearest = value_at(picture.tiles.nearest.data(), own);
+    if (picture.lookup == FroxelLookup::jittered) jitter_places(batch, at_x, at_y);
 
     const bool cubic = picture.lookup == FroxelLookup::tricubic;
-    const Axis x = axis_of(load(at_x), grid.size.x, cubic), y = axis_of(load(at_y), grid.size.y, cubic);
+    const Axis x = axis_of(at_x, grid.size.x, cubic), y = axis_of(at_y, grid.size.y, cubic);
     const int side = cubic ? 4 : 2;
     places.kept = 1.0f;
     places.count = side * side, places.tile_slant = 0.0f;
@@ -121,20 +175,40 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
         }
     // The tile at or before the pixel knows whether all around it see far enough.
     const Ints cell = (y.first + Ints(cubic)) * grid.size.x + (x.first + Ints(cubic));
-    const Mask16 blind = places.end > gather(picture.tiles.trusted_around.data(), cell);
+    places.together = all_same(cell);
+    const Mask16 blind = places.end > value_at(picture.tiles.trusted_around.data(), cell);
     if (any(blind)) distrust_blind(picture.tiles, blind, places);
-    for (int t = 0; t < places.count; ++t)
-        places.tile_slant =
-            fused(load(places.weights[t]), gather(grid.slants.data(), load(places.tiles[t])), places.tile_slant);
+    for (int t = 0; t < places.count; ++t) {
+        const Floats slant = places.together ? Floats(grid.slants[static_cast<size_t>(places.tiles[t][0])])
+                                             : gather(grid.slants.data(), load(places.tiles[t]));
+        places.tile_slant = fused(load(places.weights[t]), slant, places.tile_slant);
+    }
 }
 
-void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
-    const Camera& camera = picture.grid.camera;
-    alignas(64) float along[16], start[16], length[16];
+bool from_the_eye(const Camera& camera, const RayBatch& batch) {
+    if (camera.ortho_height > 0) return false;
+    float off = 0;
+    for (const Ray& ray : batch.rays)
+        off += std::abs(ray.origin.x - camera.position.x) + std::abs(ray.origin.y - camera.position.y) +
+               std::abs(ray.origin.z - camera.position.z);
+    return off == 0;
+}
+
+inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
+    const FroxelGrid& grid = picture.grid;
+    alignas(64) float along[16], start[16] = {}, length[16];
+    if (batch.rays.size() == 16 && batch.positions.size() == 16 && from_the_eye(grid.camera, batch)) {
+        const Pixels at = pixels_of(picture, batch, places);
+        const Vec3s step = fused(splat(grid.step_x), at.x, fused(splat(grid.step_y), at.y, splat(grid.step)));
+        for (size_t i = 0; i < 16; ++i) length[i] = batch.rays[i].t_max;
+        places.slant = sqrt(dot(step, step)), places.seen = Floats(0.0f) < places.slant, places.start = 0.0f;
+        places.end = min(load(length) / places.slant, std::numeric_limits<float>::max());
+        return find_tiles(picture, batch, places);
+    }
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
-        along[i] = glm::dot(ray.direction, camera.forward);
-        start[i] = std::max(planar_depth(camera, ray, 0), 0.0f), length[i] = ray.t_max;
+        along[i] = glm::dot(ray.direction, grid.camera.forward);
+        start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f), length[i] = ray.t_max;
     }
     places.seen = load(along) > 1e-6f;
     const Floats forward = select(places.seen, load(along), 1.0f);

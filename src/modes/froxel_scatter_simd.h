@@ -8,6 +8,7 @@
 
 #include "modes/froxel_lit.h"
 #include "modes/froxel_look_simd.h"
+#include "trace/light_grid_simd.h"
 #include "volume/phase_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,42 +38,73 @@ Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes
     return lanes.active & (distance * distance < size2 * (near * near));
 }
 
+// Share of a light that passes the surfaces on the way to the lanes that shadow rays answer for.
+Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Arriving& plain,
+                    const Mask16& by_rays) {
+    const Light& light = fill.scene.snapshot.lights[index];
+    const Occluders* occluders = fill.scene.snapshot.occluders.get();
+    if (!light.shadows || !occluders || occluders->empty()) return 1.0f;
+    if (fill.scene.settings.visibility == FroxelVisibility::off) return 1.0f;
+    Sample2 places[16];
+    const bool soft = is_soft(light) && fill.spreads();
+    for (size_t i = 0; i < 16 && soft; ++i) {
+        const ivec2 at = job.where.at[i];
+        const auto block = static_cast<uint32_t>((at.y >> 2) * fill.grid.size.x + (at.x >> 2));
+        const uint32_t key = hash(block, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
+        places[i] = sample2(spread_index(fill, at, job.sample), key);
+    }
+    return visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr);
+}
+
+// What arrives where a froxel is large beside its distance from the light.
+void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneArrivals& arrived) {
+    alignas(64) float is_near[16], amount[16], point[3][16];
+    store(select(near, 1.0f, 0.0f), is_near), store(arrived.amount, amount);
+    store(arrived.point.x, point[0]), store(arrived.point.y, point[1]), store(arrived.point.z, point[2]);
+    for (size_t i = 0; i < 16; ++i) {
+        if (!(is_near[i] > 0)) continue;
+        const FroxelArrival one = near_arrival(fill.scene, fill.grid, fill.tiles, job.where.at[i], job.slice, index,
+                                               spread_index(fill, job.where.at[i], job.sample));
+        amount[i] = one.amount;
+        for (int c = 0; c < 3 && one.amount > 0; ++c) point[c][i] = one.point[c];
+    }
+    arrived = {{load(point[0]), load(point[1]), load(point[2])}, load(amount)};
+}
+
 LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
     const Arriving plain = arriving(light, fill.scene.cones[index], lanes.point);
-    alignas(64) float v[4][16], wanted[16], near[16], traced[16] = {}, visible[16];
-    store(lanes.point.x, v[0]), store(lanes.point.y, v[1]), store(lanes.point.z, v[2]), store(plain.amount, v[3]);
-    store(select(lit, 1.0f, 0.0f), wanted);
-    store(select(near_lanes(fill, light, lanes, plain.distance), 1.0f, 0.0f), near);
-    const size_t ray = first_ray(fill, job.sample);
-    for (size_t i = 0; i < 16; ++i) {
-        if (!(wanted[i] > 0)) continue;
-        const bool sliced = job.exact && job.looks.ray[i] == static_cast<int>(ray) && !(near[i] > 0);
-        traced[i] = !sliced && !(near[i] > 0) && v[3][i] > 0;
-        if (!sliced && !(near[i] > 0)) continue;
-        const FroxelArrival one = sliced ? job.exact->at(i, index, job.slice)
-                                         : near_arrival(fill.scene, fill.grid, fill.tiles, job.where.at[i], job.slice,
-                                                        index, spread_index(fill, job.where.at[i], job.sample));
-        v[3][i] = one.amount;
-        for (int c = 0; c < 3 && one.amount > 0; ++c) v[c][i] = one.point[c];
-    }
-    const Mask16 by_rays = load(traced) > 0.0f;
-    const Occluders* occluders = fill.scene.snapshot.occluders.get();
-    Floats amount = zero_unless(lit, load(v[3]));
-    if (light.shadows && occluders && !occluders->empty() && any(by_rays) &&
-        fill.scene.settings.visibility != FroxelVisibility::off) {
-        Sample2 places[16];
-        const bool soft = is_soft(light) && fill.spreads();
-        for (size_t i = 0; i < 16 && soft; ++i) {
-            const ivec2 at = job.where.at[i];
-            const auto block = static_cast<uint32_t>((at.y >> 2) * fill.grid.size.x + (at.x >> 2));
-            const uint32_t key = hash(block, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
-            places[i] = sample2(spread_index(fill, at, job.sample), key);
+    LaneArrivals arrived{lanes.point, zero_unless(lit, plain.amount)};
+    Mask16 by_rays = arrived.amount > 0.0f;
+    const Mask16 near = lit & near_lanes(fill, light, lanes, plain.distance);
+    by_rays = by_rays & !near;
+    if (job.exact) {
+        const Mask16 sliced = lit & !near & (load(job.looks.first) > 0.0f);
+        const size_t at = index * static_cast<size_t>(fill.grid.slices()) + static_cast<size_t>(job.slice);
+        by_rays = by_rays & !sliced;
+        if (light.kind == LightKind::sun) {
+            const FroxelLit::Depths& depths = job.exact->depths[at];
+            const Floats length = zero_unless(sliced, load(depths.length));
+            const Mask16 some = length > 0.0f;
+            const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
+            const Floats z = select(some, load(depths.first) / max(length, 1e-30f), lanes.z);
+            arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
+            arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
+        } else {
+            const FroxelLit::Arrivals& exact = job.exact->arrivals[at];
+            const Floats amount = load(exact.amount);
+            const Mask16 some = sliced & (amount > 0.0f);
+            arrived.amount = select(sliced, amount, arrived.amount);
+            arrived.point = {select(some, load(exact.point[0]), arrived.point.x),
+                             select(some, load(exact.point[1]), arrived.point.y),
+                             select(some, load(exact.point[2]), arrived.point.z)};
         }
-        store(visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr), visible);
-        amount = select(by_rays, amount * load(visible), amount);
     }
-    return {{load(v[0]), load(v[1]), load(v[2])}, amount};
+    if (any(near)) put_near(fill, index, job, near, arrived);
+    if (!any(by_rays)) return arrived;
+    const Floats share = traced_share(fill, index, lanes, job, plain, by_rays);
+    arrived.amount = select(by_rays, arrived.amount * share, arrived.amount);
+    return arrived;
 }
 
 // Light of one kind scattered towards the eye, per metre.
@@ -93,6 +125,7 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
         const Floats weight = load(job.extinction[m]) * phase_value(optics.phase, cosine);
         scattering = fused(splat(optics.albedo), weight, scattering);
     }
+    if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], arrived.point, reached);
     const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arrived.point, reached));
     const Floats amount = zero_unless(reached, arrived.amount * dimmed);
     return scattering * amount * splat(light.intensity * light.volume_scale);

@@ -115,12 +115,15 @@ FroxelTiles make_froxel_tiles(const FroxelGrid& grid, const Snapshot& snapshot) 
     tiles.depth.assign(grid.tiles() * rays, infinity);
     if (snapshot.occluders && !snapshot.occluders->empty())
         parallel_for(grid.size.y, [&](int64_t y) { trace_row(grid, *snapshot.occluders, static_cast<int>(y), tiles); });
-    for (size_t tile = 0; tile < grid.tiles(); ++tile) {
-        const auto first = tiles.depth.begin() + static_cast<std::ptrdiff_t>(tile * rays);
-        const auto [low, high] = std::minmax_element(first, first + static_cast<std::ptrdiff_t>(rays));
-        tiles.nearest.push_back(*low), tiles.farthest.push_back(*high);
-        tiles.deepest.push_back(static_cast<int32_t>(high - first));
-    }
+    tiles.nearest.resize(grid.tiles()), tiles.farthest.resize(grid.tiles()), tiles.deepest.resize(grid.tiles());
+    parallel_ranges(static_cast<int64_t>(grid.tiles()), 1024, [&](int64_t begin, int64_t end) {
+        for (size_t tile = static_cast<size_t>(begin); tile < static_cast<size_t>(end); ++tile) {
+            const float* first = tiles.depth.data() + tile * rays;
+            const auto [low, high] = std::minmax_element(first, first + rays);
+            tiles.nearest[tile] = *low, tiles.farthest[tile] = *high;
+            tiles.deepest[tile] = static_cast<int32_t>(high - first);
+        }
+    });
     return tiles;
 }
 
@@ -134,13 +137,15 @@ void set_trust(const FroxelGrid& grid, FroxelTiles& tiles) {
         tiles.trusted[tile] = far + 0.5f * slack;
         tiles.distrust[tile] = std::isinf(far) ? 0.0f : 1 / slack;
     }
-    for (int y = 0; y < grid.size.y; ++y)
+    parallel_for(grid.size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
         for (int x = 0; x < grid.size.x; ++x)
             for (int i = 0; i < 16; ++i) {
                 const ivec2 other = glm::clamp(ivec2(x + i % 4 - 1, y + i / 4 - 1), ivec2(0), grid.size - 1);
                 float& least = tiles.trusted_around[grid.tile_index({x, y})];
                 least = std::min(least, tiles.trusted[grid.tile_index(other)]);
             }
+    });
 }
 
 FogDepths fog_depths(const FroxelGrid& grid, const FroxelTiles& tiles, const Snapshot& snapshot) {

@@ -84,7 +84,7 @@ LightDepthGrid kept_grid(const Snapshot& snapshot, std::span<const Medium* const
 }
 
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
-                            const View* view) {
+                            const View* view, bool filled) {
     if (method == LightTransmittance::froxel && !view) method = LightTransmittance::grid;
     LightDepth depth;
     depth.method = method;
@@ -99,7 +99,10 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
         depth.marched = std::move(bricks);
         return depth;
     }
-    depth.grid = kept_grid(snapshot, bricks, light, resolution);
+    if (filled || method != LightTransmittance::grid)
+        depth.grid = kept_grid(snapshot, bricks, light, resolution);
+    else
+        depth.grid = fitted_grid(bricks, light, resolution);
     if (method == LightTransmittance::average) {
         depth.method = LightTransmittance::grid;
         const float mean = mean_depth(depth, snapshot);

@@ -68,9 +68,10 @@ struct LightDepth {
 };
 
 // `resolution`: cells across the longer side of the fog as the light sees it; of froxels, across the longer side of the
-// picture and in depth. Froxels need a view, and are a grid without. Built in parallel.
+// picture and in depth. Froxels need a view, and are a grid without. Built in parallel. Not `filled`: a grid is left to
+// GridColumns (light_grid.h).
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
-                            const View* view = nullptr);
+                            const View* view = nullptr, bool filled = true);
 
 // Optical depth from 16 points to the light (x,y,z of 16 each); 0 in lanes with active == 0. Kernels use
 // light_depth16() of trace/light_depth_simd.h.

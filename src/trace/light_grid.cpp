@@ -32,17 +32,19 @@ Block block_of(const BrickPool& pool, vec3 low, vec3 high) {
     return block;
 }
 
-std::vector<Block> blocks_of(std::span<const Medium* const> media) {
+// Of each brick, or of `runs` of them along z: what lies along a line they take up alike.
+std::vector<Block> blocks_of(std::span<const Medium* const> media, bool runs) {
     std::vector<Block> blocks;
     for (const Medium* medium : media) {
         const BrickPool& pool = *medium->bricks;
-        size_t cell = 0;
+        const int32_t* row = pool.index.data();
         for (int x = 0; x < pool.size.x; ++x)
-            for (int y = 0; y < pool.size.y; ++y)
-                for (int z = 0; z < pool.size.z; ++z) {
-                    if (pool.index[cell++] == 0) continue;
+            for (int y = 0; y < pool.size.y; ++y, row += pool.size.z)
+                for (int z = 0, end; z < pool.size.z; z = end) {
+                    for (end = z + 1; runs && row[z] != 0 && end < pool.size.z && row[end] != 0;) ++end;
+                    if (row[z] == 0) continue;
                     const vec3 low = glm::max(8.0f * vec3(x, y, z), pool.local_bounds.low);
-                    const vec3 high = glm::min(8.0f * vec3(x + 1, y + 1, z + 1), pool.local_bounds.high);
+                    const vec3 high = glm::min(8.0f * vec3(x + 1, y + 1, end), pool.local_bounds.high);
                     if (low.x < high.x && low.y < high.y && low.z < high.z) blocks.push_back(block_of(pool, low, high));
                 }
     }
@@ -209,7 +211,7 @@ void fit_octahedron(std::span<const Block> blocks, const Light& light, float cel
 
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution) {
     LightDepthGrid grid;
-    const std::vector<Block> blocks = blocks_of(media);
+    const std::vector<Block> blocks = blocks_of(media, light.kind == LightKind::sun);
     if (blocks.empty()) return grid;
     Box fog;
     for (const Block& block : blocks) fog.grow(block.center);

@@ -83,6 +83,24 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(fill_columns);
+GridColumns::GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid)
+    : media_(std::move(media)), grid_(grid),
+      states_(std::make_unique<std::atomic<uint8_t>[]>(static_cast<size_t>(packets_across()) * grid.size.y)) {
+    grid.depth.resize(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z);
+}
+
+void GridColumns::fill(int packet) const {
+    std::atomic<uint8_t>& state = states_[static_cast<size_t>(packet)];
+    uint8_t expected = untouched;
+    if (state.compare_exchange_strong(expected, at_work)) {
+        const int first = packet % packets_across() * 16, row = packet / packets_across();
+        HWY_DYNAMIC_DISPATCH(fill_columns)(media_, first, row, grid_);
+        state.store(done, std::memory_order_release), state.notify_all();
+        return;
+    }
+    while ((expected = state.load(std::memory_order_acquire)) != done) state.wait(expected);
+}
+
 void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid) {
     std::vector<float> depths(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z, 0.0f);
     const int packets = (grid.size.x + 15) / 16;

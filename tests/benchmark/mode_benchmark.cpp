@@ -1,9 +1,10 @@
-// Fog of a whole picture, surfaces excluded: preparation and all look-ups of a mode at 640×360, one ray per pixel, with
-// the first surfaces traced beforehand, and what a mode adds to the finished picture. Frames of moving scenes follow
-// one another; `history` keeps what a mode keeps.
+// Fog of a whole picture, surfaces excluded: preparation and all look-ups of a mode, one ray per pixel, and what a mode
+// adds to the finished picture. First surfaces are traced beforehand, or for each frame of a moving camera, and counted
+// apart. `history` keeps what a mode keeps; its first frame is not counted.
 //
 //     tyndall_benchmark --benchmark_filter=fog_of_picture/froxel
 //     TYNDALL_MODES=froxel,march TYNDALL_SCENE=scenes/pillars.json TYNDALL_SET=froxel.tile=4 tyndall_benchmark ...
+//     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=light,camera tyndall_benchmark ...
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
 #include "base/isa.h"
 #include "base/parallel.h"
@@ -16,6 +17,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <sstream>
+#include <stdexcept>
 
 namespace {
 using namespace tyndall;
@@ -30,6 +32,42 @@ std::vector<std::string> parts_of(const std::string& list, char separator) {
     std::istringstream stream(list);
     for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
     return parts;
+}
+
+// Pixels across and down, from a text like 1280x720; whole tiles of 4×4.
+ivec2 size_of(const std::string& text) {
+    const std::vector<std::string> sides = parts_of(text, 'x');
+    return (ivec2(std::stoi(sides.at(0)), std::stoi(sides.at(1))) + 3) / 4 * 4;
+}
+
+vec3 turned(vec3 v, float angle) {
+    const float c = std::cos(angle), s = std::sin(angle);
+    return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
+}
+
+// Frame by frame suns turn to and fro about the vertical, other lights and the camera sway.
+struct Movement {
+    bool light = false, camera = false;
+
+    static float sway(int frame) { return std::sin(0.1f * static_cast<float>(frame)); }
+    void move(int frame, const Snapshot& still, Snapshot& moved) const {
+        for (size_t i = 0; light && i < moved.lights.size(); ++i) {
+            moved.lights[i].direction = turned(still.lights[i].direction, 0.1f * sway(frame));
+            moved.lights[i].position = still.lights[i].position + 0.1f * sway(frame) * vec3(1, 0, 1);
+        }
+    }
+    void move(int frame, const Camera& still, Camera& moved) const {
+        if (camera) moved.position = still.position + 0.1f * sway(frame) * still.right;
+    }
+};
+
+Movement movement_of(const std::string& list) {
+    Movement movement;
+    for (const std::string& part : parts_of(list, ',')) {
+        movement.light |= part == "light", movement.camera |= part == "camera";
+        if (part != "light" && part != "camera") throw std::invalid_argument("TYNDALL_MOVE: light, camera");
+    }
+    return movement;
 }
 
 // A picture's camera rays in tiles of 4×4 pixels, each up to the first surface, and a picture of grey surfaces before a
@@ -93,52 +131,71 @@ double milliseconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Milliseconds of a stage: that pass, and the work of all threads (on a busy machine, half of it is what two cores
+// take).
+struct Stage {
+    double real = 0, work = 0;
+
+    template<class Body> void time(const Body& body) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t work_start = std::clock();
+        body();
+        real += milliseconds_since(start);
+        work += 1000.0 * static_cast<double>(std::clock() - work_start) / CLOCKS_PER_SEC;
+    }
+};
+
 void fog_of_picture(benchmark::State& state, const std::string& name, bool keep) {
     const Scene scene = load_scene(option("TYNDALL_SCENE", "scenes/window.json"));
     Settings settings = settings_for(quality_named(option("TYNDALL_QUALITY", "preview")));
     for (const std::string& assignment : parts_of(option("TYNDALL_SET", ""), ' ')) apply_setting(settings, assignment);
-    Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
-    snapshot.kept = nullptr; // every preparation begins with nothing
+    const Movement movement = movement_of(option("TYNDALL_MOVE", ""));
+    Snapshot still = make_snapshot(scene, moment_of(scene, 1));
+    still.kept = nullptr; // every preparation begins with nothing
+    Snapshot snapshot = still;
     View view;
-    view.camera = camera_at(scene, find_camera(scene, ""), snapshot.seconds);
-    const PictureRays picture = picture_rays(view, snapshot);
+    view.size = size_of(option("TYNDALL_SIZE", "640x360"));
+    const Camera camera = camera_at(scene, find_camera(scene, ""), snapshot.seconds);
+    view.camera = camera;
+    PictureRays picture = picture_rays(view, snapshot);
     std::vector<Scatter> results(picture.rays.size());
     const Mode& mode = find_mode(name);
 
-    // Work of all threads: on a busy machine, half of it is what two cores take.
-    const auto work = [](std::clock_t from, std::clock_t to) {
-        return 1000.0 * static_cast<double>(to - from) / CLOCKS_PER_SEC;
-    };
     struct Times {
-        double prepare = 0, scatter = 0, post = 0;
-    } real, cpu;
-    double fastest = 1e9;
+        Stage trace, prepare, scatter, post;
+    };
     History history;
-    for (auto _ : state) {
-        const auto start = std::chrono::steady_clock::now();
-        const std::clock_t work_start = std::clock();
-        const ScatterFunction function = mode.prepare(view, snapshot, settings, keep ? &history : nullptr);
-        real.prepare += milliseconds_since(start);
-        const auto prepared = std::chrono::steady_clock::now();
-        const std::clock_t work_prepared = std::clock();
-        scatter_picture(function, picture, results);
-        real.scatter += milliseconds_since(prepared);
-        const auto scattered = std::chrono::steady_clock::now();
-        const std::clock_t work_scattered = std::clock();
-        if (mode.prepare_post)
+    int frame = 0;
+    const auto run = [&](Times& times) {
+        movement.move(frame, still, snapshot), movement.move(frame, camera, view.camera);
+        view.frame = frame++;
+        if (movement.camera) times.trace.time([&] { picture = picture_rays(view, snapshot); });
+        ScatterFunction function;
+        times.prepare.time([&] { function = mode.prepare(view, snapshot, settings, keep ? &history : nullptr); });
+        times.scatter.time([&] { scatter_picture(function, picture, results); });
+        if (!mode.prepare_post) return;
+        times.post.time([&] {
             benchmark::DoNotOptimize(
                 mode.prepare_post(view, snapshot, settings)({picture.color, picture.alpha, picture.depth}));
-        real.post += milliseconds_since(scattered);
-        fastest = std::min(fastest, milliseconds_since(start));
-        cpu.prepare += work(work_start, work_prepared), cpu.scatter += work(work_prepared, work_scattered);
-        cpu.post += work(work_scattered, std::clock());
+        });
+    };
+    const auto fog_time = [](const Times& t) { return t.prepare.real + t.scatter.real + t.post.real; };
+    Times first, all;
+    if (keep) run(first);
+    double fastest = 1e9;
+    for (auto _ : state) {
+        const double before = fog_time(all);
+        run(all);
+        fastest = std::min(fastest, fog_time(all) - before);
     }
     const auto count = static_cast<double>(state.iterations());
-    state.counters["prepare_ms"] = real.prepare / count, state.counters["scatter_ms"] = real.scatter / count;
-    state.counters["prepare_cpu_ms"] = cpu.prepare / count, state.counters["scatter_cpu_ms"] = cpu.scatter / count;
-    if (mode.prepare_post)
-        state.counters["post_ms"] = real.post / count, state.counters["post_cpu_ms"] = cpu.post / count;
-    state.counters["fastest_ms"] = fastest; // the least disturbed frame
+    const auto report = [&](const std::string& stage, const Stage& times) {
+        state.counters[stage + "_ms"] = times.real / count, state.counters[stage + "_cpu_ms"] = times.work / count;
+    };
+    if (movement.camera) report("trace", all.trace);
+    report("prepare", all.prepare), report("scatter", all.scatter);
+    if (mode.prepare_post) report("post", all.post);
+    state.counters["fastest_ms"] = fastest; // fog of the least disturbed frame
     state.counters["threads"] = thread_count();
 }
 

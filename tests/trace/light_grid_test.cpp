@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace tyndall {
 namespace {
 using namespace test;
@@ -184,6 +186,30 @@ TEST(LightGrid, SameBitsAtAnyThreadCount) {
     const LightDepth three = make_light_depth(snapshot, light, LightTransmittance::grid, 24);
     set_thread_count(0);
     EXPECT_EQ(*one.grid.depth, *three.grid.depth);
+}
+
+TEST(LightGrid, ColumnsOnDemandHaveTheSameBits) {
+    const Medium& fog = noise_fog();
+    Light sun;
+    sun.kind = LightKind::sun, sun.direction = glm::normalize(vec3(0.4f, -1, 0.2f));
+    LightDepthGrid whole = fitted_grid(std::array{&fog}, sun, 40), asked = whole;
+    fill_grid(std::array{&fog}, whole);
+    const GridColumns columns({&fog}, asked);
+    const int packets = columns.packets_across() * asked.size.y;
+    const auto is_same = [&](int packet) {
+        const int first = packet % columns.packets_across() * 16, row = packet / columns.packets_across();
+        for (int k = 0; k < asked.size.z; ++k)
+            for (int u = first; u < std::min(first + 16, asked.size.x); ++u)
+                if (const int at = (k * asked.size.y + row) * asked.size.x + u; asked.depth[at] != whole.depth[at])
+                    return false;
+        return true;
+    };
+    EXPECT_FALSE(is_same(packets / 2));
+    for (int i = 0; i < packets; ++i) ASSERT_FALSE(columns.is_filled(i));
+    parallel_for(4 * packets, [&](int64_t i) { columns.fill(static_cast<int>(i * 7 % packets)); }); // some often
+    for (int i = 0; i < packets; ++i) ASSERT_EQ(is_same(i), columns.is_filled(i));
+    for (int i = 0; i < packets; ++i) columns.fill(i);
+    EXPECT_EQ(asked.depth, whole.depth);
 }
 }
 }

@@ -1,0 +1,50 @@
+#include "base/recycled.h"
+
+#include <mutex>
+
+namespace tyndall {
+namespace {
+constexpr size_t least_kept = size_t{1} << 20, most_kept = size_t{1} << 26, most_blocks = 12;
+constexpr std::align_val_t alignment{64};
+
+struct Block {
+    void* memory;
+    size_t bytes;
+};
+struct Store {
+    std::mutex mutex;
+    std::vector<Block> blocks; // the one given back last is at the end
+    Store() { blocks.reserve(most_blocks + 1); }
+};
+Store& store() {
+    static Store& blocks = *new Store; // outlives whatever still gives memory back as the program ends
+    return blocks;
+}
+}
+
+void* take_memory(size_t bytes) {
+    {
+        const std::lock_guard lock(store().mutex);
+        std::vector<Block>& blocks = store().blocks;
+        for (size_t i = blocks.size(); i-- > 0;)
+            if (blocks[i].bytes == bytes) {
+                void* memory = blocks[i].memory;
+                blocks.erase(blocks.begin() + static_cast<std::ptrdiff_t>(i));
+                return memory;
+            }
+    }
+    return ::operator new(bytes, alignment);
+}
+
+void give_memory(void* memory, size_t bytes) noexcept {
+    if (bytes >= least_kept && bytes <= most_kept) {
+        const std::lock_guard lock(store().mutex);
+        std::vector<Block>& blocks = store().blocks;
+        blocks.push_back({memory, bytes});
+        if (blocks.size() <= most_blocks) return;
+        memory = blocks.front().memory;
+        blocks.erase(blocks.begin());
+    }
+    ::operator delete(memory, alignment);
+}
+}
