@@ -5,6 +5,7 @@
 #include "modes/froxel_still.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "trace/kept_shadows.h"
 
 #include <mutex>
 

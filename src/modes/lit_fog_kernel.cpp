@@ -8,6 +8,7 @@
 #include "modes/style.h"
 
 #include "modes/lit_fog_parts_simd.h"
+#include "modes/lit_fog_rows_simd.h"
 #include "modes/lit_fog_shells_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -69,8 +70,23 @@ void add_sliced(Packet& packet, size_t index, const Stretch (&reached)[16]) {
                  packet.scratch.lit);
         push_all(packet, index, reached);
     }
-    add_nodes(packet, static_cast<int>(index));
     packet.part = 1;
+}
+
+// Shadows, if any, begin at the light's centre.
+void add_cut_out(Packet& packet, size_t index, const Stretch (&reached)[16]) {
+    Scratch& scratch = packet.scratch;
+    int dark[16];
+    find_shadows(packet.frame, index, packet.batch, reached, scratch.crossings, dark);
+    if (packet.frame.shells) {
+        packet.spread = Spread::points;
+        for (size_t i = 0; i < packet.batch.rays.size(); ++i)
+            if (!reached[i].empty()) push_shells(packet, static_cast<int>(index), i, dark[i], reached[i]);
+        return;
+    }
+    for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
+    append_lit(dark, scratch.crossings, reached, scratch.lit);
+    push_all(packet, index, reached);
 }
 
 void add_light(Packet& packet, size_t index) {
@@ -81,28 +97,23 @@ void add_light(Packet& packet, size_t index) {
     Stretch reached[16];
     for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
     packet.spread = light.kind == LightKind::sun ? Spread::length : Spread::angle;
-    if (frame.shadows[index].by == ShadowsBy::slices) return add_sliced(packet, index, reached);
-
-    int dark[16];
-    find_shadows(frame, index, packet.batch, reached, scratch.crossings, dark);
-    const int name = static_cast<int>(index);
-    if (frame.shells) {
-        packet.spread = Spread::points;
-        for (size_t i = 0; i < count; ++i)
-            if (!reached[i].empty()) push_shells(packet, name, i, dark[i], reached[i]);
-    } else {
-        for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
-        append_lit(dark, scratch.crossings, reached, scratch.lit);
-        push_all(packet, index, reached);
-    }
-    add_nodes(packet, name);
+    const ShadowsBy by = frame.shadows[index].by;
+    packet.by_rows = frame.sampled && light.kind == LightKind::sun && by != ShadowsBy::rays && !frame.shells;
+    if (packet.by_rows) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.most), 0.0f);
+    if (by == ShadowsBy::slices)
+        add_sliced(packet, index, reached);
+    else
+        add_cut_out(packet, index, reached);
+    add_nodes(packet, static_cast<int>(index));
+    if (packet.by_rows) add_rows(packet, index);
 }
 
 // Optical depth of sampled fog at every cut, by the density in the middle of each step.
 void sample_depths(Packet& packet) {
     Scratch& scratch = packet.scratch;
     const size_t steps = static_cast<size_t>(scratch.cuts.most);
-    scratch.depth.resize(16 * (steps + 1));
+    const std::vector<Medium>& media = packet.frame.snapshot.media;
+    scratch.depth.resize(16 * (steps + 1)), scratch.extinction.resize(16 * steps * media.size());
     const Vec3s origin = Packet::rays(packet.origin), direction = Packet::rays(packet.direction);
     Floats depth = 0.0f, from = load(scratch.cuts.at.data());
     store(depth, scratch.depth.data());
@@ -110,8 +121,11 @@ void sample_depths(Packet& packet) {
         const Floats to = load(scratch.cuts.at.data() + 16 * k);
         const Vec3s point = fused(direction, (from + to) * 0.5f, origin);
         Floats extinction = 0.0f;
-        for (const Medium& medium : packet.frame.snapshot.media)
-            extinction = fused(density16(medium, point), medium.optics.extinction, extinction);
+        for (size_t m = 0; m < media.size(); ++m) {
+            const Floats own = density16(media[m], point) * media[m].optics.extinction;
+            store(own, scratch.extinction.data() + 16 * ((k - 1) * media.size() + m));
+            extinction = extinction + own;
+        }
         depth = fused(extinction, to - from, depth), from = to;
         store(depth, scratch.depth.data() + 16 * k);
     }

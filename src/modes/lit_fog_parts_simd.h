@@ -85,6 +85,11 @@ bool in_soft_edge(const LightAlong& along, Stretch part) {
     return cosine * along.cone_scale + along.cone_offset < 1;
 }
 
+HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
+    if (counts(packet, ray, cut))
+        packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.part);
+}
+
 // Cuts lit stretches at the cuts of the fog and at the kinks of the light, which divide what it reaches.
 void push_lit(Packet& packet, int light, size_t ray, std::span<const Stretch> lit, std::span<const Stretch> reached) {
     const float* at = packet.scratch.cuts.at.data() + ray;
@@ -100,7 +105,10 @@ void push_lit(Packet& packet, int light, size_t ray, std::span<const Stretch> li
                 while (cut < pieces && at[16 * (cut + 1)] <= low) ++cut;
                 if (cut == pieces) return;
                 const double high = std::min<double>(end, at[16 * (cut + 1)]);
-                if (counts(packet, ray, cut)) push_part(packet, {light, ray, cut, low, high, soft});
+                if (packet.by_rows && low == at[16 * cut] && high == at[16 * (cut + 1)])
+                    note_whole(packet, ray, cut);
+                else if (counts(packet, ray, cut))
+                    push_part(packet, {light, ray, cut, low, high, soft});
                 low = high;
             }
         }

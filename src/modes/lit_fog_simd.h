@@ -16,6 +16,8 @@
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
 
+#include <array>
+
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
@@ -35,7 +37,10 @@ struct Nodes {
 // Memory that a thread keeps from packet to packet.
 struct Scratch {
     FogCuts cuts;
-    std::vector<float> depth; // of sampled fog: optical depth from the eye to each cut
+    std::vector<float> depth;                 // of sampled fog: optical depth from the eye to each cut
+    std::vector<float> extinction;            // and in the middle of each step: [(step·media + medium)·16 + ray]
+    std::vector<float> whole;                 // share of a sun that lights all of a step: [step·16 + ray]
+    std::vector<std::array<float, 16>> phase; // of each medium, on each ray
     std::vector<ShadowCrossing> crossings;
     std::vector<Stretch> lit[16];
     LightAlong along[16]; // of local lights
@@ -53,7 +58,8 @@ struct Packet {
     alignas(64) float origin[3][16], direction[3][16];
     QuadratureNode jittered[16]; // the one node of each ray where shadows are sampled
     Spread spread = Spread::length;
-    double part = 1;                                   // of the light that the current nodes are asked for
+    double part = 1;      // of the light that the current nodes are asked for
+    bool by_rows = false; // whether steps that are lit from end to end are noted in `whole`
     alignas(64) float nearest[16] = {}, away[16] = {}; // where the rays pass the light, and how near; 0 unless `angle`
     vec3 radiance[16] = {};                            // of the current light
     int asked[16] = {};

@@ -1,6 +1,7 @@
 // Layers to an OpenEXR file in memory, then to disk.
 #include "base/error.h"
 #include "base/file.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "render/exr_header.h"
 
@@ -9,6 +10,7 @@
 #include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <half.h>
 
 #include <algorithm>
@@ -146,7 +148,10 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
 
     MemoryStream stream(file.c_str());
     {
-        Imf::OutputFile output(stream, header, 0);
+        // Blocks of lines are packed at once; one thread means one.
+        const int threads = thread_count() > 1 ? thread_count() : 0;
+        Imf::setGlobalThreadCount(threads);
+        Imf::OutputFile output(stream, header, threads);
         output.setFrameBuffer(buffer);
         output.writePixels(layers.size.y);
     }

@@ -30,7 +30,8 @@ public:
 private:
     enum State : uint8_t { untouched, at_work, done };
     std::vector<const Medium*> media_;
-    LightDepthGrid& grid_;
+    const LightDepthGrid& grid_;
+    std::shared_ptr<std::vector<float>> depths_; // the grid's
     std::unique_ptr<std::atomic<uint8_t>[]> states_;
 };
 }

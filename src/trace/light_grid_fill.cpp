@@ -85,8 +85,9 @@ namespace tyndall {
 HWY_EXPORT(fill_columns);
 GridColumns::GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid)
     : media_(std::move(media)), grid_(grid),
+      depths_(std::make_shared<std::vector<float>>(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z)),
       states_(std::make_unique<std::atomic<uint8_t>[]>(static_cast<size_t>(packets_across()) * grid.size.y)) {
-    grid.depth.resize(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z);
+    grid.depth = depths_;
 }
 
 void GridColumns::fill(int packet) const {
@@ -94,7 +95,7 @@ void GridColumns::fill(int packet) const {
     uint8_t expected = untouched;
     if (state.compare_exchange_strong(expected, at_work)) {
         const int first = packet % packets_across() * 16, row = packet / packets_across();
-        HWY_DYNAMIC_DISPATCH(fill_columns)(media_, first, row, grid_);
+        HWY_DYNAMIC_DISPATCH(fill_columns)(media_, first, row, grid_, *depths_);
         state.store(done, std::memory_order_release), state.notify_all();
         return;
     }

@@ -200,7 +200,8 @@ TEST(LightGrid, ColumnsOnDemandHaveTheSameBits) {
         const int first = packet % columns.packets_across() * 16, row = packet / columns.packets_across();
         for (int k = 0; k < asked.size.z; ++k)
             for (int u = first; u < std::min(first + 16, asked.size.x); ++u)
-                if (const int at = (k * asked.size.y + row) * asked.size.x + u; asked.depth[at] != whole.depth[at])
+                if (const int at = (k * asked.size.y + row) * asked.size.x + u;
+                    asked.depth->at(static_cast<size_t>(at)) != whole.depth->at(static_cast<size_t>(at)))
                     return false;
         return true;
     };
