@@ -9,7 +9,7 @@ void append_pixel_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(pixel.filter)));
     rows.push_back(number_row("pixel.filter_radius", "pixels", 0.25, 4,
                               "how far a sample may lie from the pixel's centre", TYNDALL_FIELD(pixel.filter_radius)));
-    rows.push_back(number_row("pixel.lamp_samples", "", 1, 256,
+    rows.push_back(number_row("pixel.lamp_samples", "", 1, 64,
                               "most times as many rays around a local light, whose glow in the fog changes within a "
                               "pixel there; 1 = none more",
                               TYNDALL_FIELD(pixel.lamp_samples)));

@@ -210,7 +210,7 @@ TEST(LightGrid, ColumnsOnDemandHaveTheSameBits) {
     parallel_for(4 * packets, [&](int64_t i) { columns.fill(static_cast<int>(i * 7 % packets)); }); // some often
     for (int i = 0; i < packets; ++i) ASSERT_EQ(is_same(i), columns.is_filled(i));
     for (int i = 0; i < packets; ++i) columns.fill(i);
-    EXPECT_EQ(asked.depth, whole.depth);
+    EXPECT_EQ(*asked.depth, *whole.depth);
 }
 }
 }
