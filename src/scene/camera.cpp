@@ -20,6 +20,13 @@ Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov) {
     return camera;
 }
 
+// tan(fov / 2), for as many rays of one camera as follow one another.
+static float half_slope(float vertical_fov) {
+    static thread_local float known = 0, slope = 0;
+    if (known != vertical_fov) known = vertical_fov, slope = std::tan(0.5f * vertical_fov);
+    return slope;
+}
+
 Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel) {
     const vec2 extent(size);
     const float aspect = extent.x / extent.y;
@@ -28,7 +35,7 @@ Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel) {
         const vec2 offset = screen * (0.5f * camera.ortho_height);
         return {camera.position + offset.x * camera.right + offset.y * camera.up, camera.forward, camera.far};
     }
-    const vec2 slope = screen * std::tan(0.5f * camera.vertical_fov);
+    const vec2 slope = screen * half_slope(camera.vertical_fov);
     const vec3 direction = camera.forward + slope.x * camera.right + slope.y * camera.up;
     const float length = glm::length(direction);
     return {camera.position, direction / length, camera.far * length};

@@ -30,7 +30,7 @@ struct BrickPool {
     Box bounds;               // world box around everything that is not empty
     Box local_bounds;         // the same in local coordinates
     float highest = 0;        // largest value anywhere
-    bool gapless = false;     // no brick is empty: a ray inside `local_bounds` meets fog all the way
+    bool crowded = false;     // hardly a brick is empty: a ray inside `local_bounds` meets fog almost all the way
     double mass = 0;          // integral of the density over index space
     float mean = 0;           // over `bounds`: even fog of this density there has the same mass
     float mean_in_bricks = 0; // over the bricks that are not empty

@@ -158,7 +158,8 @@ void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
     pool.values.resize(bricks * brick_stride);
     if (pool.values.size() < pool.values.capacity() / 4 * 3) pool.values.shrink_to_fit();
     const ivec3 reach = (ivec3(pool.local_bounds.high) - 1) / 8; // the last bricks that fog can be in
-    pool.gapless = filled == static_cast<size_t>(reach.x + 1) * (reach.y + 1) * (reach.z + 1);
+    const size_t bricks_within = static_cast<size_t>(reach.x + 1) * (reach.y + 1) * (reach.z + 1);
+    pool.crowded = bricks_within - filled <= bricks_within / 16;
     pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));
 }
 }

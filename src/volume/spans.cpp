@@ -45,9 +45,10 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
     const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = medium.optics.extinction;
     const size_t first = spans.size();
 
-    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks.
+    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
+    // the few that are empty: a step there costs less than looking for them on every ray.
     const double highest = extinction * pool.highest;
-    if (pool.gapless && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
+    if (pool.crowded && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
         const Stretch inside = clip(pool.local_bounds, local, {0, t_end});
         if (!inside.empty()) spans.push_back({inside.low, inside.high, highest, varied_rate});
         return;

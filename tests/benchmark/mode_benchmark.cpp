@@ -85,17 +85,19 @@ PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
     PictureRays picture;
     picture.color = Image<vec3>(view.size, vec3(2));
     picture.alpha = Image<float>(view.size, 0), picture.depth = Image<float>(view.size, infinity);
-    for (int y = 0; y < view.size.y; y += 4)
-        for (int x = 0; x < view.size.x; x += 4)
-            for (int i = 0; i < 16; ++i) {
-                const vec2 position = vec2(x + i % 4, y + i / 4) + 0.5f;
-                picture.rays.push_back(camera_ray(view.camera, view.size, position));
-                picture.ids.push_back(static_cast<uint32_t>(picture.ids.size()));
-                picture.positions.push_back(position);
-                picture.jitter.push_back(static_cast<float>(i) / 16);
-            }
-    parallel_for(static_cast<int64_t>(picture.rays.size() / 16), [&](int64_t tile) {
+    const ivec2 tiles = (view.size + 3) / 4;
+    const size_t count = 16 * static_cast<size_t>(tiles.x) * static_cast<size_t>(tiles.y);
+    picture.rays.resize(count), picture.ids.resize(count);
+    picture.positions.resize(count), picture.jitter.resize(count);
+    parallel_for(int64_t{tiles.x} * tiles.y, [&](int64_t tile) {
         const std::span rays{picture.rays.data() + 16 * tile, 16};
+        for (size_t i = 0; i < 16; ++i) {
+            const size_t at = static_cast<size_t>(16 * tile) + i;
+            const vec2 position = vec2(4 * (tile % tiles.x) + i % 4, 4 * (tile / tiles.x) + i / 4) + 0.5f;
+            rays[i] = camera_ray(view.camera, view.size, position);
+            picture.positions[at] = position, picture.ids[at] = static_cast<uint32_t>(at);
+            picture.jitter[at] = static_cast<float>(i) / 16;
+        }
         Hits hits;
         hits.instance.fill(-1);
         if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->closest(rays, 0, hits);
