@@ -61,6 +61,13 @@ std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings,
     return candidates;
 }
 
+bool binds_candidates(const Settings& settings, Quality quality) {
+    const Settings usual = settings_for(quality);
+    return std::ranges::any_of(setting_rows(), [&](const SettingRow& row) {
+        return std::ranges::count(chosen_rows, row.name) && row.get(settings) != row.get(usual);
+    });
+}
+
 Settings truth_of(const Settings& settings) {
     Settings truth = settings;
     take_rows(settings_for(Quality::reference), settings, settings, truth);

@@ -13,6 +13,9 @@ struct Candidate {
 // error is noise has one, the settings as they are; a mode whose error cannot be told has none.
 std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings, Quality quality);
 
+// Whether settings keep candidates from something they would decide: getting finer may then not help.
+bool binds_candidates(const Settings& settings, Quality quality);
+
 // The settings whose error counts as none; only for modes with several candidates.
 Settings truth_of(const Settings& settings);
 

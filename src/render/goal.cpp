@@ -12,6 +12,11 @@ bool leaves_room(const Choice& choice, double error) {
     return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
 }
 
+// Whether a finer candidate is as wrong as the one before.
+bool gains_nothing(const Choice& next, const Choice& before) {
+    return next.measured.integrator.value > 0.9 * before.measured.integrator.value;
+}
+
 bool reaches(const Choice& choice, double samples, double error) {
     const Measured& m = choice.measured;
     const double bound = samples < 2 ? m.single.bound : m.integrator.bound + m.sample.bound / samples;
@@ -37,7 +42,9 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         const double begun = spent();
         Choice next{candidate, measure(pilot, mode, snapshot, candidate.settings, options, goal.clock), systematic};
         if (!timed) {
-            if (leaves_room(next, goal.error) || &candidate == &candidates.back()) return next;
+            if (leaves_room(next, goal.error)) return next;
+            if (best && binds_candidates(settings, goal.quality) && gains_nothing(next, *best)) break;
+            best = std::move(next);
             continue;
         }
         const double now = spent();

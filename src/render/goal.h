@@ -23,9 +23,10 @@ struct Choice {
     double expected(double samples) const;
 };
 
-// With an error asked for, the first candidate whose bound leaves enough for noise, or the finest. With seconds, the
-// one whose picture will be best when they are over, `start` being when they began; with both, the first that
-// reaches the error in time. Seconds make the choice depend on the machine.
+// With an error asked for, the first candidate whose bound leaves enough for noise, or the finest; what comes before
+// the first that gains nothing, where set rows keep candidates from getting finer. With seconds, the one whose picture
+// will be best when they are over, `start` being when they began; with both, the first that reaches the error in time.
+// Seconds make the choice depend on the machine.
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
 }

@@ -9,7 +9,7 @@
 #include "render/frame.h"
 
 namespace tyndall {
-inline constexpr int most_pilot_tiles = 256; // of sixteen pixels
+inline constexpr int most_pilot_tiles = 128; // of sixteen pixels
 inline constexpr int fewest_pilot_tiles = 32;
 
 using Seconds = std::function<double()>; // a clock

@@ -94,13 +94,16 @@ double steady_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Sets what is known of the error after each round; true when it is small enough.
+// Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
+// become.
 bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     if (rounds.freedom > 0)
         stats.noise = noise_of(result, rounds.freedom);
     else
         stats.noise = single_noise(*rounds.choice);
-    return rounds.goal.error > 0 && stats.error()->bound <= rounds.goal.error;
+    const double target = rounds.goal.error;
+    const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
+    return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
 }
 }
 

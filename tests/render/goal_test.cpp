@@ -83,12 +83,15 @@ void keeps_its_promise(const std::string& name, int truth_samples, PixelFilter f
 }
 }
 
-TEST(Goal, MarchKeepsItsPromiseInTheWindow) { keeps_its_promise("window", 16, PixelFilter::blackman_harris); }
+// At the centres of pixels: elsewhere in them bright edges and lamps make short references noisier than the targets.
+TEST(Goal, MarchKeepsItsPromiseAtTheCentersOfPixels) {
+    keeps_its_promise("window", 4, PixelFilter::center);
+    keeps_its_promise("spotlight", 2, PixelFilter::center);
+}
+TEST(Goal, NightlyMarchKeepsItsPromiseInTheWindow) { keeps_its_promise("window", 256, PixelFilter::blackman_harris); }
 TEST(Goal, NightlyMarchKeepsItsPromiseBetweenThePillars) {
     keeps_its_promise("pillars", 64, PixelFilter::blackman_harris);
 }
-// At the centres of pixels: anywhere in them the lamp's own pixel is noisier than any reference can be.
-TEST(Goal, MarchKeepsItsPromiseInTheSpotlight) { keeps_its_promise("spotlight", 2, PixelFilter::center); }
 
 TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
     const Settings settings = settings_for(Quality::preview);
@@ -109,9 +112,10 @@ TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
 
 // Steps are what candidates cost on the same rays, but for the last, whose are of another kind.
 TEST(Goal, CandidatesCostMoreAndMore) {
-    const Example example("spotlight");
+    Example example("spotlight");
+    apply_setting(example.settings, "march.light_resolution=16"); // for speed: steps do not depend on it
     View view = example.view;
-    view.size = {32, 18}, view.pixel_samples = 1;
+    view.size = {16, 9}, view.pixel_samples = 1;
     uint64_t before = 0;
     std::vector<Candidate> all = candidates_of(find_mode("march"), example.settings, Quality::preview);
     all.pop_back();
@@ -142,7 +146,7 @@ TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {
     EXPECT_GT(result.stats.integrator->error.error, 0.05);
     EXPECT_GT(result.stats.error()->bound, 0.05);
     EXPECT_LT(result.stats.samples, 1000) << "noise far below an error that stays is of no use";
-    const Halves truth = exact_halves(example, 4);
+    const Halves truth = exact_halves(example, 2);
     EXPECT_NEAR(true_error(result.layers, truth) / result.stats.error()->error, 1, 0.1);
 }
 
@@ -208,18 +212,24 @@ TEST(Goal, WhatComesFirstEndsIt) {
     EXPECT_LE(stopped.goal_seconds, 0.05);
 }
 
-// A clock that ticks whenever it is looked at: no time for more than one sample, then for a few.
-TEST(Goal, MarchPicksACandidateInTime) {
+// A clock that ticks whenever it is looked at: there is no time for more than one sample.
+TEST(Goal, MarchTakesOneSampleOfACandidateWhateverTheTime) {
     const Example example("window");
-    for (const double seconds : {1e-3, 100.0}) {
-        double now = 0;
-        const Result result = to_goal(example, {0, seconds, Quality::preview, [&now] { return now += 0.5; }});
-        ASSERT_TRUE(result.stats.integrator);
-        EXPECT_FALSE(result.stats.integrator->candidate.empty());
-        EXPECT_LE(result.stats.goal_seconds, std::max(seconds, 10.0));
-        EXPECT_EQ(result.stats.samples == 1, seconds < 1);
-        const double error = true_error(result.layers, exact_halves(example, 4));
-        EXPECT_NEAR(error / result.stats.error()->error, 1, 0.35) << result.stats.samples;
-    }
+    double now = 0;
+    const Result result = to_goal(example, {0, 1e-3, Quality::preview, [&now] { return now += 0.5; }});
+    ASSERT_TRUE(result.stats.integrator);
+    EXPECT_FALSE(result.stats.integrator->candidate.empty());
+    EXPECT_EQ(result.stats.samples, 1);
+    const double error = true_error(result.layers, exact_halves(example, 4));
+    EXPECT_NEAR(error / result.stats.error()->error, 1, 0.35);
+}
+
+TEST(Goal, MarchStopsAtTheErrorWhereThereIsTimeLeft) {
+    const Example example("window");
+    double now = 0;
+    const Result timed = to_goal(example, {0.2, 1e6, Quality::preview, [&now] { return now += 0.5; }});
+    EXPECT_LE(timed.stats.error()->bound, 0.2);
+    EXPECT_LT(timed.stats.goal_seconds, 1000);
+    EXPECT_LT(timed.stats.samples, 1000);
 }
 }
