@@ -50,6 +50,15 @@ void read_orders(const std::string& text, RenderJob& job) {
         fail(ExitCode::usage, "--orders", job.mode + " scatters light once only; --mode path takes more");
 }
 
+// A goal decides how many samples there are, but that path begins with as many as asked for when time is no matter.
+void check_samples(const RenderJob& job, const Mode& mode) {
+    if (!has_goal(job) || (error_is_noise(mode) && job.time_budget == 0)) return;
+    if (job.settings.pixel.samples != settings_for(job.quality).pixel.samples)
+        fail(ExitCode::usage, "--samples",
+             std::string(job.time_budget > 0 ? "--time-budget" : "--target-error") +
+                 " decides how many rays a pixel takes");
+}
+
 void add_what(CLI::App& command, RenderOptions& texts) {
     command.add_option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself")
         ->type_name("")
@@ -88,10 +97,18 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "as many for path)",
            "N");
     option("--target-error", texts.target_error,
-           "go on until noise is below this share of the picture's mean, 0.01 for\n"
-           "instance; for modes with no other error (path); exit code 1 when 65536\n"
-           "rays per pixel are not enough",
+           "go on until the error (rmse) is below this share of the picture's mean,\n"
+           "0.01 for instance; for march and path. march measures its error on a few\n"
+           "pixels against exact single scattering and picks steps and light grids by\n"
+           "it, those of --set apart; path has no error but noise. Exit code 1 when\n"
+           "the error stays larger",
            "E");
+    option("--time-budget", texts.time_budget,
+           "the best picture in so many seconds for each frame, but one ray per pixel\n"
+           "at least; for march and path. Measuring, preparing and rendering count,\n"
+           "loading and writing do not. The picture depends on the machine; with\n"
+           "--target-error what comes first ends it",
+           "SECONDS");
     option("--orders", texts.orders,
            "how many times light scatters, in fog or on surfaces (default: as often\n"
            "as the mode can)",
@@ -171,7 +188,8 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     job.mode = mode.name;
     job.quality = quality_named(texts.quality);
     job.settings = settings_for(job.quality);
-    if (error_is_noise(mode) && texts.target_error.empty()) job.settings.pixel.samples *= noisy_factor;
+    const bool goal = !texts.target_error.empty() || !texts.time_budget.empty();
+    if (error_is_noise(mode) && !goal) job.settings.pixel.samples *= noisy_factor;
     if (!texts.samples.empty())
         job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
     if (!texts.orders.empty()) read_orders(texts.orders, job);
@@ -180,6 +198,11 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
         job.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
         check_target(mode);
     }
+    if (!texts.time_budget.empty()) {
+        job.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
+        check_target(mode, "--time-budget");
+    }
+    check_samples(job, mode);
     if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     job.camera = texts.camera;
     if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);

@@ -7,7 +7,7 @@ namespace tyndall {
 struct RenderOptions {
     std::string scene, output, frames, mode = "march", quality = "preview", camera, resolution, crop, samples;
     std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
-    std::string orders, target_error, history;
+    std::string orders, target_error, time_budget, history;
     std::vector<std::string> settings;
     bool png = false, resume = false, full_float = false;
 };

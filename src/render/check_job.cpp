@@ -50,6 +50,7 @@ void check_job(const Scene& scene, const RenderJob& job, const Mode& mode) {
     check_layer_names(job.exr);
     check_picture(scene, job);
     find_camera(scene, job.camera);
+    if (job.time_budget > 0) check_target(mode, "--time-budget");
     if (job.target_error > 0) check_target(mode);
     if (mode.surfaces == Surfaces::post && measures_noise(job))
         fail(ExitCode::usage, "--aov",

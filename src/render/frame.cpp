@@ -18,6 +18,7 @@ constexpr int block_side = 32; // a task's pixels
 
 // What all blocks of a frame share.
 struct FrameTask {
+    std::shared_ptr<const Prepared> prepared; // holds what the tracer points at
     FrameTracer tracer;
     double mode_seconds = 0;                                // its preparation
     std::shared_ptr<std::atomic<int64_t>> mode_nanoseconds; // then, of all threads
@@ -129,24 +130,33 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                     const FrameOptions& options) {
     // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
-    const auto start = Clock::now();
-    ScatterFunction scatter = mode.prepare(view, snapshot, settings, options.history);
-    const double mode_seconds = seconds_between(start, Clock::now());
+    std::shared_ptr<const Prepared> prepared = options.prepared;
+    if (!prepared)
+        prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
     auto nanoseconds = std::make_shared<std::atomic<int64_t>>(0);
-    FrameTask task{
-        {view, snapshot, timed(std::move(scatter), nanoseconds), mode.surfaces, settings.march.light_points, {}},
-        mode_seconds,
-        nanoseconds,
-        {},
-        std::move(layers)};
-    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
-        for (const Light& light : snapshot.lights)
-            task.tracer.light_depths.push_back(
-                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution, &view));
+    FrameTask task{prepared,
+                   {view, snapshot, timed(prepared->scatter, nanoseconds), mode.surfaces, settings.march.light_points,
+                    prepared->light_depths},
+                   options.prepared ? 0 : prepared->mode_seconds,
+                   nanoseconds,
+                   {},
+                   std::move(layers)};
     if (view.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
     return task;
 }
 
+}
+
+Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                       History* history) {
+    const auto start = Clock::now();
+    Prepared result{mode.prepare(view, snapshot, settings, history), {}, 0};
+    result.mode_seconds = seconds_between(start, Clock::now());
+    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
+        for (const Light& light : snapshot.lights)
+            result.light_depths.push_back(
+                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution, &view));
+    return result;
 }
 
 void FrameStats::add(const FrameStats& other) {
@@ -156,6 +166,11 @@ void FrameStats::add(const FrameStats& other) {
     const ivec2 a = other.first_non_finite, b = first_non_finite;
     if (other.non_finite && (non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x))) first_non_finite = a;
     non_finite += other.non_finite, samples += other.samples;
+}
+
+std::optional<Noise> FrameStats::error() const {
+    if (!noise || !integrator) return noise;
+    return Noise{std::hypot(noise->error, integrator->error.error), std::hypot(noise->bound, integrator->error.bound)};
 }
 
 namespace {

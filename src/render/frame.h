@@ -12,6 +12,7 @@
 // finds the surfaces for depth and alpha only.
 #pragma once
 #include "modes/mode.h"
+#include "trace/light_depth.h"
 
 #include <atomic>
 #include <map>
@@ -43,23 +44,45 @@ struct Layers {
                                                              // light of the scene, dark ones too
 };
 
+// How far the mode is from the truth whatever the number of samples, and what it was set to.
+struct Integrator {
+    Noise error; // as for noise, but systematic: measured against the truth on rays spread over the picture
+    std::string candidate;
+    Settings settings;
+};
+
 struct FrameStats {
     double prepare_seconds = 0, render_seconds = 0;
     double fog_seconds = 0; // of both, what the mode took: its preparation, and its share of every thread's time
     uint64_t camera_rays = 0, steps = 0;
     uint64_t non_finite = 0; // samples dropped: they count as black and not valid
     ivec2 first_non_finite{-1};
-    int samples = 0;            // per pixel
-    std::optional<Noise> noise; // for more than one batch
+    int samples = 0;                      // per pixel
+    std::optional<Noise> noise;           // for more than one batch
+    std::optional<Integrator> integrator; // where it was measured
+    double goal_seconds = 0;              // of a goal: all that its time counts
+
+    std::optional<Noise> error() const; // noise and integrator together
 
     void add(const FrameStats& other); // counts and times
 };
+
+// What a frame needs before its first ray.
+struct Prepared {
+    ScatterFunction scatter;
+    std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+    double mode_seconds = 0;              // what the mode took
+};
+Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                       History* history);
 
 struct FrameOptions {
     bool halves = false;                  // of the batches
     History* history = nullptr;           // of the frames before; null = none is kept
     std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)
     std::function<void(double)> progress; // 0..1, from any thread
+    // Already, with the same settings and a view that differs in samples and seed only.
+    std::shared_ptr<const Prepared> prepared;
 };
 
 // Throws Error (internal) when cancelled.

@@ -91,6 +91,7 @@ std::string command_text(const RenderJob& job, const View& view) {
                        std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
     if (job.exr.full_float) text += " --float";
     if (job.target_error > 0) text += " --target-error " + number(job.target_error);
+    if (job.time_budget > 0) text += " --time-budget " + number(job.time_budget);
     if (job.history > 0) text += " --history " + std::to_string(job.history);
     if (!job.isa.empty()) text += " --isa " + job.isa;
     if (!job.camera.empty()) text += " --camera \"" + job.camera + "\"";
@@ -109,9 +110,9 @@ std::string command_text(const RenderJob& job, const View& view) {
 }
 }
 
-bool measures_noise(const RenderJob& job) {
-    return job.target_error > 0 || wants_layer(job, "variance") || wants_layer(job, "halves");
-}
+bool has_goal(const RenderJob& job) { return job.target_error > 0 || job.time_budget > 0; }
+
+bool measures_noise(const RenderJob& job) { return wants_layer(job, "variance") || wants_layer(job, "halves"); }
 
 bool wants_layer(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
 
@@ -147,7 +148,7 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
     attributes["tyndall:camera"] = view.camera.name;
     attributes["tyndall:mode"] = job.mode;
     attributes["tyndall:quality"] = name_of(job.quality);
-    attributes["tyndall:settings"] = settings_text(job.settings);
+    attributes["tyndall:settings"] = settings_text(stats.integrator ? stats.integrator->settings : job.settings);
     attributes["tyndall:seed"] = std::to_string(job.seed);
     attributes["tyndall:isa"] = job.isa;
     attributes["tyndall:command"] = command_text(job, view);
@@ -157,10 +158,21 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
     if (is_stylised(job.settings) && honours_style(find_mode(job.mode))) attributes["stylised"] = "1";
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);
-        attributes["tyndall:achievedError"] = number(stats.noise->error);
-        attributes["tyndall:errorBound"] = number(stats.noise->bound);
+        attributes["tyndall:achievedError"] = number(stats.error()->error);
+        attributes["tyndall:errorBound"] = number(stats.error()->bound);
+    }
+    if (stats.integrator) {
+        attributes["tyndall:candidate"] = stats.integrator->candidate;
+        attributes["tyndall:noiseError"] = number(stats.noise->error);
+        attributes["tyndall:noiseBound"] = number(stats.noise->bound);
+        attributes["tyndall:integratorError"] = number(stats.integrator->error.error);
+        attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
     }
     if (job.target_error > 0) attributes["tyndall:targetError"] = number(job.target_error);
+    if (job.time_budget > 0) {
+        attributes["tyndall:timeBudget"] = number(job.time_budget);
+        attributes["tyndall:timeUsed"] = number(stats.goal_seconds);
+    }
     std::string limits;
     for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;
     if (!limits.empty()) attributes["tyndall:limits"] = limits;
@@ -173,9 +185,14 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
         return found == attributes.end() ? -1 : std::strtod(found->second.c_str(), nullptr);
     };
     stats.non_finite = static_cast<uint64_t>(std::clamp(value("tyndall:nonFinite"), 0.0, 1e18));
-    const Noise noise{value("tyndall:achievedError"), value("tyndall:errorBound")};
+    stats.goal_seconds = std::max(value("tyndall:timeUsed"), 0.0);
+    const Noise integrator{value("tyndall:integratorError"), value("tyndall:integratorBound")};
+    const bool parts = integrator.error >= 0 && integrator.bound >= 0 && attributes.contains("tyndall:candidate");
+    const Noise noise{value(parts ? "tyndall:noiseError" : "tyndall:achievedError"),
+                      value(parts ? "tyndall:noiseBound" : "tyndall:errorBound")};
     if (noise.error < 0 || noise.bound < 0) return;
     stats.noise = noise;
+    if (parts) stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
     stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));
 }
 }

@@ -23,9 +23,9 @@ struct FrameTracer {
     const View& view;
     const Snapshot& snapshot;
     ScatterFunction scatter;
-    Surfaces surfaces;                    // shared or own: who shades them
-    int light_points;                     // of a soft light, for shared surfaces
-    std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+    Surfaces surfaces;                        // shared or own: who shades them
+    int light_points;                         // of a soft light, for shared surfaces
+    std::span<const LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
 };
 
 // Traces sample `sample` of up to 16 pixels. `per_light` is empty or receives pixels × lights of the snapshot.

@@ -163,15 +163,15 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
 void render(const Pipeline& pipeline, Work& work) {
     const RenderJob& job = pipeline.job;
     const auto start = Clock::now();
-    FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}};
+    FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}, {}};
     options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
     FrameStats& stats = work.report.stats;
     try {
         History history;
         if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        work.layers = job.target_error > 0
-                          ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, job.target_error,
-                                             options, stats)
+        work.layers = has_goal(job)
+                          ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings,
+                                             {job.target_error, job.time_budget, job.quality, {}}, options, stats)
                           : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
@@ -179,13 +179,26 @@ void render(const Pipeline& pipeline, Work& work) {
     work.report.seconds = seconds_since(start);
 }
 
-std::string noise_text(const FrameStats& stats, double target) {
+std::string short_text(const char* format, double value) {
+    char text[80];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+// What is known of the error, its parts and what was asked for.
+std::string error_text(const FrameStats& stats, const RenderJob& job) {
     if (!stats.noise) return {};
-    char noise[80], wanted[40], samples[40];
-    std::snprintf(noise, sizeof noise, ", noise %.3g, at most %.3g", stats.noise->error, stats.noise->bound);
-    std::snprintf(wanted, sizeof wanted, " (wanted %.3g)", target);
-    std::snprintf(samples, sizeof samples, ", %d samples per pixel", stats.samples);
-    return std::string(noise) + (target > 0 ? wanted : "") + samples;
+    std::string text = stats.integrator ? ", error " : ", noise ";
+    text += short_text("%.3g", stats.error()->error) + short_text(", at most %.3g", stats.error()->bound);
+    if (job.target_error > 0) text += short_text(" (wanted %.3g)", job.target_error);
+    if (stats.integrator)
+        text += short_text(": noise %.3g", stats.noise->error) +
+                short_text(", integrator %.3g", stats.integrator->error.error) + " (" + stats.integrator->candidate +
+                ")";
+    text += short_text(stats.samples == 1 ? ", %.0f sample per pixel" : ", %.0f samples per pixel", stats.samples);
+    if (job.time_budget > 0)
+        text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", job.time_budget);
+    return text;
 }
 
 void write(Pipeline& pipeline, Work& work) {
@@ -205,7 +218,7 @@ void write(Pipeline& pipeline, Work& work) {
 
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
-    std::string text = std::string(seconds) + " -> " + report.file + noise_text(report.stats, job.target_error);
+    std::string text = std::string(seconds) + " -> " + report.file + error_text(report.stats, job);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }
@@ -277,7 +290,7 @@ RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mod
         return std::ranges::find(job.frames, frame.frame) - job.frames.begin();
     });
     for (const FrameReport& frame : report.frames)
-        report.missed += job.target_error > 0 && frame.stats.noise && frame.stats.noise->bound > job.target_error;
+        report.missed += job.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > job.target_error;
     report.cancelled = cancel && report.frames.size() < job.frames.size();
     report.seconds = seconds_since(start);
     report.peak_memory_bytes = peak_memory();

@@ -24,14 +24,18 @@ struct RenderJob {
     LightUnits light_units = LightUnits::spec; // how the scene was loaded; for the header
     float exposure = 0;                        // added to the scene's, for PNGs
     ExrOptions exr;
-    double target_error = 0; // render until the noise is below this share of the picture's mean; 0 = settings decide
+    double target_error = 0; // render until the error is below this share of the picture's mean; 0 = none is asked for
+    double time_budget = 0;  // seconds for each frame, loading and writing apart; 0 = as many as it takes
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
 };
 
-// Whether the noise of this job's pictures is measured: for a target error, or for layers that hold it. Then each pixel
-// takes noise_batches batches, and as many samples as they divide.
+// Whether an error or a time decides how many samples there are.
+bool has_goal(const RenderJob& job);
+
+// Whether layers hold the noise of this job's pictures. Then each pixel takes noise_batches batches, and as many
+// samples as they divide.
 bool measures_noise(const RenderJob& job);
 
 bool wants_layer(const RenderJob& job, std::string_view layer);
@@ -47,7 +51,7 @@ struct FrameReport {
 struct RenderReport {
     std::vector<FrameReport> frames; // complete ones, in the order of the job
     std::vector<std::string> notes;
-    int missed = 0;         // frames that are noisier than the target error
+    int missed = 0;         // frames that are further off than the target error
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;

@@ -52,9 +52,17 @@ Json json_of(const FrameReport& frame) {
                         {"non_finite", json_of(frame.stats.non_finite)}});
     if (frame.stats.noise) {
         json.members.emplace_back("samples", json_of(frame.stats.samples));
-        json.members.emplace_back("achieved_error", json_of(frame.stats.noise->error));
-        json.members.emplace_back("error_bound", json_of(frame.stats.noise->bound));
+        json.members.emplace_back("achieved_error", json_of(frame.stats.error()->error));
+        json.members.emplace_back("error_bound", json_of(frame.stats.error()->bound));
     }
+    if (frame.stats.integrator) {
+        json.members.emplace_back("candidate", json_of(frame.stats.integrator->candidate));
+        json.members.emplace_back("noise_error", json_of(frame.stats.noise->error));
+        json.members.emplace_back("noise_bound", json_of(frame.stats.noise->bound));
+        json.members.emplace_back("integrator_error", json_of(frame.stats.integrator->error.error));
+        json.members.emplace_back("integrator_bound", json_of(frame.stats.integrator->error.bound));
+    }
+    if (frame.stats.goal_seconds > 0) json.members.emplace_back("goal_seconds", json_of(frame.stats.goal_seconds));
     if (frame.stats.non_finite) json.members.emplace_back("first_non_finite", json_of(frame.stats.first_non_finite));
     return json;
 }
@@ -110,6 +118,7 @@ std::string stats_json(const RenderReport& report, const RenderJob& job) {
         json.members.emplace_back("target_error", json_of(job.target_error));
         json.members.emplace_back("missed", json_of(report.missed));
     }
+    if (job.time_budget > 0) json.members.emplace_back("time_budget", json_of(job.time_budget));
     return format_json(json);
 }
 }

@@ -1,21 +1,23 @@
-// Pictures as noisy as wanted and no noisier.
+// Pictures as right as wanted and no better, or as good as a time allows.
 #pragma once
-#include "render/frame.h"
+#include "render/goal.h"
 
 namespace tyndall {
-inline constexpr int noise_batches = 64;          // of a picture whose noise is measured
+inline constexpr int noise_batches = 64;          // of a picture whose noise is measured pixel by pixel
 inline constexpr int most_target_samples = 65536; // per pixel
 
 // The next number of samples that noise_batches divide.
 int batched_samples(int samples);
 
-// Throws Error (usage) unless the mode's error is noise.
-void check_target(const Mode& mode);
+// Throws Error (usage) in the name of an option unless the mode's error can be told.
+void check_target(const Mode& mode, std::string_view option = "--target-error");
 
-// Renders rounds of noise_batches batches, each with a seed of its own, until the bound of the noise is at most
-// `target` or a pixel has most_target_samples; stats.noise says which. The first round has view.pixel_samples, rounded
-// up; later ones what the noise so far asks for, at most as many as all before. Depth is that of the first round.
-// How many rounds there are depends on all pixels rendered: a crop may get other bits.
+// Renders rounds of samples, each with a seed of its own, until the bound of the error is at most goal.error, the next
+// round would end after goal.seconds, or a pixel has most_target_samples; stats.error() says how good it is. Noise is
+// measured between batches: 64 in a round where noise is the mode's only error or the view has batches, else two; a
+// picture of one sample per pixel is judged by the pixels measured beforehand. Modes with an error besides noise are
+// set to the candidate that choose() picks. Depth is that of the first round. How many rounds there are depends on all
+// pixels rendered: a crop may get other bits.
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                        double target, const FrameOptions& options, FrameStats& stats);
+                        Goal goal, const FrameOptions& options, FrameStats& stats);
 }

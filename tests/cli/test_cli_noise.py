@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from program import ProgramTest, run, scene
+from program import ProgramTest, recipe, run, scene
 
 
 def lit_fog():
@@ -111,9 +111,82 @@ class Target(ProgramTest):
     def test_a_miss_writes_the_picture_and_exits_with_1(self):
         result = self.render("--target-error", "1e-5", "--res", "2x1", "--orders", "1")
         self.assertEqual(result.returncode, 1, result.stderr)
-        self.assertIn("noisier than 1e-05", result.stderr)
+        self.assertIn("larger than 1e-05", result.stderr)
         self.assertEqual(self.attributes()["tyndall:samples"], "65536")
         self.assertEqual(json.loads(result.stdout)["missed"], 1)
+
+
+class MarchTarget(ProgramTest):
+    """Goals of march: an error measured against exact single scattering, a time, or both."""
+    def setUp(self):
+        super().setUp()
+        fog = {"type": "noise", "recipe": self.write("fog.json", recipe()).name, "extinction": 2}
+        self.scene = self.write("scene.json", scene(frames="1-2", resolution=[48, 27], media=[fog]))
+        self.output = self.path("out.####.exr")
+
+    def render(self, *more, code=0):
+        result = run("render", self.scene, "-o", self.output, "--frames", "1", "--json", *more)
+        self.assertEqual(result.returncode, code, result.stderr)
+        attributes = json.loads(self.succeed("info", "--json", self.path("out.0001.exr")).stdout)["attributes"]
+        return json.loads(result.stdout), attributes, result.stderr
+
+    def test_the_error_is_measured_reached_and_reported(self):
+        report, attributes, said = self.render("--target-error", "0.05")
+        frame = report["frames"][0]
+        self.assertEqual(report["missed"], 0)
+        self.assertLessEqual(frame["error_bound"], 0.05)
+        self.assertAlmostEqual(frame["error_bound"] ** 2, frame["noise_bound"] ** 2 + frame["integrator_bound"] ** 2,
+                               delta=1e-8)
+        self.assertLessEqual(frame["integrator_bound"], 0.035)
+        for key, name in [("error_bound", "errorBound"), ("achieved_error", "achievedError"),
+                          ("integrator_error", "integratorError"), ("noise_error", "noiseError")]:
+            self.assertAlmostEqual(float(attributes["tyndall:" + name]), frame[key], delta=1e-8)
+        self.assertEqual(attributes["tyndall:candidate"], frame["candidate"])
+        self.assertEqual(attributes["tyndall:targetError"], "0.05")
+        self.assertIn("wanted 0.05", said)
+        self.assertIn(f"({frame['candidate']})", said)
+
+        truth = self.path("truth.exr")
+        self.succeed("render", self.scene, "-o", truth, "--frames", "1", "--quality", "reference")
+        compared = json.loads(self.succeed("compare", "--json", self.path("out.0001.exr"), truth).stdout)
+        self.assertLessEqual(compared["metrics"]["rmse_rel"], 0.05)
+
+    def test_the_picture_can_be_made_again_from_its_settings(self):
+        _, attributes, _ = self.render("--target-error", "0.1")
+        words = [("--set", row) for row in attributes["tyndall:settings"].split() if row.startswith("march.")]
+        again, _, _ = self.render("--target-error", "0.1", *[word for pair in words for word in pair])
+        self.assertLessEqual(again["frames"][0]["error_bound"], 0.1)
+
+    def test_resume_keeps_what_is_reached_or_was_given_its_time(self):
+        for goal in [("--target-error", "0.1"), ("--time-budget", "0.5")]:
+            first = self.render(*goal, "--resume")[0]["frames"][0]
+            second = self.render(*goal, "--resume")[0]["frames"][0]
+            self.assertFalse(first["kept"], goal)
+            self.assertTrue(second["kept"], goal)
+            for key in ["samples", "candidate"]:
+                self.assertEqual(second[key], first[key])
+            for key in ["error_bound", "integrator_bound", "noise_error"]:
+                self.assertAlmostEqual(second[key], first[key], delta=1e-8 + 1e-6 * first[key])
+        self.assertAlmostEqual(second["goal_seconds"], first["goal_seconds"], delta=1e-6)
+        self.assertFalse(self.render("--time-budget", "0.6", "--resume")[0]["frames"][0]["kept"])
+
+    def test_a_time_is_reported_beside_what_it_was_worth(self):
+        report, attributes, said = self.render("--time-budget", "0.3")
+        frame = report["frames"][0]
+        self.assertEqual(report["time_budget"], 0.3)
+        self.assertGreaterEqual(frame["samples"], 1)
+        self.assertGreater(frame["goal_seconds"], 0)
+        self.assertGreater(frame["error_bound"], 0)
+        self.assertEqual(attributes["tyndall:timeBudget"], "0.300000000"[:3])
+        self.assertAlmostEqual(float(attributes["tyndall:timeUsed"]), frame["goal_seconds"], delta=1e-6)
+        self.assertIn("of 0.3 s", said)
+
+    def test_a_row_that_is_set_too_coarse_is_a_miss(self):
+        report, attributes, said = self.render("--target-error", "0.02", "--set", "march.light=off", code=1)
+        self.assertEqual(report["missed"], 1)
+        self.assertGreater(report["frames"][0]["integrator_error"], 0.02)
+        self.assertIn("may be larger than 0.02", said)
+        self.assertIn("march.light=off", attributes["tyndall:settings"])
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
                "--exposure", "--light-units", "--missing", "--aov", "--png", "--resume", "--seed", "--isa",
-               "--stats-json", "--orders", "--target-error", "--float"],
+               "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
 }
@@ -81,6 +81,7 @@ class CommandLine(ProgramTest):
             "--aov": ["depth", "Z,,inscatter", "Variance", "half_a"],
             "--orders": ["", "0", "-1", "1.5", "65537", "all"],
             "--target-error": ["", "0", "-0.1", "nan", "1e-6", "11", "low"],
+            "--time-budget": ["", "0", "-1", "nan", "inf", "2e6", "soon"],
             "--seed": ["-1", "4294967296", "1.5"],
             "--isa": ["sse2", "neon"],
         }
@@ -104,14 +105,20 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["--exposure", "--png"], *self.render("--exposure", "1"))
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
-        for option in ["--time-budget", "--time-samples"]:
-            self.refuse(2, [option], *self.render(option, "1"))
+        self.refuse(2, ["--time-samples"], *self.render("--time-samples", "1"))
         for mode in ["march,march", "auto"]:
             self.refuse(2, ["march"], *self.render("--mode", mode))
 
     def test_what_a_mode_cannot_do_is_refused(self):
         self.refuse(2, ["--orders", "march scatters light once", "--mode path"], *self.render("--orders", "2"))
-        self.refuse(2, ["--target-error", "'march'", "--mode path"], *self.render("--target-error", "0.1"))
+        for option in ["--target-error", "--time-budget"]:
+            for mode in ["froxel", "radial-blur", "march,cone"]:
+                self.refuse(2, [option, mode.split(",")[-1], "--mode march", "--mode path"],
+                            *self.render(option, "0.1", "--mode", mode))
+            for more in [("--samples", "8"), ("--set", "pixel.samples=8")]:
+                self.refuse(2, ["--samples", option], *self.render(option, "0.1", *more))
+        self.refuse(2, ["--samples", "--time-budget"],
+                    *self.render("--time-budget", "0.1", "--mode", "path", "--samples", "8"))
 
     def test_output_names(self):
         several = ("--frames", "1-2")
