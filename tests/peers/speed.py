@@ -17,9 +17,9 @@ from compare import run_blender
 from scenes import SHAFTS
 
 # Ever finer: what the picture costs, what error is left.
-LADDER = ["--quality draft --samples 1", "--samples 1", "--samples 1 --set pixel.lamp_samples=64", "--samples 4",
-          "--quality final --samples 4", "--quality final --samples 16", "--quality final --samples 64"]
-CONVERGED_OPTIONS = "--quality reference --set march.light=grid --samples 64 --set pixel.lamp_samples=64"
+LADDER = ["--samples 1 --set march.step_share=0.0625 --set march.step_voxels=16", "--samples 1", "--samples 4",
+          "--quality final --samples 4", "--quality final --samples 16"]
+CONVERGED_OPTIONS = "--quality final --samples 128 --set march.light_resolution=256"
 # The same fog and a sun, as vdb_render has them: isotropic, white, the eye 12 m away.
 VDB_RENDER = ["-res", "640x360", "-translate", "0,2,12", "-lookat", "0,2,0", "-light", "0.3,0.8,0.2,1,1,1",
               "-absorb", "0.05,0.05,0.05", "-scatter", "0.3,0.3,0.3", "-gain", "0"]
