@@ -1,4 +1,4 @@
-// Fog between shadow volumes along a packet of rays, light by light.
+// Fog between exact shadows along a packet of rays, light by light.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "modes/lit_fog_kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -57,13 +57,15 @@ void add_sliced(Packet& packet, size_t index, const Stretch (&reached)[16]) {
     const LitFog& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
     const size_t count = packet.batch.rays.size();
+    if (std::all_of(reached, reached + count, [](Stretch stretch) { return stretch.empty(); })) return;
     const uint32_t points = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
     Ray rays[16];
     LightPoint picked[16];
     packet.part = 1.0 / points;
     for (uint32_t k = 0; k < points; ++k) {
         for (size_t i = 0; i < count; ++i) {
-            rays[i] = packet.batch.rays[i], rays[i].t_max = static_cast<float>(reached[i].high);
+            rays[i] = packet.batch.rays[i];
+            rays[i].t_max = reached[i].empty() ? 0 : static_cast<float>(reached[i].high);
             picked[i] = light_point(packet.batch, i, light, index, k, points);
         }
         find_lit(near_rays(frame.slices, {rays, count}, {picked, count}), {rays, count}, {picked, count},

@@ -1,4 +1,4 @@
-// Nodes on the lit stretches of rays, inside the kernel of shadow-volume (see base/simd.h for how such files are
+// Nodes on the lit stretches of rays, inside the kernel of lit fog (see base/simd.h for how such files are
 // compiled).
 #if defined(TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H

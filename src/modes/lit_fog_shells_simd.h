@@ -1,4 +1,4 @@
-// Shells: the sides of shadow volumes as sheets of light, inside the kernel of shadow-volume (see base/simd.h for how
+// Shells: the sides of shadow volumes as sheets of light, inside the kernel of lit fog (see base/simd.h for how
 // such files are compiled).
 #if defined(TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_LIT_FOG_SHELLS_SIMD_H

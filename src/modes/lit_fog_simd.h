@@ -1,4 +1,4 @@
-// The integrand of shadow-volume at sixteen points of any rays, inside its kernel (see base/simd.h for how such files
+// The integrand of lit fog at sixteen points of any rays, inside its kernel (see base/simd.h for how such files
 // are compiled).
 #if defined(TYNDALL_MODES_LIT_FOG_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_LIT_FOG_SIMD_H
