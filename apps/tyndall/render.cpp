@@ -1,4 +1,5 @@
 // tyndall render: the frames of a scene to OpenEXR files, and PNGs for looking at.
+#include "automatic.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/frames.h"
@@ -112,8 +113,9 @@ void say_before(const Scene& scene, const std::vector<Limit>& limits, const Rend
 // job before shares its fog and surfaces, and is replaced by this job's when that is all there is to render.
 Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& texts, const std::string& json,
                     const std::string& label, Snapshot& shared, const Globals& globals) {
-    settle_noise(job, globals);
     LoadedFrame first = load_first_frame(scene, job, shared);
+    if (texts.mode == automatic) choose_mode(scene, job, first.snapshot, globals);
+    settle_noise(job, globals);
     shared = job.frames.size() == 1 ? first.snapshot : Snapshot{};
     shared.kept = nullptr; // the time that a mode takes must not depend on the one before it
     const std::vector<Limit> limits = limits_of(scene, job, first.snapshot);

@@ -1,6 +1,7 @@
 // The options of tyndall render: how they read, and what they mean.
 #include "render_options.h"
 
+#include "automatic.h"
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/isa.h"
@@ -98,14 +99,14 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "N");
     option("--target-error", texts.target_error,
            "go on until the error (rmse) is below this share of the picture's mean,\n"
-           "0.01 for instance; for march and path. march measures its error on a few\n"
-           "pixels against exact single scattering and picks steps and light grids by\n"
-           "it, those of --set apart; path has no error but noise. Exit code 1 when\n"
-           "the error stays larger",
+           "0.01 for instance; not for billboard and radial-blur. A mode's error is\n"
+           "measured on a few pixels against exact single scattering, and its steps,\n"
+           "maps and grids are picked by it, those of --set apart; path has no error\n"
+           "but noise. Exit code 1 when the error stays larger",
            "E");
     option("--time-budget", texts.time_budget,
            "the best picture in so many seconds for each frame, but one ray per pixel\n"
-           "at least; for march and path. Measuring, preparing and rendering count,\n"
+           "at least; not for billboard and radial-blur. Measuring, preparing and rendering count,\n"
            "loading and writing do not. The picture depends on the machine; with\n"
            "--target-error what comes first ends it",
            "SECONDS");
@@ -114,9 +115,11 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "as the mode can)",
            "N");
     option("--mode", texts.mode,
-           "rendering technique (default: march), several (a,b,c) or all: each then\n"
-           "writes files of its own, out.MODE.####.exr, and a PNG shows them side by\n"
-           "side; tyndall modes lists them",
+           "rendering technique (default: march), or auto: the quickest that gets to\n"
+           "--target-error (default: by quality, 0.05 for preview) or the best for\n"
+           "--time-budget, as tyndall plan finds it for the first frame. Several\n"
+           "(a,b,c) or all: each then writes files of its own, out.MODE.####.exr, and\n"
+           "a PNG shows them side by side; tyndall modes lists them",
            "NAMES");
     option("--history", texts.history,
            "frames before each that modes with a memory (tyndall modes) look at first,\n"
@@ -166,6 +169,7 @@ void check_crop(const RenderJob& job, ivec2 picture) {
 
 std::vector<const Mode*> asked_modes(const std::string& text) {
     std::vector<const Mode*> result;
+    if (text == automatic) return {&find_mode("march")}; // until the scene is known
     if (text == "all") {
         for (const Mode& mode : modes()) result.push_back(&mode);
         return result;
@@ -202,7 +206,11 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
         job.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
         check_target(mode, "--time-budget");
     }
+    if (texts.mode == automatic && !goal) job.target_error = usual_error(job.quality);
     check_samples(job, mode);
+    if (!texts.history.empty() && has_goal(job))
+        fail(ExitCode::usage, "--history",
+             "does not go with --target-error and --time-budget: they measure single frames");
     if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     job.camera = texts.camera;
     if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);

@@ -1,6 +1,7 @@
 #include "render/goal.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 
 namespace tyndall {
@@ -24,6 +25,10 @@ bool reaches(const Choice& choice, double samples, double error) {
 }
 }
 
+double steady_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 double Choice::expected(double samples) const {
     return samples < 2 ? measured.single.value : measured.integrator.value + measured.sample.value / samples;
 }
@@ -33,8 +38,9 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
     const auto spent = [&] { return goal.clock() - start; };
     const Settings truth = systematic ? truth_of(settings) : settings;
-    const Pilot pilot = make_pilot(mode, view, snapshot, systematic ? &truth : nullptr, options,
-                                   [&] { return timed && spent() > truth_share * goal.seconds; });
+    const Pilot pilot =
+        make_pilot(systematic ? find_mode("march") : mode, view, snapshot, systematic ? &truth : nullptr, options,
+                   [&] { return timed && spent() > truth_share * goal.seconds; });
 
     std::optional<Choice> best;
     const std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
@@ -43,7 +49,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         Choice next{candidate, measure(pilot, mode, snapshot, candidate.settings, options, goal.clock), systematic};
         if (!timed) {
             if (leaves_room(next, goal.error)) return next;
-            if (best && binds_candidates(settings, goal.quality) && gains_nothing(next, *best)) break;
+            if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;
             best = std::move(next);
             continue;
         }

@@ -4,16 +4,6 @@
 #include "render/pilot.h"
 
 namespace tyndall {
-struct Goal {
-    double error = 0;                   // as a share of the picture's mean; 0 = none is asked for
-    double seconds = 0;                 // to measure, prepare and render in; 0 = as many as it takes
-    Quality quality = Quality::preview; // of the settings: rows that depart from it are kept
-    Seconds clock;                      // empty = a steady clock
-};
-
-// Share of the error wanted that the integrator may use up.
-inline constexpr double integrator_share = 0.7;
-
 struct Choice {
     Candidate candidate;
     Measured measured;
@@ -22,6 +12,19 @@ struct Choice {
     // The squared error to expect of so many samples per pixel.
     double expected(double samples) const;
 };
+
+struct Goal {
+    double error = 0;                       // as a share of the picture's mean; 0 = none is asked for
+    double seconds = 0;                     // to measure, prepare and render in; 0 = as many as it takes
+    Quality quality = Quality::preview;     // of the settings: rows that depart from it are kept
+    Seconds clock{};                        // empty = steady_seconds
+    std::shared_ptr<const Choice> choice{}; // made for this very picture beforehand; null = none is
+};
+
+double steady_seconds(); // since some moment
+
+// Share of the error wanted that the integrator may use up.
+inline constexpr double integrator_share = 0.7;
 
 // With an error asked for, the first candidate whose bound leaves enough for noise, or the finest; what comes before
 // the first that gains nothing, where set rows keep candidates from getting finer. With seconds, the one whose picture

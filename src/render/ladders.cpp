@@ -2,14 +2,41 @@
 
 #include "modes/techniques.h"
 
-#include <cassert>
-#include <span>
+#include <algorithm>
+#include <array>
+#include <iterator>
 #include <sstream>
 
 namespace tyndall {
 namespace {
-// Rays per pixel grow with care, so that the edges of surfaces do not hide what the fog gains.
-constexpr int march_samples[] = {1, 1, 4, 16, 32, 64, 64};
+// What a rung of the march decides.
+constexpr std::array<std::string_view, 10> march_rows{
+    "march.step_depth",        "march.step_voxels", "march.step_share", "march.near_light", "march.max_steps",
+    "march.min_transmittance", "march.visibility",  "march.light",      "march.nodes",      "march.light_resolution"};
+
+struct MarchRung {
+    const char* name;
+    int samples; // grow with care, so that the edges of surfaces do not hide what the fog gains
+    MarchSettings march;
+};
+
+// Steps and light grids get finer together, since neither alone is the whole error.
+std::vector<MarchRung> march_rungs() {
+    const auto of = [](Quality quality) { return settings_for(quality).march; };
+    MarchSettings fine = of(Quality::preview), finer = of(Quality::final), marched;
+    fine.step_depth = 0.15f, fine.step_voxels = 4, fine.step_share = 1.0f / 56, fine.near_light = 0.35f;
+    fine.max_steps = 2048, fine.min_transmittance = 3e-4f, fine.light_resolution = 96, fine.nodes = 5;
+    finer.step_depth = 0.05f, finer.step_voxels = 1, finer.step_share = 1.0f / 192, finer.near_light = 0.125f;
+    finer.max_steps = 16384, finer.min_transmittance = 1e-5f, finer.light_resolution = 256, finer.nodes = 8;
+    marched = finer, marched.light = LightTransmittance::marched;
+    return {{"draft", 1, of(Quality::draft)},
+            {"preview", 1, of(Quality::preview)},
+            {"fine", 4, fine},
+            {"final", 16, of(Quality::final)},
+            {"finer", 32, finer},
+            {"marched", 64, marched},
+            {"exact", 64, of(Quality::reference)}};
+}
 
 constexpr std::string_view shadow_map_rungs[] = {
     "pixel.samples=1 shadow_map.steps=8 shadow_map.resolution=256 march.light_resolution=32",
@@ -25,7 +52,7 @@ constexpr std::string_view froxel_rungs[] = {
     "pixel.samples=1 froxel.tile=8 froxel.depth_slices=64 froxel.shadow_rays=1 march.light_resolution=64",
     "pixel.samples=4 froxel.tile=4 froxel.depth_slices=96 froxel.shadow_rays=2 march.light_resolution=96",
     "pixel.samples=16 froxel.tile=2 froxel.depth_slices=160 froxel.shadow_rays=4 march.light_resolution=128",
-    "pixel.samples=32 froxel.tile=1 froxel.depth_slices=320 froxel.shadow_rays=8 march.light_resolution=192"};
+    "pixel.samples=32 froxel.tile=2 froxel.depth_slices=256 froxel.shadow_rays=8 march.light_resolution=192"};
 
 constexpr std::string_view shadow_volume_rungs[] = {
     "pixel.samples=1 shadow_volume.nodes=2 shadow_volume.steps=8 shadow_volume.light_resolution=32",
@@ -71,30 +98,60 @@ constexpr Ladder ladders[] = {{prepare_froxel, froxel_rungs},
                               {prepare_radial_blur, radial_blur_rungs},
                               {prepare_path, path_rungs}};
 
-std::vector<Candidate> march_ladder(const Mode& mode, const Settings& settings) {
-    Settings usual = settings;
-    usual.march = settings_for(Quality::preview).march;
-    std::vector<Candidate> ladder = candidates_of(mode, usual, Quality::preview);
-    assert(ladder.size() == std::size(march_samples));
-    for (size_t i = 0; i < ladder.size(); ++i) ladder[i].settings.pixel.samples = march_samples[i];
+std::vector<Candidate> march_ladder(const Settings& settings) {
+    std::vector<Candidate> ladder;
+    for (const MarchRung& rung : march_rungs()) {
+        Settings from;
+        from.march = rung.march;
+        Candidate candidate{rung.name, settings};
+        take_rows(march_rows, from, candidate.settings);
+        candidate.settings.pixel.samples = rung.samples;
+        ladder.push_back(std::move(candidate));
+    }
     return ladder;
 }
 
-Candidate rung_of(std::string_view rows, const Settings& settings) {
-    Candidate rung{std::string(rows), settings};
-    std::istringstream words{rung.name};
-    for (std::string word; words >> word;) apply_setting(rung.settings, word);
-    return rung;
+std::span<const std::string_view> rungs_of(const Mode& mode) {
+    for (const Ladder& ladder : ladders)
+        if (ladder.prepare == mode.prepare) return ladder.rungs;
+    return {};
+}
+
+// "name=value name=value", as words.
+std::vector<std::string> assignments(std::string_view rung) {
+    std::istringstream words{std::string(rung)};
+    return {std::istream_iterator<std::string>(words), {}};
 }
 }
 
+void take_rows(std::span<const std::string_view> names, const Settings& from, Settings& to) {
+    for (const SettingRow& row : setting_rows())
+        if (std::ranges::count(names, row.name)) row.set(to, row.get(from));
+}
+
+std::vector<std::string_view> ladder_rows(const Mode& mode) {
+    if (mode.prepare == prepare_march) return {march_rows.begin(), march_rows.end()};
+    std::vector<std::string_view> names;
+    for (const std::string_view rung : rungs_of(mode))
+        for (const std::string& assignment : assignments(rung)) {
+            const std::string_view name = rung.substr(rung.find(assignment), assignment.find('='));
+            if (name != "pixel.samples" && !std::ranges::count(names, name)) names.push_back(name);
+        }
+    return names;
+}
+
 std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings) {
-    if (has_integrator(mode)) return march_ladder(mode, settings);
+    if (mode.prepare == prepare_march) return march_ladder(settings);
     std::vector<Candidate> ladder;
-    for (const Ladder& known : ladders)
-        if (known.prepare == mode.prepare)
-            for (const std::string_view rows : known.rungs) ladder.push_back(rung_of(rows, settings));
-    assert(!ladder.empty());
+    for (const std::string_view rung : rungs_of(mode)) {
+        Candidate candidate{"", settings};
+        for (const std::string& assignment : assignments(rung)) {
+            apply_setting(candidate.settings, assignment);
+            if (assignment.starts_with("pixel.samples")) continue;
+            candidate.name += (candidate.name.empty() ? "" : " ") + assignment;
+        }
+        ladder.push_back(std::move(candidate));
+    }
     return ladder;
 }
 }

@@ -1,9 +1,20 @@
-// The settings at which a mode is held against others: from the quickest picture to the most careful one.
+// Ways to make a picture, by each mode: from the quickest to the most careful.
 #pragma once
-#include "render/candidates.h"
+#include "modes/mode.h"
 
 namespace tyndall {
+struct Candidate {
+    std::string name; // of its rung, without samples
+    Settings settings;
+};
+
 // At least six rungs for every mode. What decides how carefully a rung works is its own, pixel.samples among it;
 // everything else is as in `settings`.
 std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings);
+
+// The rows that the rungs of a mode decide, but for pixel.samples.
+std::vector<std::string_view> ladder_rows(const Mode& mode);
+
+// Copies rows by name.
+void take_rows(std::span<const std::string_view> names, const Settings& from, Settings& to);
 }

@@ -15,6 +15,7 @@ constexpr int tile_side = 4;
 constexpr size_t rays = 2 * 16, values = 2 * rays; // of a tile: colour and fog light of both samples of its pixels
 constexpr double confidence = 1.96;                // standard deviations below which 97.5 % of a normal lie
 constexpr uint32_t use_pilot = 0x9170u;
+constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
 // Tiles that show a pixel of the picture, all or some, in an order of which any beginning is spread evenly.
 std::vector<ivec2> spread_tiles(const View& view, double& count) {
@@ -43,21 +44,25 @@ FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapsh
     return {view, snapshot, prepared.scatter, mode.surfaces, settings.march.light_points, prepared.light_depths};
 }
 
-// Colour and fog light of a tile's pixels, sample by sample; NaN where there is no pixel or no finite sample.
+// Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where there is
+// no pixel or a sample is not finite.
 void follow_tile(const FrameTracer& tracer, ivec2 corner, std::span<vec3> result) {
     const ivec2 end = glm::min(corner + tile_side, tracer.view.size);
-    std::ranges::fill(result, vec3(std::numeric_limits<float>::quiet_NaN()));
+    std::ranges::fill(result, vec3(quiet_nan));
     ivec2 pixels[16];
     size_t count = 0;
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) pixels[count++] = {x, y};
     PixelSample samples[16];
-    for (int s = 0; s < tracer.view.pixel_samples; ++s) {
+    const int all = tracer.view.pixel_samples, half = std::max(all / 2, 1);
+    for (int s = 0; s < all; ++s) {
         trace_samples(tracer, {pixels, count}, s, {samples, count}, {});
         for (size_t i = 0; i < count; ++i) {
-            if (!samples[i].finite()) continue;
-            const size_t at = 2 * (16 * static_cast<size_t>(s) + i);
-            result[at] = samples[i].color, result[at + 1] = samples[i].inscatter;
+            vec3* mean = &result[2 * (16 * static_cast<size_t>(s / half) + i)];
+            const bool fresh = s % half == 0;
+            const float share = 1 / static_cast<float>(half), kept = samples[i].finite() ? share : quiet_nan;
+            mean[0] = (fresh ? vec3(0) : mean[0]) + kept * samples[i].color;
+            mean[1] = (fresh ? vec3(0) : mean[1]) + kept * samples[i].inscatter;
         }
     }
 }
@@ -149,8 +154,7 @@ Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
                  const FrameOptions& options, const Seconds& clock) {
     Measured result;
     const double start = clock();
-    result.prepared =
-        std::make_shared<const Prepared>(prepare_frame(mode, pilot.view, snapshot, settings, options.history));
+    result.prepared = std::make_shared<const Prepared>(prepare_frame(mode, pilot.view, snapshot, settings, nullptr));
     const double prepared = clock();
     std::vector<vec3> own, center;
     const size_t count = pilot.corners.size();
@@ -160,8 +164,10 @@ Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
     single.pixel_samples = single.batches = 1, single.seed = hash(single.seed, use_pilot);
     follow(tracer_of(mode, single, snapshot, settings, *result.prepared), pilot, 0, count, options, center);
 
+    // The quicker of two looks: so few rays are easily held up.
     result.prepare_seconds = prepared - start;
-    result.sample_seconds = (followed - prepared) / 2 * (pilot.tiles / static_cast<double>(count));
+    const double sample = std::min((followed - prepared) / 2, clock() - followed);
+    result.sample_seconds = sample * (pilot.tiles / static_cast<double>(count));
     const std::vector<vec3>& truth = pilot.truth.empty() ? own : pilot.truth;
     for (size_t layer = 0; layer < 2; ++layer) {
         std::vector<Sums> tiles;
@@ -174,5 +180,26 @@ Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
         result.single = worse(result.single, squared_error(tiles, 2));
     }
     return result;
+}
+
+double spread_power(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot, const Settings& settings,
+                    const Prepared& prepared, double sample_variance, const FrameOptions& options) {
+    constexpr int samples = 8;
+    View view = pilot.view;
+    view.pixel_samples = 2 * samples;
+    std::vector<vec3> own;
+    const size_t count = pilot.corners.size();
+    follow(tracer_of(mode, view, snapshot, settings, prepared), pilot, 0, count, options, own);
+    double variance = 0;
+    for (size_t layer = 0; layer < 2; ++layer) {
+        Sums sums;
+        for (size_t tile = 0; tile < count; ++tile) {
+            const std::span<const vec3> means(own.data() + tile * values, values);
+            sums.add(sums_of(means, means, means, layer), 1);
+        }
+        variance = std::max(variance, sums.square(1));
+    }
+    if (!(variance > 0) || !(sample_variance > variance)) return 1;
+    return std::clamp(std::log(sample_variance / variance) / std::log(double{samples}), 1.0, 2.0);
 }
 }

@@ -173,6 +173,7 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
         attributes["tyndall:timeBudget"] = number(job.time_budget);
         attributes["tyndall:timeUsed"] = number(stats.goal_seconds);
     }
+    if (!job.plan.empty()) attributes["tyndall:plan"] = job.plan;
     std::string limits;
     for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;
     if (!limits.empty()) attributes["tyndall:limits"] = limits;

@@ -169,10 +169,11 @@ void render(const Pipeline& pipeline, Work& work) {
     try {
         History history;
         if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        work.layers = has_goal(job)
-                          ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings,
-                                             {job.target_error, job.time_budget, job.quality, {}}, options, stats)
-                          : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
+        const Goal goal{job.target_error, job.time_budget, job.quality, {}, work.index == 0 ? job.choice : nullptr};
+        work.layers =
+            has_goal(job)
+                ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, goal, options, stats)
+                : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }

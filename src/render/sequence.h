@@ -2,6 +2,7 @@
 #pragma once
 #include "base/progress.h"
 #include "render/exr.h"
+#include "render/goal.h"
 
 #include <atomic>
 #include <string>
@@ -29,6 +30,8 @@ struct RenderJob {
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
+    std::string plan;                     // why this mode, when it was chosen for the scene; for the header
+    std::shared_ptr<const Choice> choice; // of the first frame's candidate, when already made
 };
 
 // Whether an error or a time decides how many samples there are.

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 namespace tyndall {
 namespace {
@@ -90,10 +89,6 @@ Noise single_noise(const Choice& choice) {
             std::sqrt(std::max(m.single.bound - integrator.bound, 0.0))};
 }
 
-double steady_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
 // become.
 bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
@@ -112,7 +107,8 @@ int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_
 void check_target(const Mode& mode, std::string_view option) {
     if (error_can_be_told(mode)) return;
     fail(ExitCode::usage, std::string(option),
-         "the error of mode '" + std::string(mode.name) + "' cannot be told; --mode march and --mode path take it");
+         "mode '" + std::string(mode.name) +
+             "' is a look: its error is as large as it is; --mode auto picks one that fits");
 }
 
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -124,12 +120,13 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     Settings chosen = settings;
     stats = {};
     if (has_integrator(mode) || goal.seconds > 0) {
-        rounds.choice = choose(mode, view, snapshot, settings, goal, rounds.start, options);
+        rounds.choice =
+            goal.choice ? *goal.choice : choose(mode, view, snapshot, settings, goal, rounds.start, options);
         chosen = rounds.choice->candidate.settings;
         rounds.sample_seconds = rounds.choice->measured.sample_seconds;
         round_options.prepared = rounds.choice->measured.prepared;
         stats.prepare_seconds = goal.clock() - rounds.start;
-        stats.fog_seconds = round_options.prepared->mode_seconds;
+        if (round_options.prepared) stats.fog_seconds = round_options.prepared->mode_seconds;
         const SquaredError& error = rounds.choice->measured.integrator;
         if (rounds.choice->has_integrator)
             stats.integrator = {

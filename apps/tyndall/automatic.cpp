@@ -1,0 +1,49 @@
+#include "automatic.h"
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "render/provenance.h"
+
+namespace tyndall {
+namespace {
+// The mode of a frame that --mode auto has rendered, for the same goal; null where there is none.
+const Mode* mode_before(const RenderJob& job) {
+    const std::string file = frame_name(job.output, job.frames[0]);
+    if (!job.resume || !std::filesystem::exists(file)) return nullptr;
+    std::map<std::string, std::string> attributes;
+    try {
+        attributes = read_exr(file).attributes;
+    } catch (const Error&) {
+        return nullptr; // it will be rendered again
+    }
+    const auto number = [&](const char* name) { return std::strtod(attributes[name].c_str(), nullptr); };
+    if (attributes["tyndall:plan"].empty()) return nullptr;
+    if (std::abs(number("tyndall:targetError") - job.target_error) > 1e-9) return nullptr;
+    if (std::abs(number("tyndall:timeBudget") - job.time_budget) > 1e-9) return nullptr;
+    for (const Mode& mode : modes())
+        if (mode.name == attributes["tyndall:mode"]) return &mode;
+    return nullptr;
+}
+}
+
+double usual_error(Quality quality) {
+    constexpr double errors[] = {0.1, 0.05, 0.02, 0.005};
+    return errors[static_cast<size_t>(quality)];
+}
+
+void choose_mode(const Scene& scene, RenderJob& job, const Snapshot& first, const Globals& globals) {
+    const Mode* before = mode_before(job);
+    const std::span<const Mode> candidates = before ? std::span(before, 1) : modes();
+    Progress progress(globals.progress, "plan", 1, globals.json);
+    const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
+    const View view = view_of(scene, job, job.frames[0]);
+    const Plan plan = make_plan(candidates, view, first, job.settings,
+                                {job.target_error, job.time_budget, job.quality, {}, {}}, control);
+    progress.finish();
+    job.mode = plan.chosen.mode->name, job.settings = plan.settings, job.plan = plan.certificate();
+    job.choice = std::make_shared<const Choice>(plan.chosen.choice);
+    if (globals.quiet) return;
+    say("plan: " + printable(job.plan, 460));
+    if (globals.verbose) say(plan_text(plan));
+}
+}

@@ -1,0 +1,139 @@
+// tyndall plan: which terms of the light a scene needs, and which mode gets to an error or the most out of a time.
+#include "measure/plan.h"
+
+#include "automatic.h"
+#include "base/error.h"
+#include "base/frames.h"
+#include "render/provenance.h"
+#include "render_options.h"
+
+namespace tyndall {
+namespace {
+struct Options {
+    RenderOptions render; // those that plan shares with it
+    std::string frame;
+};
+
+Json term_json(const Term& term) {
+    return json_object({{"name", json_of(std::string_view(term.name))},
+                        {"where", json_of(std::string_view(term.where))},
+                        {"simpler", json_of(std::string_view(term.simpler))},
+                        {"needed", json_of(term.needed)},
+                        {"error", json_of(term.error)},
+                        {"bound", json_of(term.bound)},
+                        {"rigorous", json_of(term.rigorous)},
+                        {"why", json_of(std::string_view(term.why))}});
+}
+
+Json standing_json(const Standing& standing) {
+    std::vector<std::pair<std::string, Json>> members{{"mode", json_of(standing.mode->name)},
+                                                      {"why", json_of(std::string_view(standing.why))}};
+    if (const auto& best = standing.best) {
+        const Measured& measured = best->choice.measured;
+        members.emplace_back("candidate", json_of(std::string_view(best->choice.candidate.name)));
+        members.emplace_back("gets_there", json_of(best->gets_there()));
+        members.emplace_back("samples", json_of(best->samples));
+        members.emplace_back("seconds", json_of(best->seconds));
+        members.emplace_back("error", json_of(best->error));
+        members.emplace_back("integrator_error", json_of(std::sqrt(measured.integrator.value)));
+        members.emplace_back("integrator_bound", json_of(std::sqrt(measured.integrator.bound)));
+        members.emplace_back("prepare_seconds", json_of(measured.prepare_seconds));
+        members.emplace_back("sample_seconds", json_of(measured.sample_seconds));
+    }
+    return json_object(std::move(members));
+}
+
+std::string plan_json(const Plan& plan, const RenderJob& job) {
+    std::vector<Json> terms, modes;
+    for (const Term& term : plan.terms) terms.push_back(term_json(term));
+    for (const Standing& standing : plan.standings) modes.push_back(standing_json(standing));
+    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
+                                    {"scene", json_of(std::string_view(job.scene_file.string()))},
+                                    {"frame", json_of(job.frames[0])},
+                                    {"target_error", json_of(plan.goal.error)},
+                                    {"time_budget", json_of(plan.goal.seconds)},
+                                    {"mode", json_of(plan.chosen.mode->name)},
+                                    {"certificate", json_of(std::string_view(plan.certificate()))},
+                                    {"terms", json_array(std::move(terms))},
+                                    {"modes", json_array(std::move(modes))},
+                                    {"terms_seconds", json_of(plan.terms_seconds)},
+                                    {"contest_seconds", json_of(plan.contest_seconds)}})) +
+           "\n";
+}
+
+// How to render what was planned.
+std::string command_of(const Plan& plan, const RenderJob& job) {
+    std::string text =
+        "tyndall render " + job.scene_file.string() + " -o out.####.exr --mode " + std::string(plan.chosen.mode->name);
+    if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
+    if (plan.goal.seconds > 0) text += formatted(" --time-budget %g", plan.goal.seconds);
+    for (const SettingRow& row : setting_rows())
+        if (row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
+            text += " --set " + row.name + "=" + row.get(plan.settings);
+    return text;
+}
+
+int run_plan(const Options& texts, const Globals& globals) {
+    RenderJob job = make_job(texts.render, find_mode("march"));
+    const LoadOptions options = load_options(texts.render);
+    const Scene scene = load_scene(job.scene_file, options);
+    job.frames = {scene.first_frame};
+    if (!texts.frame.empty())
+        job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    find_camera(scene, job.camera);
+    const Snapshot snapshot = load_first_frame(scene, job).snapshot;
+
+    Progress progress(globals.progress, "plan", 1, true);
+    const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
+    const View view = view_of(scene, job, job.frames[0]);
+    const Plan plan = make_plan(modes(), view, snapshot, job.settings,
+                                {job.target_error, job.time_budget, job.quality, {}, {}}, control);
+    progress.finish();
+    if (globals.json) {
+        print_report(plan_json(plan, job));
+    } else {
+        const std::string goal = plan.goal.error > 0 ? formatted("error at most %g of the mean", plan.goal.error)
+                                                     : formatted("the best in %g s", plan.goal.seconds);
+        print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(job.scene_file.string(), 200).c_str(),
+                               job.frames[0], view.size.x, view.size.y, goal.c_str()) +
+                     plan_text(plan) + "\n" + command_of(plan, job) + "\n");
+    }
+    if (!globals.quiet)
+        say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");
+    if (plan.chosen.gets_there()) return 0;
+    fail(ExitCode::differs, job.scene_file.string(), "no mode gets there; the one named comes closest");
+}
+}
+
+Run add_plan(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("plan", "which model a scene needs at an error or in a time, and why");
+    auto texts = std::make_shared<Options>();
+    RenderOptions& render = texts->render;
+    render.mode = automatic, render.output = "out.####.exr";
+    command->add_option("SCENE", render.scene, "scene file (.json), or a .gltf/.glb by itself")
+        ->type_name("")
+        ->required();
+    command
+        ->add_option("--target-error", render.target_error,
+                     "error wanted (rmse), as a share of the picture's mean (default: by quality,\n"
+                     "0.05 for preview)")
+        ->type_name("E");
+    command->add_option("--time-budget", render.time_budget, "seconds a picture may take instead")
+        ->type_name("SECONDS");
+    command->add_option("--quality", render.quality, "where other settings come from (default: preview)")
+        ->type_name("NAME");
+    command->add_option("--set", render.settings, "a setting that is to stay as it is; may be repeated")
+        ->type_name("ROW=VALUE")
+        ->allow_extra_args(false);
+    command->add_option("--frame", texts->frame, "which frame of the scene (default: its first)")->type_name("N");
+    command->add_option("--camera", render.camera, "which camera (default: the scene's)")->type_name("NAME");
+    command->add_option("--res", render.resolution, "size of the picture (default: the scene's)")->type_name("WxH");
+    command->footer(
+        "Example: tyndall plan scenes/window.json --target-error 0.02\n"
+        "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
+        "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"
+        "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
+        "Exit code 0: some mode gets there; 1: none does.");
+    return [texts](const Globals& globals) { return run_plan(*texts, globals); };
+}
+}

@@ -1,0 +1,149 @@
+#include "measure/plan.h"
+
+#include "render/to_target.h"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
+    char text[320];
+    va_list arguments;
+    va_start(arguments, format);
+    std::vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
+std::string percent(double share) {
+    if (!(share < infinity)) return "any";
+    return text_of(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
+}
+
+std::string seconds_text(double seconds) {
+    return text_of(seconds < 1 ? "%.0f ms" : "%.3g s", seconds < 1 ? 1000 * seconds : seconds);
+}
+
+// Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
+Term history_term(const View& view, const Snapshot& snapshot, const Contender& chosen, double error,
+                  const TermControl& control) {
+    Term term{"frames before", "", "left out"};
+    View centers = view;
+    centers.filter = PixelFilter::center;
+    const Settings& settings = chosen.choice.candidate.settings;
+    const FrameOptions options{false, nullptr, control.cancel, {}, {}};
+    const Pilot pilot = make_pilot(*chosen.mode, centers, snapshot, nullptr, options, [] { return true; });
+    const Measured measured = measure(pilot, *chosen.mode, snapshot, settings, options, steady_seconds);
+    const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
+    term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
+    term.needed = term.bound > error;
+    term.why = percent(term.error) + " noise of the fog itself with " + text_of("%.0f", samples) + " samples per pixel";
+    return term;
+}
+
+const Limit* worst_limit(const std::vector<Limit>& limits) {
+    const auto worst = std::ranges::max_element(limits, {}, &Limit::severity);
+    return worst == limits.end() || worst->severity == Severity::info ? nullptr : &*worst;
+}
+
+// Why a mode that was measured lost, given its best candidate and the winner.
+std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const std::vector<Limit>& limits) {
+    if (best.gets_there() && goal.error > 0)
+        return "gets there in " + seconds_text(best.seconds) +
+               text_of(", %.2g times as long", best.seconds / winner.seconds);
+    std::string text = goal.error > 0 ? "stays " + percent(best.error) + " off" : percent(best.error) + " off";
+    if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
+        text = "too noisy: " + text_of("%.0f", 1.0 * most_target_samples) + " samples would not do";
+    if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
+        text += ", in " + seconds_text(best.seconds) + " at least";
+    if (const Limit* limit = worst_limit(limits)) text += "; " + limit->where + ": " + limit->why;
+    return text;
+}
+
+// The best that each mode has shown.
+std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& contest, const View& view,
+                                   const Snapshot& snapshot, const Goal& goal) {
+    std::vector<Standing> standings;
+    const Contender& winner = contest.best();
+    for (const Mode& mode : modes) {
+        Standing standing{&mode, {}, "a look, not light: its error is as large as it is"};
+        for (const Contender& contender : contest.contenders)
+            if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
+                standing.best = contender;
+        if (standing.best) {
+            const std::vector<Limit> limits = mode.limits(view, snapshot, standing.best->choice.candidate.settings);
+            standing.why = &mode == winner.mode ? "" : loss(*standing.best, winner, goal, limits);
+        }
+        standings.push_back(std::move(standing));
+    }
+    std::ranges::stable_sort(standings, [&](const Standing& a, const Standing& b) {
+        if (!a.best || !b.best) return a.best.has_value() > b.best.has_value();
+        return beats(*a.best, *b.best, goal);
+    });
+    return standings;
+}
+}
+
+Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
+               Goal goal, const TermControl& control) {
+    if (!goal.clock) goal.clock = steady_seconds;
+    Plan plan{goal, {}, settings, {}, {}};
+    const auto part = [&](double from, double to) {
+        return [&control, from, to](double done) {
+            if (control.progress) control.progress(from + (to - from) * done);
+        };
+    };
+    const double start = goal.clock();
+    const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
+    plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
+    plan.settings = without_needless(plan.terms, snapshot, settings);
+    plan.terms_seconds = goal.clock() - start;
+
+    const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
+    Contest contest = hold_contest(modes, view, snapshot, plan.settings, settings, goal, options);
+    plan.chosen = contest.best(), plan.contest_seconds = contest.seconds;
+    plan.standings = standings_of(modes, contest, view, snapshot, goal);
+    if (!snapshot.media.empty()) plan.terms.push_back(history_term(view, snapshot, plan.chosen, wanted, control));
+    part(0.9, 1)(1);
+    return plan;
+}
+
+std::string Plan::certificate() const {
+    std::string text = std::string(chosen.mode->name);
+    if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
+    text += ": error " + percent(chosen.error) + " expected";
+    if (goal.error > 0) text += ", " + percent(goal.error) + " wanted";
+    if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
+    std::string left_out;
+    for (const Term& term : terms)
+        if (!term.needed)
+            left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
+                        " (" + term.simpler + ": at most " + percent(term.bound) +
+                        (term.rigorous ? " for certain)" : ")");
+    return text + (left_out.empty() ? "" : "; not needed: " + left_out);
+}
+
+std::string plan_text(const Plan& plan) {
+    std::string text = "what the light needs                              without it\n";
+    for (const Term& term : plan.terms) {
+        const std::string name = term.name + (term.where.empty() ? "" : " of " + term.where);
+        text += text_of("  %-6s  %-38.38s  %-10s  %s\n", term.needed ? "needed" : "-", name.c_str(),
+                        term.simpler.c_str(), term.why.c_str());
+    }
+    text += "\nmodes\n";
+    for (const Standing& standing : plan.standings) {
+        const std::string name(standing.mode->name);
+        if (standing.mode == plan.chosen.mode) {
+            const Contender& best = plan.chosen;
+            text += text_of("  %-14s chosen: %s in %s, %.0f samples per pixel", name.c_str(),
+                            percent(best.error).c_str(), seconds_text(best.seconds).c_str(), best.samples);
+            text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
+        } else {
+            text += "  " + name + std::string(15 - std::min<size_t>(14, name.size()), ' ') + standing.why + "\n";
+        }
+    }
+    return text;
+}
+}

@@ -1,0 +1,119 @@
+#include "render/contest.h"
+
+#include "render/to_target.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace tyndall {
+namespace {
+// A mode with candidates yet to measure.
+struct Runner {
+    const Mode* mode;
+    std::vector<Candidate> candidates;
+    size_t next = 0;
+    double integrator = infinity; // squared, of the last one measured
+};
+
+// What is asked for, and how fast samples lose their variance.
+struct Race {
+    const Goal& goal;
+    double power = 0; // 0 = not yet known
+
+    double error(const Contender& contender, double samples) const {
+        const Measured& m = contender.choice.measured;
+        if (samples < 2) return std::sqrt(m.single.value);
+        return std::sqrt(contender.integrator().value + m.sample.value / std::pow(samples, power));
+    }
+    double samples_for(const Contender& contender) const {
+        const Measured& m = contender.choice.measured;
+        const double wanted = goal.error * goal.error, left = wanted - contender.integrator().bound;
+        if (m.single.bound <= wanted) return 1;
+        if (!(left > 0)) return infinity;
+        const double samples = std::max(2.0, std::ceil(std::pow(m.sample.value / left, 1 / power)));
+        return samples <= most_target_samples ? samples : infinity;
+    }
+};
+
+// The picture a candidate would make of the goal.
+void predict(Contender& contender, const Race& race) {
+    const Measured& m = contender.choice.measured;
+    const Goal& goal = race.goal;
+    const auto seconds_of = [&](double samples) { return m.prepare_seconds + samples * m.sample_seconds; };
+    if (goal.error > 0) {
+        contender.samples = race.samples_for(contender);
+        contender.seconds = seconds_of(std::min(contender.samples, 1.0 * most_target_samples));
+        contender.error =
+            contender.gets_there() ? race.error(contender, contender.samples) : std::sqrt(contender.integrator().value);
+        if (goal.seconds == 0 || (contender.gets_there() && contender.seconds <= goal.seconds)) return;
+    }
+    const double samples = std::max(1.0, std::floor((goal.seconds - m.prepare_seconds) / m.sample_seconds));
+    contender.seconds = seconds_of(samples), contender.error = race.error(contender, samples);
+    contender.samples = goal.error > 0 || contender.seconds > goal.seconds ? infinity : samples;
+}
+
+// Whether finer candidates of a mode than this can still win.
+bool may_improve(const Contender& last, double before, const Contender& best, const Goal& goal) {
+    const Measured& m = last.choice.measured;
+    const double least = m.prepare_seconds + m.sample_seconds;
+    if (!last.choice.has_integrator) return false;
+    if (m.integrator.value > 0.9 * before) return false;
+    if (goal.error > 0 && best.gets_there() && least >= best.seconds) return false;
+    if (goal.error > 0 && last.gets_there() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
+    // Where noise rules, or time is nearly up, finer is worse.
+    return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
+}
+
+std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality) {
+    std::vector<Runner> runners;
+    for (const Mode& mode : modes)
+        if (error_can_be_told(mode)) runners.push_back({&mode, candidates_of(mode, settings, quality)});
+    return runners;
+}
+}
+
+bool beats(const Contender& a, const Contender& b, const Goal& goal) {
+    if (a.gets_there() != b.gets_there()) return a.gets_there();
+    return a.gets_there() && goal.error > 0 ? a.seconds < b.seconds : a.error < b.error;
+}
+
+Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
+                     const Settings& wanted, const Goal& goal, const FrameOptions& options) {
+    assert(goal.error > 0 || goal.seconds > 0);
+    const double start = goal.clock();
+    const Settings truth = truth_of(wanted);
+    const Pilot pilot = make_pilot(find_mode("march"), view, snapshot, &truth, options, [] { return false; });
+
+    Contest contest;
+    Race race{goal};
+    std::vector<Runner> runners = runners_of(modes, settings, goal.quality);
+    size_t all = 0;
+    for (const Runner& runner : runners) all += runner.candidates.size();
+    while (!runners.empty()) {
+        for (Runner& runner : runners) {
+            const Candidate& candidate = runner.candidates[runner.next++];
+            Contender contender{runner.mode, {candidate, {}, has_integrator(*runner.mode)}};
+            contender.choice.measured = measure(pilot, *runner.mode, snapshot, candidate.settings, options, goal.clock);
+            Measured& measured = contender.choice.measured;
+            if (race.power == 0)
+                race.power = spread_power(pilot, *runner.mode, snapshot, candidate.settings, *measured.prepared,
+                                          measured.sample.value, options);
+            predict(contender, race);
+            measured.prepared = nullptr; // it may be large
+            contest.contenders.push_back(std::move(contender));
+            const size_t here = contest.contenders.size() - 1;
+            if (here == 0 || beats(contest.contenders[here], contest.best(), goal)) contest.winner = here;
+            const Contender& last = contest.contenders.back();
+            if (!may_improve(last, runner.integrator, contest.best(), goal)) runner.next = runner.candidates.size();
+            runner.integrator = last.choice.measured.integrator.value;
+        }
+        size_t left = 0;
+        for (const Runner& runner : runners) left += runner.candidates.size() - runner.next;
+        if (options.progress) options.progress(1 - static_cast<double>(left) / static_cast<double>(all));
+        std::erase_if(runners, [](const Runner& runner) { return runner.next >= runner.candidates.size(); });
+    }
+    assert(!contest.contenders.empty());
+    contest.seconds = goal.clock() - start;
+    return contest;
+}
+}
