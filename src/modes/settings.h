@@ -21,6 +21,7 @@ struct PixelSettings {
     float filter_radius = 1; // pixels
     Jitter jitter = Jitter::interleaved;
     int lamp_samples = 16; // most times as many rays where a local light is seen
+    int edge_samples = 4;  // most times as many rays where the picture changes from pixel to pixel
 };
 
 struct MarchSettings {

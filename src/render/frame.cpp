@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/edges.h"
 #include "render/noise.h"
 #include "render/pixel_sum.h"
 
@@ -174,8 +175,9 @@ std::optional<Noise> FrameStats::error() const {
 }
 
 namespace {
-Layers render_pixels(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings,
                      const FrameOptions& options, FrameStats& stats) {
+    View view = given;
     assert(view.pixel_samples > 0 && view.batches > 0 && view.pixel_samples % view.batches == 0);
     const auto start = Clock::now();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
@@ -183,6 +185,9 @@ Layers render_pixels(const Mode& mode, const View& view, const Snapshot& snapsho
 
     // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
     Layers& layers = task.layers;
+    FrameStats probed;
+    if (mode.surfaces == Surfaces::shared)
+        view.edges = edge_factors(task.tracer, layers.low, layers.low + layers.size, probed);
     const ivec2 first = layers.low / block_side, last = (layers.low + layers.size - 1) / block_side;
     const ivec2 blocks = last - first + 1;
     const int64_t block_count = int64_t{blocks.x} * blocks.y;
@@ -204,6 +209,7 @@ Layers render_pixels(const Mode& mode, const View& view, const Snapshot& snapsho
     stats.samples = view.pixel_samples;
     stats.fog_seconds = task.mode_seconds + 1e-9 * static_cast<double>(*task.mode_nanoseconds) / thread_count();
     for (const FrameStats& block : block_stats) stats.add(block);
+    stats.add(probed);
     if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
     return std::move(task.layers);
 }

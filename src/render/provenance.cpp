@@ -123,7 +123,7 @@ View view_of(const Scene& scene, const RenderJob& job, int frame) {
     view.crop_low = job.crop_low, view.crop_high = job.crop_high;
     view.pixel_samples = job.settings.pixel.samples;
     view.filter = job.settings.pixel.filter, view.filter_radius = job.settings.pixel.filter_radius;
-    view.lamp_samples = job.settings.pixel.lamp_samples;
+    view.lamp_samples = job.settings.pixel.lamp_samples, view.edge_samples = job.settings.pixel.edge_samples;
     view.jitter = job.settings.pixel.jitter, view.per_light = wants_layer(job, "lights");
     view.seed = job.seed, view.frame = frame;
     if (measures_noise(job)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);

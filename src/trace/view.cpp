@@ -62,18 +62,25 @@ float warped(PixelFilter filter, float u) {
 }
 }
 
-int samples_of(const View& view, ivec2 pixel) {
-    if (view.lamps.empty()) return view.pixel_samples;
-    constexpr int side = 4;
+namespace {
+constexpr int tile_side = 4;
+
+int lamp_factor(const View& view, ivec2 tile) {
+    if (view.lamps.empty()) return 1;
     constexpr float reach = 8; // pixels around a lamp in which one sample is too few
-    const vec2 low = vec2(pixel / side * side), high = low + static_cast<float>(side);
+    const vec2 low = vec2(tile * tile_side), high = low + static_cast<float>(tile_side);
     float nearest = reach;
     for (const View::Lamp& lamp : view.lamps) {
         const float away = glm::distance(glm::clamp(lamp.at, low, high), lamp.at);
         nearest = std::min(nearest, std::max({away, lamp.radius, 1.0f}));
     }
-    const int wanted = static_cast<int>((reach / nearest) * (reach / nearest));
-    return view.pixel_samples * std::clamp(wanted, 1, view.lamp_samples);
+    return std::clamp(static_cast<int>((reach / nearest) * (reach / nearest)), 1, view.lamp_samples);
+}
+}
+
+int samples_of(const View& view, ivec2 pixel) {
+    const ivec2 tile = pixel / tile_side;
+    return view.pixel_samples * std::max(lamp_factor(view, tile), view.edges ? view.edges->at(tile) : 1);
 }
 
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {

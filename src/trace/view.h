@@ -1,13 +1,27 @@
 // What is rendered: a camera, a picture size and how its pixels are sampled.
 #pragma once
+#include "base/image.h"
 #include "scene/camera.h"
 #include "trace/jitter.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace tyndall {
 enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
+
+// How many times as many samples tiles of 4×4 pixels take.
+struct TileFactors {
+    ivec2 low{0}; // the first tile's place
+    Image<uint8_t> factors;
+
+    int at(ivec2 tile) const {
+        const ivec2 p = tile - low;
+        const bool inside = p.x >= 0 && p.y >= 0 && p.x < factors.size.x && p.y < factors.size.y;
+        return inside ? factors.at(p.x, p.y) : 1;
+    }
+};
 
 struct View {
     Camera camera;
@@ -19,6 +33,7 @@ struct View {
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;
     int lamp_samples = 1;   // most times as many samples around a lamp
+    int edge_samples = 1;   // most times as many samples where the picture changes from pixel to pixel
     bool per_light = false; // whether the parts of single lights are wanted
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
@@ -28,10 +43,11 @@ struct View {
         float radius; // pixels
     };
     std::vector<Lamp> lamps; // local lights in the picture, around which the fog's glow changes within a pixel
+    std::shared_ptr<const TileFactors> edges{}; // found for the picture; null = none
 };
 
-// Samples of a pixel: more around the view's lamps, the same for all pixels of a tile of 4×4. The light that fog
-// scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
+// Samples of a pixel: more around the view's lamps and at its edges, the same for all pixels of a tile of 4×4. The
+// light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
 
 // A sample as part of a low-discrepancy sequence: each pixel and batch has its own.
