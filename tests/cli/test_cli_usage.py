@@ -5,7 +5,7 @@ import unittest
 
 from program import TYNDALL, ProgramTest, run, scene
 
-COMMANDS = ["bake", "render", "info", "check", "modes", "compare"]
+COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "explain"]
 OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
@@ -13,6 +13,7 @@ OPTIONS = {
                "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
+    "explain": ["--pixel", "--frame", "--camera", "--res", "--quality", "--set", "--modes", "--svg", "--csv"],
 }
 
 

@@ -1,0 +1,259 @@
+// The drawing: panels over one axis of distance, and bars for the modes.
+#include "measure/explain_report.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "measure/svg.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr double width = 1000, left = 120, right = 980; // of the drawing, and of its panels
+constexpr size_t most_lights = 7;                       // that are drawn, the brightest first
+constexpr const char* ink = "#222";
+constexpr const char* fog_color = "#8c8c8c";
+constexpr const char* dark_color = "#4d4d4d";
+
+// Told apart by colour-blind eyes too (Okabe and Ito 2008).
+constexpr const char* light_colors[most_lights] = {"#E69F00", "#0072B2", "#009E73", "#D55E00",
+                                                   "#CC79A7", "#56B4E9", "#7a5c00"};
+
+// One panel's way from values to the drawing.
+struct Panel {
+    double top, bottom, x_end, y_end; // values 0..x_end from left to right, 0..y_end from bottom to top
+    double x(double value) const { return left + (right - left) * std::clamp(value / x_end, 0.0, 1.0); }
+    double y(double value) const { return bottom - (bottom - top) * std::clamp(value / y_end, 0.0, 1.0); }
+};
+
+// The axis goes on until hardly anything is seen.
+double axis_end(const RayStory& story) {
+    constexpr double hardly = 3e-3;
+    for (const RayStep& step : story.steps)
+        if (step.to_eye < hardly) return step.high;
+    const double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
+    return end > 0 ? end : 1;
+}
+
+// A round number of at most a fifth.
+double tick_of(double end) {
+    double tick = std::pow(10.0, std::floor(std::log10(end / 5)));
+    for (const double factor : {2.0, 2.5})
+        if (end / tick > 8) tick *= factor;
+    return tick;
+}
+
+void draw_axes(const Panel& panel, const std::string& title, bool percents, bool distances, Svg& svg) {
+    const double x_tick = tick_of(panel.x_end), y_tick = percents ? 0.25 : tick_of(panel.y_end) * 2;
+    for (double x = 0; x <= panel.x_end * 1.0001; x += x_tick) {
+        svg.line(panel.x(x), panel.top, panel.x(x), panel.bottom, "#e6e6e6", 1);
+        if (distances) svg.text(panel.x(x), panel.bottom + 16, digits(x), Anchor::middle);
+    }
+    for (double y = 0; panel.y_end > 0 && y <= panel.y_end * 1.0001; y += y_tick) {
+        svg.line(left, panel.y(y), right, panel.y(y), "#e6e6e6", 1);
+        svg.text(left - 6, panel.y(y) + 4, percents ? digits(100 * y) + " %" : digits(y), Anchor::end);
+    }
+    svg.line(left, panel.top, left, panel.bottom, ink, 1), svg.line(left, panel.bottom, right, panel.bottom, ink, 1);
+    svg.text(left, panel.top - 7, title, Anchor::start, "font-weight='bold'");
+}
+
+// A curve with one value for each step: as steps, or through their middles; broken where there is no fog.
+template<class Value> std::string curve(const RayStory& story, const Panel& panel, bool stepped, const Value& value) {
+    std::string path;
+    double last = -1;
+    for (size_t i = 0; i < story.steps.size(); ++i) {
+        const RayStep& step = story.steps[i];
+        if (step.low >= panel.x_end) break;
+        const double y = panel.y(value(i));
+        const char command = step.low > last + 1e-6 * panel.x_end ? 'M' : 'L';
+        last = step.high;
+        if (stepped)
+            path += formatted("%c%.1f %.2fH%.1f", command, panel.x(step.low), y, panel.x(step.high));
+        else
+            path += formatted("%c%.1f %.2f", command, panel.x(step.middle()), y);
+    }
+    return path;
+}
+
+// The lights in the order they are drawn in.
+std::vector<size_t> drawn_lights(const RayStory& story) {
+    std::vector<size_t> all(story.lights.size());
+    for (size_t l = 0; l < all.size(); ++l) all[l] = l;
+    std::ranges::stable_sort(
+        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
+    all.resize(std::min(all.size(), most_lights));
+    std::ranges::sort(all);
+    return all;
+}
+
+void draw_fog(const RayStory& story, double top, double x_end, Svg& svg) {
+    double most = 0;
+    for (const RayStep& step : story.steps)
+        if (step.low < x_end) most = std::max(most, step.extinction);
+    const Panel panel{top, top + 100, x_end, most > 0 ? 1.1 * most : 1};
+    draw_axes(panel, "Fog on the ray: extinction, 1/m", false, false, svg);
+    if (story.steps.empty()) return svg.text(0.5 * (left + right), top + 55, "no fog on this ray", Anchor::middle);
+    // Filled down to the axis, stretch by stretch of fog.
+    std::string path;
+    double last = -1;
+    for (const RayStep& step : story.steps) {
+        if (step.low >= x_end) break;
+        if (step.low > last + 1e-6 * x_end)
+            path += formatted("%sM%.1f %.1f", path.empty() ? "" : formatted("V%.1f", panel.bottom).c_str(),
+                              panel.x(step.low), panel.bottom);
+        path += formatted("V%.2fH%.1f", panel.y(step.extinction), panel.x(step.high));
+        last = step.high;
+    }
+    svg.path(path + formatted("V%.1f", panel.bottom), "none", 0, "#cfcfcf");
+    svg.path(curve(story, panel, true, [&](size_t i) { return story.steps[i].extinction; }), fog_color, 1.2);
+}
+
+void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
+    const Panel panel{top, top + 130, x_end, 1};
+    draw_axes(panel, "Light that gets through: from here to the eye (black), from each light to here (colour)", true,
+              false, svg);
+    for (size_t i = 0; i < lights.size(); ++i)
+        svg.path(curve(story, panel, false, [&](size_t s) { return story.lights[lights[i]].at[s].transmittance; }),
+                 light_colors[i], 1.6);
+    svg.path(curve(story, panel, false, [&](size_t s) { return story.steps[s].to_eye; }), ink, 2);
+}
+
+double arriving(const RayStep& step, vec3 source) { return luminance(source) * step.to_eye; }
+
+// Values that hardly any of the ray exceeds decide on the scale: next to a lamp they have no end.
+double scale_of(const RayStory& story, double& most) {
+    std::vector<std::pair<double, double>> values; // and lengths
+    double length = 0;
+    for (size_t i = 0; i < story.steps.size(); ++i) {
+        const RayStep& step = story.steps[i];
+        double value = arriving(step, step.glow);
+        for (const LightOnRay& light : story.lights) value = std::max(value, arriving(step, light.at[i].scattered));
+        values.push_back({value, step.high - step.low}), length += step.high - step.low;
+    }
+    std::ranges::sort(values);
+    most = values.empty() ? 0 : values.back().first;
+    double sum = 0;
+    for (const auto& [value, part] : values)
+        if ((sum += part) >= 0.97 * length && value > 0) return most > 4 * value ? 2 * value : 1.08 * most;
+    return most > 0 ? most : 1;
+}
+
+void draw_light(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
+    double most = 0;
+    const double scale = scale_of(story, most);
+    const Panel panel{top, top + 150, x_end, scale};
+    std::string title = "Light scattered here that arrives at the eye, nits per metre";
+    if (most > 1.1 * scale) title += formatted("; cut off, up to %.3g", most);
+    draw_axes(panel, title, false, false, svg);
+    svg.path(curve(story, panel, true, [&](size_t s) { return arriving(story.steps[s], story.steps[s].glow); }),
+             fog_color, 1.2);
+    for (size_t i = 0; i < lights.size(); ++i)
+        svg.path(curve(story, panel, true,
+                       [&](size_t s) { return arriving(story.steps[s], story.lights[lights[i]].at[s].scattered); }),
+                 light_colors[i], 1.6);
+}
+
+// A light's row: its colour where it shines, pale in half shadow, dark in shadows, a thin line out of its reach.
+void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, const char* color, Svg& svg) {
+    if (stretch.low >= panel.x_end) return;
+    const double from = panel.x(stretch.low), to = panel.x(stretch.high);
+    const std::string names = joined(stretch.blockers, ", ");
+    std::string tip = formatted("%.3f to %.3f m: ", stretch.low, stretch.high) + std::string(name_of(stretch.state));
+    if (!names.empty()) tip += " of " + names;
+    switch (stretch.state) {
+    case Lighting::full:
+        return svg.bar(from, y, to - from, 16, color, 1, tip);
+    case Lighting::partial:
+        return svg.bar(from, y, to - from, 16, color, 0.25 + 0.5 * stretch.share, tip);
+    case Lighting::out_of_reach:
+        return svg.bar(from, y + 7.5, to - from, 1, "#999", 1, tip);
+    case Lighting::shadowed:
+        break;
+    }
+    svg.bar(from, y, to - from, 16, dark_color, 1, tip);
+    for (const std::string& text : {names, stretch.blockers.empty() ? std::string() : stretch.blockers[0]})
+        if (!text.empty() && text_width(text) + 8 < to - from)
+            return svg.text(0.5 * (from + to), y + 12, text, Anchor::middle, "fill='#fff'");
+}
+
+double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
+    const Panel panel{top, top + 24 * static_cast<double>(lights.size()) + 4, x_end, 1};
+    std::string title =
+        "Where each light shines: colour lit, pale half shadow, dark in the shadow of what is named, line "
+        "out of reach";
+    if (lights.size() < story.lights.size())
+        title += formatted(" (%zu of %zu lights)", lights.size(), story.lights.size());
+    draw_axes({panel.top, panel.bottom, x_end, 0}, title, false, true, svg);
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const LightOnRay& light = story.lights[lights[i]];
+        const double y = top + 4 + 24 * static_cast<double>(i);
+        svg.text(left - 8, y + 12, shortened(light.name, left - 16), Anchor::end,
+                 formatted("fill='%s'", light_colors[i]).c_str());
+        for (const LightStretch& stretch : light.stretches) draw_stretch(panel, stretch, y, light_colors[i], svg);
+    }
+    svg.text(0.5 * (left + right), panel.bottom + 32, "distance from the eye, m", Anchor::middle);
+    return panel.bottom + 40;
+}
+
+// Lines through all panels where the ray meets surfaces.
+void draw_surfaces(const RayStory& story, double top, double bottom, double x_end, Svg& svg) {
+    const Panel panel{top, bottom, x_end, 1};
+    for (const SurfaceOnRay& surface : story.surfaces) {
+        const bool there = surface.distance <= x_end * 1.0001;
+        if (surface.alpha < 1 && !there) continue;
+        const std::string name = surface.name + formatted(", %.4g m", surface.distance) + (there ? "" : " →");
+        const double x = panel.x(surface.distance);
+        if (there) svg.line(x, top - 12, x, bottom, ink, 1, surface.alpha < 1 ? "4 3" : "");
+        svg.text(x - 4, top - 16, name, x - text_width(name) < left ? Anchor::start : Anchor::end);
+    }
+}
+
+void draw_answer(const Answer& answer, const Answer* reference, double y, double scale, Svg& svg) {
+    constexpr double bars = 480; // their right end
+    const double value = luminance(answer.inscatter), share = value / scale;
+    svg.text(left - 8, y + 12, answer.mode, Anchor::end);
+    const double length = (bars - left) * std::clamp(share, 0.0, 1.0);
+    const double sure = std::clamp(double(answer.validity), 0.0, 1.0); // pale where the mode doubts itself
+    svg.bar(left, y, length, 16, reference ? "#0072B2" : ink, reference ? 0.3 + 0.7 * sure : 1, answer.remark);
+    if (share > 1) svg.text(bars - 4, y + 12, "▸", Anchor::end, "fill='#fff'");
+    svg.text(bars + 80, y + 12, digits(value), Anchor::end);
+    std::string off = !answer.finite ? "not finite" : reference ? difference_text(answer, *reference) : "";
+    if (const size_t at = off.find("+-"); at != off.npos) off.replace(at, 2, "±");
+    svg.text(bars + 230, y + 12, off, Anchor::end);
+    svg.text(bars + 320, y + 12, percent(answer.transmittance), Anchor::end);
+    svg.text(bars + 410, y + 12, percent(answer.validity), Anchor::end);
+    svg.text(bars + 500, y + 12, std::to_string(answer.steps), Anchor::end);
+}
+
+double draw_modes(const RayStory& story, double top, Svg& svg) {
+    const double exact = luminance(story.reference.inscatter);
+    double most = exact;
+    for (const Answer& answer : story.answers) most = std::max<double>(most, luminance(answer.inscatter));
+    double scale = exact > 0 ? std::min(1.02 * most, 2.5 * exact) : most;
+    if (!(scale > 0)) scale = 1;
+    svg.text(left, top, "What each mode makes of it", Anchor::start, "font-weight='bold'");
+    const std::pair<double, const char*> heads[] = {
+        {560, "nits"}, {710, "off the reference"}, {800, "through"}, {890, "valid"}, {980, "steps"}};
+    for (const auto& [x, head] : heads) svg.text(x, top, head, Anchor::end, "fill='#666'");
+    double y = top + 8;
+    draw_answer(story.reference, nullptr, y, scale, svg);
+    for (const Answer& answer : story.answers) draw_answer(answer, &story.reference, y += 22, scale, svg);
+    const double x = left + (480 - left) * exact / scale;
+    svg.line(x, top + 8, x, y + 18, "#D55E00", 1.5, "4 3");
+    return y + 30;
+}
+}
+
+std::string explain_svg(const RayStory& story, const StoryTitle& title) {
+    const double x_end = axis_end(story);
+    const std::vector<size_t> lights = drawn_lights(story);
+    Svg svg;
+    svg.text(16, 26, title_line(story, title), Anchor::start, "font-size='15' font-weight='bold'");
+    draw_fog(story, 78, x_end, svg);
+    draw_transmittance(story, lights, 210, x_end, svg);
+    draw_light(story, lights, 372, x_end, svg);
+    const double bottom = draw_lit(story, lights, 554, x_end, svg);
+    draw_surfaces(story, 66, bottom - 40, x_end, svg);
+    return svg.finished(width, draw_modes(story, bottom + 26, svg), title_line(story, title));
+}
+}
