@@ -154,6 +154,7 @@ RayStory explain_ray(const View& view, const Snapshot& snapshot, const Settings&
     RayStory story;
     start_story(scene, pixel, story);
     follow(scene, story);
+    story.reference.finite = is_finite(story.reference.inscatter) && is_finite(story.reference.color);
 
     const double parts = static_cast<double>(options.modes.size()) + 1;
     for (size_t i = 0; i < options.modes.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "measure/svg.h"
+#include "volume/brick_walk.h"
 
 #include <algorithm>
 
@@ -21,34 +22,45 @@ constexpr const char* light_colors[most_lights] = {"#E69F00", "#0072B2", "#009E7
 
 // One panel's way from values to the drawing.
 struct Panel {
-    double top, bottom, x_end, y_end; // values 0..x_end from left to right, 0..y_end from bottom to top
-    double x(double value) const { return left + (right - left) * std::clamp(value / x_end, 0.0, 1.0); }
+    double top, bottom;
+    Stretch range; // of distances, from left to right
+    double y_end;  // values 0..y_end from bottom to top
+    double x(double value) const {
+        return left + (right - left) * std::clamp((value - range.low) / range.length(), 0.0, 1.0);
+    }
     double y(double value) const { return bottom - (bottom - top) * std::clamp(value / y_end, 0.0, 1.0); }
 };
 
-// The axis goes on until hardly anything is seen.
-double axis_end(const RayStory& story) {
+// The axis goes on until hardly anything is seen, and begins with the fog where that is far away.
+Stretch axis_of(const RayStory& story) {
     constexpr double hardly = 3e-3;
-    for (const RayStep& step : story.steps)
-        if (step.to_eye < hardly) return step.high;
-    const double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
-    return end > 0 ? end : 1;
+    double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
+    for (const RayStep& step : story.steps) {
+        if (step.to_eye >= hardly) continue;
+        end = step.high;
+        break;
+    }
+    if (!(end > 0)) end = 1;
+    const double fog = story.steps.empty() ? 0 : story.steps.front().low;
+    const double first = story.surfaces.empty() ? fog : std::min(fog, story.surfaces.front().distance);
+    return {first > 0.5 * end ? first - 0.05 * (end - first) : 0, end};
 }
 
-// A round number of at most a fifth.
-double tick_of(double end) {
-    double tick = std::pow(10.0, std::floor(std::log10(end / 5)));
-    for (const double factor : {2.0, 2.5})
-        if (end / tick > 8) tick *= factor;
-    return tick;
+// The smallest round number that goes into a length at most so often.
+double tick_of(double length, double most) {
+    const double least = length / most, ten = std::pow(10.0, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * ten >= least * 0.9999) return factor * ten;
+    return 10 * ten;
 }
 
 void draw_axes(const Panel& panel, const std::string& title, bool percents, bool distances, Svg& svg) {
-    const double x_tick = tick_of(panel.x_end), y_tick = percents ? 0.25 : tick_of(panel.y_end) * 2;
-    for (double x = 0; x <= panel.x_end * 1.0001; x += x_tick) {
+    const double x_tick = tick_of(panel.range.length(), 10);
+    for (double x = std::ceil(panel.range.low / x_tick) * x_tick; x <= panel.range.high * 1.0001; x += x_tick) {
         svg.line(panel.x(x), panel.top, panel.x(x), panel.bottom, "#e6e6e6", 1);
         if (distances) svg.text(panel.x(x), panel.bottom + 16, digits(x), Anchor::middle);
     }
+    const double y_tick = percents ? 0.25 : tick_of(panel.y_end, 4);
     for (double y = 0; panel.y_end > 0 && y <= panel.y_end * 1.0001; y += y_tick) {
         svg.line(left, panel.y(y), right, panel.y(y), "#e6e6e6", 1);
         svg.text(left - 6, panel.y(y) + 4, percents ? digits(100 * y) + " %" : digits(y), Anchor::end);
@@ -57,22 +69,45 @@ void draw_axes(const Panel& panel, const std::string& title, bool percents, bool
     svg.text(left, panel.top - 7, title, Anchor::start, "font-weight='bold'");
 }
 
-// A curve with one value for each step: as steps, or through their middles; broken where there is no fog.
-template<class Value> std::string curve(const RayStory& story, const Panel& panel, bool stepped, const Value& value) {
+// A curve with one value for each step, through their middles; broken where steps are left out, and with a jump where
+// `joins` says that a step has nothing to do with the next.
+template<class Value, class Drawn, class Joins>
+std::string curve(const RayStory& story, const Panel& panel, const Value& value, const Drawn& drawn,
+                  const Joins& joins) {
     std::string path;
-    double last = -1;
-    for (size_t i = 0; i < story.steps.size(); ++i) {
+    bool going = false; // from the step before
+    for (size_t i = 0; i < story.steps.size() && story.steps[i].low < panel.range.high; ++i) {
         const RayStep& step = story.steps[i];
-        if (step.low >= panel.x_end) break;
+        if (!drawn(i)) {
+            going = false;
+            continue;
+        }
         const double y = panel.y(value(i));
-        const char command = step.low > last + 1e-6 * panel.x_end ? 'M' : 'L';
-        last = step.high;
-        if (stepped)
-            path += formatted("%c%.1f %.2fH%.1f", command, panel.x(step.low), y, panel.x(step.high));
-        else
-            path += formatted("%c%.1f %.2f", command, panel.x(step.middle()), y);
+        if (!going) path += formatted("M%.1f %.2f", panel.x(step.low), y);
+        path += formatted("L%.1f %.2f", panel.x(step.middle()), y);
+        const bool next =
+            i + 1 < story.steps.size() && drawn(i + 1) && story.steps[i + 1].low <= step.high + 1e-6 * panel.range.high;
+        if (!next || !joins(i)) path += formatted("H%.1f", panel.x(step.high));
+        if (next && !joins(i)) path += formatted("V%.2f", panel.y(value(i + 1)));
+        going = next;
     }
     return path;
+}
+
+template<class Value> std::string curve(const RayStory& story, const Panel& panel, const Value& value) {
+    const auto always = [](size_t) { return true; };
+    return curve(story, panel, value, always, always);
+}
+
+// What a light does at each step.
+std::vector<Lighting> states_of(const RayStory& story, const LightOnRay& light) {
+    std::vector<Lighting> states;
+    size_t stretch = 0;
+    for (const RayStep& step : story.steps) {
+        while (stretch + 1 < light.stretches.size() && light.stretches[stretch].high <= step.middle()) ++stretch;
+        states.push_back(light.stretches[stretch].state);
+    }
+    return states;
 }
 
 // The lights in the order they are drawn in.
@@ -86,36 +121,32 @@ std::vector<size_t> drawn_lights(const RayStory& story) {
     return all;
 }
 
-void draw_fog(const RayStory& story, double top, double x_end, Svg& svg) {
+void draw_fog(const RayStory& story, double top, Stretch range, Svg& svg) {
     double most = 0;
     for (const RayStep& step : story.steps)
-        if (step.low < x_end) most = std::max(most, step.extinction);
-    const Panel panel{top, top + 100, x_end, most > 0 ? 1.1 * most : 1};
+        if (step.low < range.high) most = std::max(most, step.extinction);
+    const Panel panel{top, top + 100, range, most > 0 ? 1.1 * most : 1};
     draw_axes(panel, "Fog on the ray: extinction, 1/m", false, false, svg);
     if (story.steps.empty()) return svg.text(0.5 * (left + right), top + 55, "no fog on this ray", Anchor::middle);
-    // Filled down to the axis, stretch by stretch of fog.
-    std::string path;
-    double last = -1;
-    for (const RayStep& step : story.steps) {
-        if (step.low >= x_end) break;
-        if (step.low > last + 1e-6 * x_end)
-            path += formatted("%sM%.1f %.1f", path.empty() ? "" : formatted("V%.1f", panel.bottom).c_str(),
-                              panel.x(step.low), panel.bottom);
-        path += formatted("V%.2fH%.1f", panel.y(step.extinction), panel.x(step.high));
-        last = step.high;
-    }
-    svg.path(path + formatted("V%.1f", panel.bottom), "none", 0, "#cfcfcf");
-    svg.path(curve(story, panel, true, [&](size_t i) { return story.steps[i].extinction; }), fog_color, 1.2);
+    const std::string path = curve(story, panel, [&](size_t i) { return story.steps[i].extinction; });
+    const double last = std::min(story.steps.back().high, range.high);
+    svg.path(path + formatted("V%.1fH%.1fZ", panel.bottom, panel.x(story.steps.front().low)), "none", 0, "#cfcfcf");
+    svg.path(path, fog_color, 1.2);
+    if (last < range.high) svg.line(panel.x(last), panel.bottom, right, panel.bottom, ink, 1);
 }
 
-void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
-    const Panel panel{top, top + 130, x_end, 1};
-    draw_axes(panel, "Light that gets through: from here to the eye (black), from each light to here (colour)", true,
-              false, svg);
-    for (size_t i = 0; i < lights.size(); ++i)
-        svg.path(curve(story, panel, false, [&](size_t s) { return story.lights[lights[i]].at[s].transmittance; }),
-                 light_colors[i], 1.6);
-    svg.path(curve(story, panel, false, [&](size_t s) { return story.steps[s].to_eye; }), ink, 2);
+void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
+    const Panel panel{top, top + 130, range, 1};
+    draw_axes(panel, "Light that gets through the fog: from here to the eye (black), from each light to here (colour)",
+              true, false, svg);
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const LightOnRay& light = story.lights[lights[i]];
+        const std::vector<Lighting> states = states_of(story, light);
+        const auto reached = [&](size_t s) { return states[s] != Lighting::out_of_reach; };
+        const auto value = [&](size_t s) { return light.at[s].transmittance; };
+        svg.path(curve(story, panel, value, reached, [](size_t) { return true; }), light_colors[i], 1.6);
+    }
+    svg.path(curve(story, panel, [&](size_t s) { return story.steps[s].to_eye; }), ink, 2);
 }
 
 double arriving(const RayStep& step, vec3 source) { return luminance(source) * step.to_eye; }
@@ -138,24 +169,30 @@ double scale_of(const RayStory& story, double& most) {
     return most > 0 ? most : 1;
 }
 
-void draw_light(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
+void draw_light(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
     double most = 0;
     const double scale = scale_of(story, most);
-    const Panel panel{top, top + 150, x_end, scale};
-    std::string title = "Light scattered here that arrives at the eye, nits per metre";
+    const Panel panel{top, top + 150, range, scale};
+    std::string title =
+        "Light scattered here that arrives at the eye, nits per metre (grey: ambient light and emission)";
     if (most > 1.1 * scale) title += formatted("; cut off, up to %.3g", most);
     draw_axes(panel, title, false, false, svg);
-    svg.path(curve(story, panel, true, [&](size_t s) { return arriving(story.steps[s], story.steps[s].glow); }),
-             fog_color, 1.2);
-    for (size_t i = 0; i < lights.size(); ++i)
-        svg.path(curve(story, panel, true,
-                       [&](size_t s) { return arriving(story.steps[s], story.lights[lights[i]].at[s].scattered); }),
-                 light_colors[i], 1.6);
+    svg.path(curve(story, panel, [&](size_t s) { return arriving(story.steps[s], story.steps[s].glow); }), fog_color,
+             1.2);
+    for (size_t i = 0; i < lights.size(); ++i) {
+        const LightOnRay& light = story.lights[lights[i]];
+        const std::vector<Lighting> states = states_of(story, light);
+        const auto shines = [&](size_t s) { return states[s] != Lighting::out_of_reach; };
+        const auto half = [&](size_t s) { return states[s] == Lighting::partial; };
+        const auto goes_on = [&](size_t s) { return states[s] == states[s + 1] || half(s) || half(s + 1); };
+        const auto value = [&](size_t s) { return arriving(story.steps[s], light.at[s].scattered); };
+        svg.path(curve(story, panel, value, shines, goes_on), light_colors[i], 1.6);
+    }
 }
 
 // A light's row: its colour where it shines, pale in half shadow, dark in shadows, a thin line out of its reach.
 void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, const char* color, Svg& svg) {
-    if (stretch.low >= panel.x_end) return;
+    if (stretch.low >= panel.range.high || stretch.high <= panel.range.low) return;
     const double from = panel.x(stretch.low), to = panel.x(stretch.high);
     const std::string names = joined(stretch.blockers, ", ");
     std::string tip = formatted("%.3f to %.3f m: ", stretch.low, stretch.high) + std::string(name_of(stretch.state));
@@ -176,14 +213,14 @@ void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, con
             return svg.text(0.5 * (from + to), y + 12, text, Anchor::middle, "fill='#fff'");
 }
 
-double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, double x_end, Svg& svg) {
-    const Panel panel{top, top + 24 * static_cast<double>(lights.size()) + 4, x_end, 1};
+double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
+    const Panel panel{top, top + 24 * static_cast<double>(lights.size()) + 4, range, 1};
     std::string title =
         "Where each light shines: colour lit, pale half shadow, dark in the shadow of what is named, line "
         "out of reach";
     if (lights.size() < story.lights.size())
         title += formatted(" (%zu of %zu lights)", lights.size(), story.lights.size());
-    draw_axes({panel.top, panel.bottom, x_end, 0}, title, false, true, svg);
+    draw_axes({panel.top, panel.bottom, range, 0}, title, false, true, svg);
     for (size_t i = 0; i < lights.size(); ++i) {
         const LightOnRay& light = story.lights[lights[i]];
         const double y = top + 4 + 24 * static_cast<double>(i);
@@ -196,10 +233,10 @@ double draw_lit(const RayStory& story, std::span<const size_t> lights, double to
 }
 
 // Lines through all panels where the ray meets surfaces.
-void draw_surfaces(const RayStory& story, double top, double bottom, double x_end, Svg& svg) {
-    const Panel panel{top, bottom, x_end, 1};
+void draw_surfaces(const RayStory& story, double top, double bottom, Stretch range, Svg& svg) {
+    const Panel panel{top, bottom, range, 1};
     for (const SurfaceOnRay& surface : story.surfaces) {
-        const bool there = surface.distance <= x_end * 1.0001;
+        const bool there = surface.distance <= range.high * 1.0001;
         if (surface.alpha < 1 && !there) continue;
         const std::string name = surface.name + formatted(", %.4g m", surface.distance) + (there ? "" : " →");
         const double x = panel.x(surface.distance);
@@ -239,21 +276,27 @@ double draw_modes(const RayStory& story, double top, Svg& svg) {
     draw_answer(story.reference, nullptr, y, scale, svg);
     for (const Answer& answer : story.answers) draw_answer(answer, &story.reference, y += 22, scale, svg);
     const double x = left + (480 - left) * exact / scale;
-    svg.line(x, top + 8, x, y + 18, "#D55E00", 1.5, "4 3");
-    return y + 30;
+    svg.line(x, top + 8, x, y + 16, "#D55E00", 1.5, "4 3");
+    y += 40;
+    for (const Answer& answer : story.answers) {
+        if (answer.remark.empty()) continue;
+        svg.text(left, y, answer.mode + ": " + answer.remark, Anchor::start, "fill='#666'");
+        y += 18;
+    }
+    return y;
 }
 }
 
 std::string explain_svg(const RayStory& story, const StoryTitle& title) {
-    const double x_end = axis_end(story);
+    const Stretch range = axis_of(story);
     const std::vector<size_t> lights = drawn_lights(story);
     Svg svg;
     svg.text(16, 26, title_line(story, title), Anchor::start, "font-size='15' font-weight='bold'");
-    draw_fog(story, 78, x_end, svg);
-    draw_transmittance(story, lights, 210, x_end, svg);
-    draw_light(story, lights, 372, x_end, svg);
-    const double bottom = draw_lit(story, lights, 554, x_end, svg);
-    draw_surfaces(story, 66, bottom - 40, x_end, svg);
+    draw_fog(story, 78, range, svg);
+    draw_transmittance(story, lights, 210, range, svg);
+    draw_light(story, lights, 372, range, svg);
+    const double bottom = draw_lit(story, lights, 554, range, svg);
+    draw_surfaces(story, 66, bottom - 40, range, svg);
     return svg.finished(width, draw_modes(story, bottom + 26, svg), title_line(story, title));
 }
 }

@@ -109,8 +109,8 @@ std::string stretches_text(const RayStory& story) {
         for (const LightStretch& stretch : light.stretches) {
             std::string line = formatted("  %-16s %9.3f %9.3f m   ", name.c_str(), stretch.low, stretch.high);
             line += name_of(stretch.state);
-            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " of the light";
             if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
+            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " of the light comes in";
             text += wrapped(line, 45);
             name.clear();
         }
@@ -179,12 +179,13 @@ std::string steps_text(const RayStory& story) {
     const std::vector<size_t> lights = main_lights(story);
     const bool both = 2 * lights.size() <= most_light_columns;
     std::string text = "Step by step (luminance, nits)\n";
+    if (!lights.empty()) text += std::string(67, ' ');
+    for (const size_t l : lights)
+        text += formatted(both ? " %17s" : " %8s", cut(printable(story.lights[l].name, 40), both ? 17 : 8).c_str());
+    if (!lights.empty()) text += "\n";
     text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per metre",
                       "arrives");
-    for (const size_t l : lights) {
-        text += formatted(" %8s", cut(printable(story.lights[l].name, 40), 8).c_str());
-        if (both) text += formatted(" %8s", "to light");
-    }
+    for (size_t l = 0; l < lights.size(); ++l) text += formatted(both ? " %8s %8s" : " %8s", "lit", "to light");
     text += "\n";
     dvec3 sum(0);
     double depth = 0;
@@ -217,19 +218,32 @@ std::string answer_text(const Answer& answer, const Answer* reference) {
                      answer.steps);
 }
 
+// What modes say of themselves; what several say once.
+std::string limits_text(const RayStory& story) {
+    std::vector<std::pair<std::string, std::string>> said; // and by whom
+    for (const Answer& answer : story.answers)
+        for (const Limit& limit : answer.limits) {
+            if (limit.severity == Severity::info) continue;
+            const std::string words =
+                std::string(name_of(limit.severity)) + ": " + printable(limit.where) + ": " + printable(limit.why, 240);
+            const auto known = std::ranges::find(said, words, &std::pair<std::string, std::string>::first);
+            if (known == said.end())
+                said.push_back({words, answer.mode});
+            else
+                known->second += ", " + answer.mode;
+        }
+    std::string text;
+    for (const auto& [words, modes] : said) text += wrapped("  " + modes + ": " + words, 6);
+    return text.empty() ? text : "What modes say of themselves here\n" + text;
+}
+
 std::string modes_text(const RayStory& story) {
-    std::string text = "What each mode makes of it: fog light, nits\n";
+    std::string text = "What each mode makes of it: fog light of one sample at the pixel's centre, nits\n";
     text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "off", "through", "valid", "steps");
     text += answer_text(story.reference, nullptr);
     for (const Answer& answer : story.answers) text += answer_text(answer, &story.reference);
     for (const Answer& answer : story.answers)
         if (!answer.remark.empty()) text += wrapped(formatted("  %-14s ", answer.mode.c_str()) + answer.remark, 17);
-    for (const Answer& answer : story.answers)
-        for (const Limit& limit : answer.limits)
-            if (limit.severity != Severity::info)
-                text += wrapped(formatted("  %-14s ", answer.mode.c_str()) + std::string(name_of(limit.severity)) +
-                                    ": " + printable(limit.where) + ": " + printable(limit.why, 240),
-                                17);
     return text;
 }
 }
@@ -238,10 +252,10 @@ std::string digits(double value) { return formatted("%.4g", value); }
 
 std::string percent(double share) {
     const double value = 100 * share;
-    return formatted(value == 0 || value >= 99.995 ? "%.0f %%"
-                     : value < 0.01                ? "%.0e %%"
-                     : value < 10                  ? "%.2f %%"
-                                                   : "%.1f %%",
+    return formatted(value == 0 || value >= 99.95 ? "%.0f %%"
+                     : value < 0.01               ? "%.0e %%"
+                     : value < 10                 ? "%.2f %%"
+                                                  : "%.1f %%",
                      value);
 }
 
@@ -252,7 +266,7 @@ std::string difference_text(const Answer& answer, const Answer& reference) {
         const double size = std::abs(100 * value);
         return formatted(size >= 100 ? "%s%.0f" : size >= 10 ? "%s%.1f" : "%s%.2f", sign, size);
     };
-    std::string result = text(off, off < 0 ? "-" : "+");
+    std::string result = std::abs(off) < 5e-5 ? "0.00" : text(off, off < 0 ? "-" : "+");
     if (answer.standard_error && luminance(reference.inscatter) > 0)
         result += " +- " + text(luminance(*answer.standard_error) / luminance(reference.inscatter), "");
     return result + " %";
@@ -273,9 +287,16 @@ std::string title_line(const RayStory& story, const StoryTitle& title) {
 
 std::string explain_text(const RayStory& story, const StoryTitle& title) {
     std::string text = wrapped(title_line(story, title), 2);
-    for (const std::string& part :
-         {ray_text(story), lights_text(story), stretches_text(story), steps_text(story), modes_text(story)})
+    for (const std::string& part : {ray_text(story), lights_text(story), stretches_text(story), steps_text(story),
+                                    modes_text(story), limits_text(story)})
         if (!part.empty()) text += "\n" + part;
-    return text;
+    // Empty cells leave no blanks at the ends of lines.
+    std::string result;
+    for (const char c : text) {
+        if (c == '\n')
+            while (result.ends_with(' ')) result.pop_back();
+        result += c;
+    }
+    return result;
 }
 }

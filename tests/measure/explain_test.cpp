@@ -194,6 +194,16 @@ TEST(Explain, StepsAddUpToTheReference) {
     }
 }
 
+TEST(Explain, StepsAddUpWithStyleToo) {
+    const Stage stage =
+        stage_of({hall()}, {sun({0.3f, -1, 0.1f}), point_light({0.5f, 2, -4}, 3)}, {plate(), wall()}, vec3(0.02f));
+    Settings settings = settings_for(Quality::preview);
+    settings.style = {0.4f, 0.6f, 1.5f, 9, vec3(1, 0.5f, 2)};
+    const RayStory story = explain_ray(axis_view(), stage.snapshot, settings, middle, {});
+    EXPECT_NEAR(story.depth, 10 * 0.2 * 1.5, 1e-5);
+    expect_near(sum_of(story), story.reference.inscatter, 1e-3);
+}
+
 std::vector<const Mode*> all_modes() {
     std::vector<const Mode*> result;
     for (const Mode& mode : modes()) result.push_back(&mode);
