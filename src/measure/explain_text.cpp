@@ -105,17 +105,17 @@ std::string stretches_text(const RayStory& story) {
     std::string text = "Where each light comes in\n";
     for (const LightOnRay& light : story.lights) {
         std::string name = cut(printable(light.name, 40), 16);
-        const bool sampled = light.sampled && !story.steps.empty();
         for (const LightStretch& stretch : light.stretches) {
             std::string line = formatted("  %-16s %9.3f %9.3f m   ", name.c_str(), stretch.low, stretch.high);
             line += name_of(stretch.state);
             if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
-            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " of the light comes in";
+            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " comes in";
             text += wrapped(line, 45);
             name.clear();
         }
-        if (sampled) text += "                   (shadows of MASK and BLEND surfaces as the steps see them)\n";
     }
+    if (!story.steps.empty() && std::ranges::any_of(story.lights, &LightOnRay::sampled))
+        text += "  (shadows of MASK and BLEND surfaces are as the steps see them)\n";
     return text;
 }
 
@@ -218,22 +218,51 @@ std::string answer_text(const Answer& answer, const Answer* reference) {
                      answer.steps);
 }
 
+// The same words of one or more modes, about one or more lights or media.
+struct Said {
+    std::vector<std::string> modes, where;
+    Severity severity;
+    std::string why;
+};
+
+std::vector<Said> said_by(const Answer& answer) {
+    std::vector<Said> all;
+    for (const Limit& limit : answer.limits) {
+        if (limit.severity == Severity::info) continue;
+        const auto known = std::ranges::find_if(
+            all, [&](const Said& said) { return said.severity == limit.severity && said.why == limit.why; });
+        if (known != all.end())
+            known->where.push_back(printable(limit.where));
+        else
+            all.push_back({{answer.mode}, {printable(limit.where)}, limit.severity, limit.why});
+    }
+    return all;
+}
+
 // What modes say of themselves; what several say once.
 std::string limits_text(const RayStory& story) {
-    std::vector<std::pair<std::string, std::string>> said; // and by whom
+    constexpr size_t most_named = 5;
+    std::vector<Said> all;
     for (const Answer& answer : story.answers)
-        for (const Limit& limit : answer.limits) {
-            if (limit.severity == Severity::info) continue;
-            const std::string words =
-                std::string(name_of(limit.severity)) + ": " + printable(limit.where) + ": " + printable(limit.why, 240);
-            const auto known = std::ranges::find(said, words, &std::pair<std::string, std::string>::first);
-            if (known == said.end())
-                said.push_back({words, answer.mode});
+        for (Said& said : said_by(answer)) {
+            const auto known = std::ranges::find_if(all, [&](const Said& other) {
+                return other.severity == said.severity && other.why == said.why && other.where == said.where;
+            });
+            if (known != all.end())
+                known->modes.push_back(answer.mode);
             else
-                known->second += ", " + answer.mode;
+                all.push_back(std::move(said));
         }
     std::string text;
-    for (const auto& [words, modes] : said) text += wrapped("  " + modes + ": " + words, 6);
+    for (Said& said : all) {
+        const size_t more = said.where.size() > most_named ? said.where.size() - most_named : 0;
+        said.where.resize(said.where.size() - more);
+        std::string where = joined(said.where, ", ");
+        if (more > 0) where += formatted(" and %zu more", more);
+        text += wrapped("  " + joined(said.modes, ", ") + ": " + std::string(name_of(said.severity)) + ": " + where +
+                            ": " + printable(said.why, 240),
+                        6);
+    }
     return text.empty() ? text : "What modes say of themselves here\n" + text;
 }
 
