@@ -1,5 +1,5 @@
 // The report for people.
-#include "measure/explain_report.h"
+#include "measure/explain_text.h"
 
 #include "base/error.h"
 #include "base/text.h"
@@ -9,36 +9,6 @@
 namespace tyndall {
 namespace {
 constexpr size_t columns = 100;
-constexpr int most_rows = 20;            // of the table of steps
-constexpr size_t most_light_columns = 4; // of the table of steps
-
-std::string color_text(vec3 v) { return digits(v.x) + " " + digits(v.y) + " " + digits(v.z); }
-
-// Three numbers below each other's.
-std::string color_columns(vec3 v) {
-    return formatted("%9s %9s %9s", digits(v.x).c_str(), digits(v.y).c_str(), digits(v.z).c_str());
-}
-
-std::string channels() { return formatted("%9s %9s %9s", "R", "G", "B"); }
-
-std::string cut(std::string text, size_t most) { return text.size() <= most ? text : text.substr(0, most - 1) + "~"; }
-
-// Words in lines of up to 100 columns; those after the first begin `indent` columns in.
-std::string wrapped(const std::string& text, size_t indent) {
-    std::string result, line;
-    for (size_t start = 0; start < text.size();) {
-        const size_t space = std::min(text.find(' ', start), text.size());
-        const std::string word = text.substr(start, space - start);
-        if (!line.empty() && line.size() + 1 + word.size() > columns) {
-            result += line + "\n";
-            line = std::string(indent, ' ') + word;
-        } else {
-            line += (start == 0 ? "" : " ") + word;
-        }
-        start = space + 1;
-    }
-    return result + line + "\n";
-}
 
 std::string surface_text(const SurfaceOnRay& surface) {
     std::string text = formatted("  %9s m  ", digits(surface.distance).c_str()) + printable(surface.name, 40);
@@ -118,163 +88,32 @@ std::string stretches_text(const RayStory& story) {
         text += "  (shadows of MASK and BLEND surfaces are as the steps see them)\n";
     return text;
 }
+}
 
-// Steps put together over one stretch of the ray.
-struct Row {
-    double low = 0, high = 0, depth = 0, reach = 0;
-    dvec3 source{0}, added{0};           // per metre, times metres; at the eye
-    std::vector<double> share, to_light; // of each light, times metres
-};
+std::string color_text(vec3 v) { return digits(v.x) + " " + digits(v.y) + " " + digits(v.z); }
 
-Row row_of(const RayStory& story, double low, double high) {
-    Row row{low,
-            high,
-            0,
-            0,
-            dvec3(0),
-            dvec3(0),
-            std::vector<double>(story.lights.size()),
-            std::vector<double>(story.lights.size())};
-    for (size_t i = 0; i < story.steps.size(); ++i) {
-        const RayStep& step = story.steps[i];
-        const double length = std::min(high, step.high) - std::max(low, step.low);
-        if (!(length > 0)) continue;
-        const double part = length / (step.high - step.low);
-        row.depth += step.extinction * length, row.reach += step.reach * part;
-        row.source += length * dvec3(step.glow), row.added += part * dvec3(added_by(story, i));
-        for (size_t l = 0; l < story.lights.size(); ++l) {
-            row.source += length * dvec3(story.lights[l].at[i].scattered);
-            row.share[l] += length * story.lights[l].at[i].share;
-            row.to_light[l] += length * story.lights[l].at[i].transmittance;
+std::string color_columns(vec3 v) {
+    return formatted("%9s %9s %9s", digits(v.x).c_str(), digits(v.y).c_str(), digits(v.z).c_str());
+}
+
+std::string channels() { return formatted("%9s %9s %9s", "R", "G", "B"); }
+
+std::string cut(std::string text, size_t most) { return text.size() <= most ? text : text.substr(0, most - 1) + "~"; }
+
+std::string wrapped(const std::string& text, size_t indent) {
+    std::string result, line;
+    for (size_t start = 0; start < text.size();) {
+        const size_t space = std::min(text.find(' ', start), text.size());
+        const std::string word = text.substr(start, space - start);
+        if (!line.empty() && line.size() + 1 + word.size() > columns) {
+            result += line + "\n";
+            line = std::string(indent, ' ') + word;
+        } else {
+            line += (start == 0 ? "" : " ") + word;
         }
+        start = space + 1;
     }
-    return row;
-}
-
-// Ends of rows at round distances.
-std::vector<double> row_ends(const RayStory& story) {
-    const double low = story.steps.front().low, high = story.steps.back().high;
-    double length = std::pow(10.0, std::floor(std::log10((high - low) / most_rows)));
-    for (const double factor : {2.0, 2.5, 2.0})
-        if ((high - low) / length > most_rows - 1) length *= factor;
-    std::vector<double> ends{low};
-    for (double end = (std::floor(low / length) + 1) * length; end < high; end += length) ends.push_back(end);
-    ends.push_back(high);
-    return ends;
-}
-
-// The lights that give most of the fog's light.
-std::vector<size_t> main_lights(const RayStory& story) {
-    std::vector<size_t> all;
-    for (size_t l = 0; l < story.lights.size(); ++l)
-        if (luminance(story.lights[l].fog) > 0) all.push_back(l);
-    std::ranges::stable_sort(
-        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
-    all.resize(std::min(all.size(), most_light_columns));
-    return all;
-}
-
-std::string steps_text(const RayStory& story) {
-    if (story.steps.empty()) return {};
-    const std::vector<size_t> lights = main_lights(story);
-    const bool both = 2 * lights.size() <= most_light_columns;
-    std::string text = "Step by step (luminance, nits)\n";
-    if (!lights.empty()) text += std::string(67, ' ');
-    for (const size_t l : lights)
-        text += formatted(both ? " %17s" : " %8s", cut(printable(story.lights[l].name, 40), both ? 17 : 8).c_str());
-    if (!lights.empty()) text += "\n";
-    text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per metre",
-                      "arrives");
-    for (size_t l = 0; l < lights.size(); ++l) text += formatted(both ? " %8s %8s" : " %8s", "lit", "to light");
-    text += "\n";
-    dvec3 sum(0);
-    double depth = 0;
-    const std::vector<double> ends = row_ends(story);
-    for (size_t i = 0; i + 1 < ends.size(); ++i) {
-        const Row row = row_of(story, ends[i], ends[i + 1]);
-        const double length = row.high - row.low;
-        depth += row.depth, sum += row.added;
-        text +=
-            formatted("  %8.3f %8.3f %9s %8s %8s %10s %10s", row.low, row.high, digits(row.depth / length).c_str(),
-                      digits(depth).c_str(), percent(row.reach / length).c_str(),
-                      digits(luminance(vec3(row.source / length))).c_str(), digits(luminance(vec3(row.added))).c_str());
-        for (const size_t l : lights) {
-            text += formatted(" %8s", percent(row.share[l] / length).c_str());
-            if (both) text += formatted(" %8s", percent(row.to_light[l] / length).c_str());
-        }
-        text += "\n";
-    }
-    const double all = luminance(vec3(sum)), exact = luminance(story.reference.inscatter);
-    text += formatted("  %zu steps add up to %s, the reference is %s", story.steps.size(), digits(all).c_str(),
-                      digits(exact).c_str());
-    if (exact > 0) text += formatted(": off by %.2f %%", 100 * std::abs(all / exact - 1));
-    return text + "\n";
-}
-
-std::string answer_text(const Answer& answer, const Answer* reference) {
-    const std::string off = !answer.finite ? "not finite" : reference ? difference_text(answer, *reference) : "";
-    return formatted("  %-14s %s %19s %9s %8s %8d\n", answer.mode.c_str(), color_columns(answer.inscatter).c_str(),
-                     off.c_str(), percent(answer.transmittance).c_str(), percent(answer.validity).c_str(),
-                     answer.steps);
-}
-
-// The same words of one or more modes, about one or more lights or media.
-struct Said {
-    std::vector<std::string> modes, where;
-    Severity severity;
-    std::string why;
-};
-
-std::vector<Said> said_by(const Answer& answer) {
-    std::vector<Said> all;
-    for (const Limit& limit : answer.limits) {
-        if (limit.severity == Severity::info) continue;
-        const auto known = std::ranges::find_if(
-            all, [&](const Said& said) { return said.severity == limit.severity && said.why == limit.why; });
-        if (known != all.end())
-            known->where.push_back(printable(limit.where));
-        else
-            all.push_back({{answer.mode}, {printable(limit.where)}, limit.severity, limit.why});
-    }
-    return all;
-}
-
-// What modes say of themselves; what several say once.
-std::string limits_text(const RayStory& story) {
-    constexpr size_t most_named = 5;
-    std::vector<Said> all;
-    for (const Answer& answer : story.answers)
-        for (Said& said : said_by(answer)) {
-            const auto known = std::ranges::find_if(all, [&](const Said& other) {
-                return other.severity == said.severity && other.why == said.why && other.where == said.where;
-            });
-            if (known != all.end())
-                known->modes.push_back(answer.mode);
-            else
-                all.push_back(std::move(said));
-        }
-    std::string text;
-    for (Said& said : all) {
-        const size_t more = said.where.size() > most_named ? said.where.size() - most_named : 0;
-        said.where.resize(said.where.size() - more);
-        std::string where = joined(said.where, ", ");
-        if (more > 0) where += formatted(" and %zu more", more);
-        text += wrapped("  " + joined(said.modes, ", ") + ": " + std::string(name_of(said.severity)) + ": " + where +
-                            ": " + printable(said.why, 240),
-                        6);
-    }
-    return text.empty() ? text : "What modes say of themselves here\n" + text;
-}
-
-std::string modes_text(const RayStory& story) {
-    std::string text = "What each mode makes of it: fog light of one sample at the pixel's centre, nits\n";
-    text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "off", "through", "valid", "steps");
-    text += answer_text(story.reference, nullptr);
-    for (const Answer& answer : story.answers) text += answer_text(answer, &story.reference);
-    for (const Answer& answer : story.answers)
-        if (!answer.remark.empty()) text += wrapped(formatted("  %-14s ", answer.mode.c_str()) + answer.remark, 17);
-    return text;
-}
+    return result + line + "\n";
 }
 
 std::string digits(double value) { return formatted("%.4g", value); }

@@ -2,6 +2,8 @@
 
 #include "base/text.h"
 
+#include <cmath>
+
 namespace tyndall {
 namespace {
 constexpr double letter = 6.3; // mean width at 12 units
@@ -16,6 +18,13 @@ double text_width(std::string_view text) { return letter * static_cast<double>(t
 std::string shortened(std::string_view text, double width) {
     const size_t most = static_cast<size_t>(width / letter);
     return text.size() <= most ? std::string(text) : std::string(text.substr(0, most - 1)) + "~";
+}
+
+double tick_of(double length, double most) {
+    const double least = length / most, ten = std::pow(10.0, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * ten >= least * 0.9999) return factor * ten;
+    return 10 * ten;
 }
 
 std::string xml_text(std::string_view text) {

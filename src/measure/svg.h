@@ -10,6 +10,9 @@ enum class Anchor { start, middle, end };
 double text_width(std::string_view text);
 std::string shortened(std::string_view text, double width);
 
+// The smallest of 1, 2, 5, 10, 20 ... or their tenths that goes into a length at most so often.
+double tick_of(double length, double most);
+
 // Text with what XML cannot hold replaced.
 std::string xml_text(std::string_view text);
 
