@@ -1,5 +1,6 @@
 // tyndall explain: what happens along one camera ray.
 #include "measure/explain.h"
+#include "automatic.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "common.h"
@@ -35,6 +36,12 @@ void check_inside(ivec2 pixel, ivec2 size) {
                        pixel.x, pixel.y, size.x, size.y, size.x - 1, size.y - 1));
 }
 
+// A plan is made for pictures, not for a ray: there is no automatic mode here.
+std::vector<const Mode*> modes_option(const std::string& text) {
+    if (text == "none") return {};
+    return text == automatic ? std::vector{&find_mode(text)} : asked_modes(text);
+}
+
 RenderJob make_job(const Options& texts) {
     RenderJob job;
     job.scene_file = texts.scene;
@@ -68,7 +75,7 @@ int run_explain(const Options& texts, const Globals& globals) {
     const ivec2 pixel = pixel_option(texts.pixel);
     RenderJob job = make_job(texts);
     ExplainOptions options;
-    options.modes = texts.modes == "none" ? std::vector<const Mode*>() : asked_modes(texts.modes);
+    options.modes = modes_option(texts.modes);
     if (job.resolution.x > 0) check_inside(pixel, job.resolution);
     OutputPlaces places;
     check_outputs(texts, places);

@@ -85,6 +85,7 @@ class Explain(ProgramTest):
         self.refuse(2, ["--pixel", "20x10"], "explain", self.scene, "--pixel", "20,0", "--res", "20x10")
         self.refuse(2, ["--svg", ".svg"], "explain", self.scene, "--pixel", "1,1", "--svg", self.path("ray.png"))
         self.refuse(2, ["nothing"], "explain", self.scene, "--pixel", "1,1", "--modes", "nothing")
+        self.refuse(2, ["auto"], "explain", self.scene, "--pixel", "1,1", "--modes", "auto")
         self.refuse(2, ["nobody"], "explain", self.scene, "--pixel", "1,1", "--camera", "nobody")
         self.refuse(2, ["march.step"], "explain", self.scene, "--pixel", "1,1", "--set", "march.step=1")
         self.refuse(4, ["missing.json"], "explain", "missing.json", "--pixel", "1,1")
