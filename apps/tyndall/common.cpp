@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <charconv>
-#include <cstdarg>
 #include <cstdio>
 #include <cstring>
 
@@ -17,19 +16,6 @@ std::atomic<bool>& cancel_flag() {
 
 void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
-}
-
-std::string formatted(const char* format, ...) {
-    va_list arguments, again;
-    va_start(arguments, format);
-    va_copy(again, arguments);
-    const int length = std::vsnprintf(nullptr, 0, format, arguments);
-    va_end(arguments);
-    std::string result(static_cast<size_t>(std::max(length, 0)) + 1, '\0');
-    std::vsnprintf(result.data(), result.size(), format, again);
-    va_end(again);
-    result.pop_back();
-    return result;
 }
 
 void say(std::string_view line) { std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(line.size()), line.data()); }

@@ -3,6 +3,7 @@
 #include "base/json.h"
 #include "base/math.h"
 #include "base/progress.h"
+#include "base/text.h"
 
 #include <CLI/CLI.hpp>
 
@@ -31,14 +32,12 @@ Run add_modes(CLI::App& app);
 Run add_compare(CLI::App& app);
 Run add_verify(CLI::App& app);
 Run add_plan(CLI::App& app);
+Run add_explain(CLI::App& app);
 
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.
 void stop_if_cancelled();
-
-// printf into a string.
-[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 // One line for people on stderr; foreign text in it has to be printable already.
 void say(std::string_view line);

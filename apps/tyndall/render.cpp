@@ -178,7 +178,8 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
 // The jobs of all modes asked for, each with files of its own when there are several.
 std::vector<RenderJob> make_jobs(const RenderOptions& texts) {
     std::vector<RenderJob> jobs;
-    const std::vector<const Mode*> asked = asked_modes(texts.mode);
+    // Until the scene is known, what is to be chosen is the main renderer.
+    const std::vector<const Mode*> asked = asked_modes(texts.mode == automatic ? "march" : texts.mode);
     for (const Mode* mode : asked) {
         jobs.push_back(make_job(texts, *mode));
         if (asked.size() > 1) jobs.back().output = with_word(texts.output, mode->name);

@@ -169,7 +169,6 @@ void check_crop(const RenderJob& job, ivec2 picture) {
 
 std::vector<const Mode*> asked_modes(const std::string& text) {
     std::vector<const Mode*> result;
-    if (text == automatic) return {&find_mode("march")}; // until the scene is known
     if (text == "all") {
         for (const Mode& mode : modes()) result.push_back(&mode);
         return result;

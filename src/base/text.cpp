@@ -1,6 +1,8 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cstdarg>
+#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -21,6 +23,19 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     }
     return cost[a.size()][b.size()];
 }
+}
+
+std::string formatted(const char* format, ...) {
+    va_list arguments, again;
+    va_start(arguments, format);
+    va_copy(again, arguments);
+    const int length = std::vsnprintf(nullptr, 0, format, arguments);
+    va_end(arguments);
+    std::string result(static_cast<size_t>(std::max(length, 0)) + 1, '\0');
+    std::vsnprintf(result.data(), result.size(), format, again);
+    va_end(again);
+    result.pop_back();
+    return result;
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator) {

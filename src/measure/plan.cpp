@@ -1,29 +1,19 @@
 #include "measure/plan.h"
 
+#include "base/text.h"
 #include "render/to_target.h"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-    char text[320];
-    va_list arguments;
-    va_start(arguments, format);
-    std::vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    return text;
-}
-
 std::string percent(double share) {
     if (!(share < infinity)) return "any";
-    return text_of(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
+    return formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
 }
 
 std::string seconds_text(double seconds) {
-    return text_of(seconds < 1 ? "%.0f ms" : "%.3g s", seconds < 1 ? 1000 * seconds : seconds);
+    return formatted(seconds < 1 ? "%.0f ms" : "%.3g s", seconds < 1 ? 1000 * seconds : seconds);
 }
 
 // Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
@@ -39,7 +29,8 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
-    term.why = percent(term.error) + " noise of the fog itself with " + text_of("%.0f", samples) + " samples per pixel";
+    term.why =
+        percent(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) + " samples per pixel";
     return term;
 }
 
@@ -52,10 +43,10 @@ const Limit* worst_limit(const std::vector<Limit>& limits) {
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const std::vector<Limit>& limits) {
     if (best.gets_there() && goal.error > 0)
         return "gets there in " + seconds_text(best.seconds) +
-               text_of(", %.2g times as long", best.seconds / winner.seconds);
+               formatted(", %.2g times as long", best.seconds / winner.seconds);
     std::string text = goal.error > 0 ? "stays " + percent(best.error) + " off" : percent(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
-        text = "too noisy: " + text_of("%.0f", 1.0 * most_target_samples) + " samples would not do";
+        text = "too noisy: " + formatted("%.0f", 1.0 * most_target_samples) + " samples would not do";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const Limit* limit = worst_limit(limits)) text += "; " + limit->where + ": " + limit->why;
@@ -129,16 +120,16 @@ std::string plan_text(const Plan& plan) {
     std::string text = "what the light needs                              without it\n";
     for (const Term& term : plan.terms) {
         const std::string name = term.name + (term.where.empty() ? "" : " of " + term.where);
-        text += text_of("  %-6s  %-38.38s  %-10s  %s\n", term.needed ? "needed" : "-", name.c_str(),
-                        term.simpler.c_str(), term.why.c_str());
+        text += formatted("  %-6s  %-38.38s  %-10s  %s\n", term.needed ? "needed" : "-", name.c_str(),
+                          term.simpler.c_str(), term.why.c_str());
     }
     text += "\nmodes\n";
     for (const Standing& standing : plan.standings) {
         const std::string name(standing.mode->name);
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
-            text += text_of("  %-14s chosen: %s in %s, %.0f samples per pixel", name.c_str(),
-                            percent(best.error).c_str(), seconds_text(best.seconds).c_str(), best.samples);
+            text += formatted("  %-14s chosen: %s in %s, %.0f samples per pixel", name.c_str(),
+                              percent(best.error).c_str(), seconds_text(best.seconds).c_str(), best.samples);
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
         } else {
             text += "  " + name + std::string(15 - std::min<size_t>(14, name.size()), ' ') + standing.why + "\n";

@@ -1,10 +1,10 @@
 #include "measure/terms.h"
 
+#include "base/text.h"
 #include "modes/techniques.h"
 #include "render/candidates.h"
 #include "render/goal.h"
 
-#include <cstdio>
 #include <optional>
 
 namespace tyndall {
@@ -17,9 +17,7 @@ struct Variant {
 };
 
 std::string percent(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
-    return share < infinity ? text : "any error";
+    return share < infinity ? formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share) : "any error";
 }
 
 // The march with surfaces and background as bright as without fog before them.

@@ -1,4 +1,5 @@
-// Up to sixteen camera rays on their way through BLEND surfaces to the first opaque one. For the files of this folder.
+// Up to sixteen camera rays on their way through BLEND surfaces to the first opaque one. For the files of this folder
+// and for what explains a ray.
 #pragma once
 #include "render/samples.h"
 

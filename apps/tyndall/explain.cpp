@@ -1,0 +1,143 @@
+// tyndall explain: what happens along one camera ray.
+#include "measure/explain.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "common.h"
+#include "explain_json.h"
+#include "output.h"
+#include "render/provenance.h"
+#include "render_options.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace tyndall {
+namespace {
+struct Options {
+    std::string scene, pixel, frame, camera, resolution, quality = "preview", modes = "all", svg, csv;
+    std::vector<std::string> settings;
+};
+
+ivec2 pixel_option(const std::string& text) {
+    const std::vector<std::string> numbers = comma_list(text);
+    if (numbers.size() != 2)
+        fail(ExitCode::usage, "--pixel", "expected X,Y, like 320,180; got '" + printable(text, 40) + "'");
+    const auto number = [](const std::string& digits) {
+        return static_cast<int>(integer_option("--pixel", digits, -largest_side, largest_side));
+    };
+    return {number(numbers[0]), number(numbers[1])};
+}
+
+void check_inside(ivec2 pixel, ivec2 size) {
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
+        fail(ExitCode::usage, "--pixel",
+             formatted("%d,%d lies outside the picture of %dx%d pixels: 0,0 is the upper left, %d,%d the lower right",
+                       pixel.x, pixel.y, size.x, size.y, size.x - 1, size.y - 1));
+}
+
+std::vector<const Mode*> modes_option(const std::string& text) {
+    if (text == "none") return {};
+    return asked_modes(text);
+}
+
+RenderJob make_job(const Options& texts) {
+    RenderJob job;
+    job.scene_file = texts.scene;
+    job.quality = quality_named(texts.quality);
+    job.settings = settings_for(job.quality);
+    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
+    job.camera = texts.camera;
+    if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);
+    if (!texts.frame.empty())
+        job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    return job;
+}
+
+void check_outputs(const Options& texts, OutputPlaces& places) {
+    if (!texts.svg.empty())
+        check_pattern(texts.svg, ".svg", false, "--svg"), places.check(std::filesystem::path(texts.svg));
+    if (!texts.csv.empty())
+        check_pattern(texts.csv, ".csv", false, "--csv"), places.check(std::filesystem::path(texts.csv));
+}
+
+// The scene's own files are not to be written over.
+void keep_inputs(const Options& texts, const Scene& scene) {
+    for (const std::string& output : {texts.svg, texts.csv})
+        for (const std::filesystem::path& input : scene.inputs)
+            if (!output.empty() &&
+                std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input))
+                fail(ExitCode::usage, output, "this file belongs to the scene and would be written over");
+}
+
+int run_explain(const Options& texts, const Globals& globals) {
+    const ivec2 pixel = pixel_option(texts.pixel);
+    RenderJob job = make_job(texts);
+    ExplainOptions options;
+    options.modes = modes_option(texts.modes);
+    if (job.resolution.x > 0) check_inside(pixel, job.resolution);
+    OutputPlaces places;
+    check_outputs(texts, places);
+
+    const Scene scene = load_scene(texts.scene);
+    keep_inputs(texts, scene);
+    if (job.frames.empty()) job.frames = {scene.first_frame};
+    const int frame = job.frames[0];
+    find_camera(scene, job.camera);
+    const View view = view_of(scene, job, frame);
+    check_inside(pixel, view.size);
+    if (!globals.quiet)
+        for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
+
+    Progress progress(globals.progress, "explain", 1, true);
+    const Snapshot snapshot = make_snapshot(scene, moment_of(scene, frame));
+    stop_if_cancelled();
+    if (!globals.quiet)
+        for (const std::string& note : snapshot.notes) say("note: " + printable(note, 460));
+    options.cancel = &cancel_flag();
+    options.progress = [&](double done) { progress.set(done); };
+    const RayStory story = explain_ray(view, snapshot, job.settings, pixel, options);
+    stop_if_cancelled();
+    progress.finish();
+
+    const StoryTitle title{std::filesystem::path(texts.scene).filename().string(), view.camera.name,
+                           std::string(name_of(job.quality)), frame};
+    if (!texts.svg.empty()) write_file_atomically(texts.svg, explain_svg(story, title));
+    if (!texts.csv.empty()) write_file_atomically(texts.csv, explain_csv(story));
+    print_report(globals.json ? explain_json(story, title) : explain_text(story, title));
+    const auto finite = [](const Answer& answer) { return answer.finite; };
+    if (story.reference.finite && std::ranges::all_of(story.answers, finite)) return 0;
+    fail(ExitCode::non_finite, texts.scene, "an answer is not a finite number; the report says which");
+}
+}
+
+Run add_explain(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("explain", "say what happens along one camera ray");
+    auto texts = std::make_shared<Options>();
+    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
+        return command->add_option(name, text, help)->type_name(type);
+    };
+    option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "")->required();
+    option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
+        ->required();
+    option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
+    option("--res", texts->resolution, "size of the picture the pixel is counted in (default: the scene's)", "WxH");
+    option("--quality", texts->quality, "of the modes: draft, preview (default), final or reference", "NAME");
+    command
+        ->add_option("--set", texts->settings,
+                     "one setting by name, like froxel.tile=4; may be repeated\n"
+                     "(tyndall modes lists them)")
+        ->type_name("ROW=VALUE")
+        ->allow_extra_args(false);
+    option("--modes", texts->modes, "the modes to ask, with commas between (default: all); or none", "NAMES");
+    option("--svg", texts->svg, "a drawing of it", "FILE.svg");
+    option("--csv", texts->csv, "a table of every step along the ray", "FILE.csv");
+    command->footer(
+        "Example: why is this pixel of the window so bright, and who gets it right?\n"
+        "  tyndall explain scenes/window.json --pixel 320,180 --svg ray.svg\n"
+        "The report: what the ray meets, how much fog lies on it, where each light shines on it and what keeps\n"
+        "it out, how much of that arrives at the eye; then the fog light by every mode, at the pixel's centre\n"
+        "and one sample, beside exact single scattering. --json has all of it.");
+    return [texts](const Globals& globals) { return run_explain(*texts, globals); };
+}
+}
