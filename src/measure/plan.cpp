@@ -109,7 +109,7 @@ std::string Plan::certificate() const {
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
     for (const Term& term : terms)
-        if (!term.needed)
+        if (!term.needed && term.bound > 0)
             left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
                         " (" + term.simpler + ": at most " + percent(term.bound) +
                         (term.rigorous ? " for certain)" : ")");

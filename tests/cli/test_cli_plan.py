@@ -6,9 +6,9 @@ from program import ProgramTest, scene
 
 
 def hazy(**changes):
-    """A spot in a box of even fog: nothing casts shadows."""
+    """A spot above the picture in a box of even fog: nothing casts shadows."""
     box = {"low": [-2, -1, -2], "high": [2, 2, 2]}
-    spot = {"name": "spot", "type": "spot", "position": [-1, 1.5, 0], "target": [1, 0, 0], "intensity": 20,
+    spot = {"name": "spot", "type": "spot", "position": [-1, 4, 0], "target": [0.5, 0, 0], "intensity": 100,
             "inner_cone": 8, "outer_cone": 15}
     return scene(lights=[spot], media=[{"name": "haze", "type": "homogeneous", "extinction": 0.2, "bounds": box}], **changes)
 
@@ -62,7 +62,9 @@ class Plan(ProgramTest):
         self.assertLessEqual(plan["modes"][0]["seconds"], 0.5)
 
     def test_exit_code_one_when_no_mode_gets_there(self):
-        self.refuse(1, ["no mode gets there"], "plan", self.scene, "--target-error", "0.00001", "-q")
+        seen = hazy()
+        seen["lights"][0]["position"] = [-1, 1.5, 0]  # in the picture, where light has no bound
+        self.refuse(1, ["no mode gets there"], "plan", self.write("seen.json", seen), "--target-error", "0.00001", "-q")
 
     def test_auto_renders_as_planned_and_says_so_in_the_header(self):
         result = self.succeed("render", self.scene, "-o", self.output, "--mode", "auto", "--target-error", "0.03")

@@ -47,13 +47,13 @@ double edge_error(const Edge& edge, float covered, int edge_samples, double& mea
 }
 
 TEST(Edges, TakeMoreRaysThereAndNowhereElse) {
-    const Edge edge(4.3f);
+    const Edge edge(7.3f);
     FrameStats plain, more;
     rendered(edge, edge_view(1), plain);
     EXPECT_EQ(plain.camera_rays, 512u * samples);
     rendered(edge, edge_view(4), more);
-    // One probe a pixel; the square spans 11.7 to 20.3 and 3.7 to 12.3: its edges run through tiles of columns 2 to 5
-    // and rows 0 to 3, all but the four in its middle.
+    // One probe a pixel. The square spans 8.7 to 23.3 and 0.7 to 15.3: its edges run through tiles of columns 2 to 5 and
+    // rows 0 to 3, all but the four in its middle.
     EXPECT_EQ(more.camera_rays, 512u + 512u * samples + 12u * 16 * 3 * samples);
 }
 
