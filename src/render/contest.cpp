@@ -98,6 +98,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             if (race.power == 0)
                 race.power = spread_power(pilot, *runner.mode, snapshot, candidate.settings, *measured.prepared,
                                           measured.sample.value, options);
+            contender.choice.power = race.power;
             predict(contender, race);
             measured.prepared = nullptr; // it may be large
             contest.contenders.push_back(std::move(contender));

@@ -30,7 +30,8 @@ double steady_seconds() {
 }
 
 double Choice::expected(double samples) const {
-    return samples < 2 ? measured.single.value : measured.integrator.value + measured.sample.value / samples;
+    if (samples < 2) return measured.single.value;
+    return measured.integrator.value + measured.sample.value / std::pow(samples, power);
 }
 
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
@@ -42,11 +43,23 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         make_pilot(systematic ? find_mode("march") : mode, view, snapshot, systematic ? &truth : nullptr, options,
                    [&] { return timed && spent() > truth_share * goal.seconds; });
 
+    // Noise falls alike for all candidates: it is mostly that of edges.
+    double power = 0;
+    const auto measured = [&](const Candidate& candidate) {
+        Choice choice{candidate, measure(pilot, mode, snapshot, candidate.settings, options, goal.clock), systematic};
+        if (power == 0)
+            power = systematic ? spread_power(pilot, mode, snapshot, candidate.settings, *choice.measured.prepared,
+                                              choice.measured.sample.value, options)
+                               : 1;
+        choice.power = power;
+        return choice;
+    };
+
     std::optional<Choice> best;
     const std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
     for (const Candidate& candidate : candidates) {
         const double begun = spent();
-        Choice next{candidate, measure(pilot, mode, snapshot, candidate.settings, options, goal.clock), systematic};
+        Choice next = measured(candidate);
         if (!timed) {
             if (leaves_room(next, goal.error)) return next;
             if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;

@@ -8,6 +8,7 @@ struct Choice {
     Candidate candidate;
     Measured measured;
     bool has_integrator = false; // otherwise noise is the only error
+    double power = 1;            // of the samples by which their variance falls
 
     // The squared error to expect of so many samples per pixel.
     double expected(double samples) const;

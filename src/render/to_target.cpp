@@ -43,15 +43,17 @@ struct Rounds {
     }
 };
 
-// Where nothing is known, the first round is as the view asks; otherwise a quarter of what independent samples would
-// need, since those of a round are spread better than that.
+// Where nothing is known, the first round is as the view asks; otherwise less than what is likely to be needed, since a
+// round too many costs less than one too large. More rays at edges leave less to do for others.
 int first_round(Rounds& rounds) {
     if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), most_target_samples);
     const Measured& measured = rounds.choice->measured;
     int samples = most_target_samples;
     if (rounds.goal.error > 0) {
-        const double needed = measured.sample.value / std::pow(rounds.noise_target(), 2);
-        samples = static_cast<int>(std::clamp(std::ceil(needed / 4), 2.0, most_target_samples / 2.0));
+        const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
+        const double needed = std::pow(ratio, 1 / rounds.choice->power);
+        const double part = rounds.view.edge_samples > 1 ? 6 : 3;
+        samples = static_cast<int>(std::clamp(std::ceil(needed / part), 2.0, most_target_samples / 2.0));
         if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
         rounds.expected = std::max(samples, static_cast<int>(std::min<double>(needed, most_target_samples)));
     }
