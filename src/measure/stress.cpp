@@ -53,7 +53,7 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
     Trial trial{mode, value, scene, truth, control.cancel};
     StressPoint point;
     point.value = value;
-    point.allowed = stress.measure.error || stress.measure.allowed > 0 ? stress.measure.allowed : promised(*mode);
+    point.allowed = stress.measure.allowed >= 0 || !mode ? stress.measure.allowed : promised(*mode);
     if (mode) ask_limits(stress, *mode, scene, point);
     point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
     if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;

@@ -25,7 +25,7 @@ struct Trial; // of measure/stress_trial.h
 
 // How an error is measured, and how large it may be.
 struct StressMeasure {
-    double allowed = 0; // 0 = what the mode promises at preview; of a measure of its own: none at all
+    double allowed = -1; // below 0: what the mode promises at preview
     std::string_view criterion = "relative RMSE of picture or fog light against the exact march";
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
 };

@@ -7,7 +7,7 @@ namespace tyndall {
 namespace {
 constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
-constexpr std::string_view slices = "slices deep";
+constexpr std::string_view thick = "optical depths deep|thinner than froxels";
 
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 6}, vec3(0));
@@ -26,6 +26,8 @@ StressScene wall(double depth) {
                      flat_camera({0, 0, wall_distance}, vec3(0), 2), {box_of({-8, -8, -0.1f}, {8, 8, 0}, -1)});
     return scene;
 }
+
+double sky_off(Trial& trial) { return difference(trial.render().color, trial.truth().color); }
 
 double transmittance_off(Trial& trial) {
     const Layers layers = trial.render();
@@ -148,34 +150,42 @@ std::vector<StressCase> stress_fog() {
     return {
         StressCase{
             "thin-fog", group, "fog vanishes", "extinction", "1/m", {1, 1e-2, 1e-4, 1e-8, 1e-12}, all, "", cube_of},
-        StressCase{
-            "thick-fog", group, "fog becomes a wall", "extinction", "1/m", {1, 3, 10, 100, 1e4}, all, slices, cube_of},
+        StressCase{"thick-fog",
+                   group,
+                   "fog becomes a wall",
+                   "extinction",
+                   "1/m",
+                   {1, 3, 10, 100, 1000},
+                   all,
+                   thick,
+                   cube_of,
+                   {0.1}},
         StressCase("transmittance", group, "what lies behind fades by Beer and Lambert", "optical depth", "",
                    {0.01, 0.5, 2, 8, 32, 1000}, exact, "", wall,
                    {1e-4, "largest error of the transmittance", transmittance_off}),
         StressCase("slab", group, "a slab's light in closed form", "optical depth", "", {0.01, 0.5, 2, 8, 30}, exact,
-                   slices, slab, {0.005, "error of the mean against the closed form", slab_off}),
+                   thick, slab, {0.01, "error of the mean against the closed form", slab_off}),
         StressCase("thin-sheet", group, "a sheet of fog of constant depth gets thin", "thickness", "m",
-                   {1, 0.1, 0.01, 0.001, 0}, all, slices, sheet),
+                   {1, 0.1, 0.01, 0.001, 0}, all, thick, sheet),
         StressCase("in-the-face", group, "rays run in the face of the fog's box", "ray to face", "m",
                    {0.1, -0.1, 1e-3, 1e-6, 0}, all, "", in_the_face),
-        StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all,
-                   slices, eye_in_fog),
-        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {2, 0.5, 0.05, 1e-3}, all,
-                   "few long slices only|its glow is even", endless),
+        StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all, thick,
+                   eye_in_fog),
+        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3}, all,
+                   "few long slices only|its glow is even|few for its glow", endless),
         StressCase("ground-fog", group, "fog that clings to the ground", "falloff", "m", {10, 1, 0.3, 0.05, 0.005}, all,
-                   slices, layer),
+                   thick, layer),
         StressCase("glowing-fog", group, "fog that glows and takes light", "optical depth", "", {0.1, 1, 5, 40}, exact,
-                   slices, glowing, {0.005, "error of the mean against the closed form", glow_off}),
+                   thick, glowing, {0.005, "error of the mean against the closed form", glow_off}),
         StressCase("copies", group, "one fog said as several in the same place", "copies", "", {2, 4, 8}, exact, "",
                    one_fog, {1e-3, "relative RMSE against one", copies_off}),
         StressCase("nested-fog", group, "fog of another colour and phase inside fog", "way out", "m", {0, 0.7, 1.2, 3},
-                   all, "", nested),
+                   all, "", nested, {0.05}),
         StressCase("albedo", group, "fog from white to black", "albedo", "", {1, 0.5, 1e-3, 0}, all, "", white),
         StressCase("bright-behind", group, "a sky of 100 000 nits behind fog", "optical depth", "", {1, 4, 8, 12},
-                   exact, "", bright_behind, {0.01}),
+                   exact, "", bright_behind, {0.002, "relative RMSE of the picture", sky_off}),
         StressCase("pattern", group, "the pattern of the jitter goes away over 16 frames", "steps", "", {32, 16, 8},
-                   "shadow-map", "", jittered, {0, to_truth, pattern_left}),
+                   "shadow-map", "", jittered, {-1, to_truth, pattern_left}),
     };
 }
 }

@@ -66,7 +66,7 @@ double samples_off(Trial& trial) {
 StressScene disc(double aspect) {
     StressScene scene = blur_scene(point_light(vec3(0), 10), ahead);
     scene.view.size = {static_cast<int>(96 * aspect), 96};
-    scene.settings.radial_blur.density = 0, scene.settings.radial_blur.lamp_size = 0.8f;
+    scene.settings.radial_blur.density = 0.01f, scene.settings.radial_blur.lamp_size = 0.8f;
     return scene;
 }
 double eccentricity(Trial& trial) {

@@ -24,8 +24,10 @@ struct Trial {
 // --- errors ------------------------------------------------------------------------------------------------------
 // E: the relative RMSE of picture or fog light, whichever is worse.
 double difference(const Layers& test, const Layers& reference);
-// Of the trial's mode against the truth. Of a mode whose only error is noise: what noise does not explain.
+double difference(const Image<vec3>& test, const Image<vec3>& reference);
+// Of the trial's mode against the truth. Where the picture is noisy: what noise does not explain.
 double error_to_truth(Trial& trial);
+double error_of_mean(Trial& trial); // of the fog light; where noise is the only error, as above
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
 double most_of(const Image<vec3>& image);
