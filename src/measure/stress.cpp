@@ -63,14 +63,17 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
 }
 }
 
+bool takes_part(const StressCase& stress, const Mode& mode) {
+    return std::ranges::count(pieces(stress.modes, ' '), mode.name) > 0;
+}
+
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
                                      const StressControl& control) {
     using Clock = std::chrono::steady_clock;
-    const std::vector<std::string_view> named = pieces(stress.modes, ' ');
     std::vector<const Mode*> taking;
     for (const Mode& mode : modes)
-        if (std::ranges::count(named, mode.name)) taking.push_back(&mode);
-    if (named.empty()) taking.push_back(nullptr);
+        if (takes_part(stress, mode)) taking.push_back(&mode);
+    if (stress.modes.empty()) taking.push_back(nullptr);
 
     std::vector<StressResult> results;
     for (const Mode* mode : taking) results.push_back({&stress, std::string(mode ? mode->name : "program"), {}, 0});

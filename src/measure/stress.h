@@ -44,6 +44,9 @@ struct StressCase {
 // All cases, group by group.
 const std::vector<StressCase>& stress_cases();
 
+// Whether the case is one for the mode.
+bool takes_part(const StressCase& stress, const Mode& mode);
+
 enum class Verdict { holds, degrades, fails };
 
 struct StressPoint {

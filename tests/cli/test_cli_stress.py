@@ -7,17 +7,17 @@ from program import ProgramTest
 
 class Stress(ProgramTest):
     def test_a_case_in_every_form(self):
-        result = self.succeed("stress", "--cases", "albedo,phase-sum", "--modes", "march,cone", "-o", "out")
+        result = self.succeed("stress", "--cases", "albedo,phase-sum", "--modes", "march,cone", "-o", self.path("out"))
         for text in ("march", "cone", "program", "albedo", "phase-sum", "holds", "0 fail in silence"):
             self.assertIn(text, result.stdout)
-        self.assertEqual((self.directory / "out/stress.txt").read_text(), result.stdout)
-        report = json.loads((self.directory / "out/stress.json").read_text())
+        self.assertEqual((self.path("out") / "stress.txt").read_text(), result.stdout)
+        report = json.loads((self.path("out") / "stress.json").read_text())
         self.assertEqual(report["fails"], 0)
         self.assertEqual([case["case"] for case in report["cases"]], ["albedo", "phase-sum"])
         self.assertEqual([r["mode"] for r in report["cases"][0]["results"]], ["march", "cone"])
         for point in report["cases"][0]["results"][0]["points"]:
             self.assertLessEqual(point["error"], point["allowed"])
-        page = (self.directory / "out/stress.html").read_text()
+        page = (self.path("out") / "stress.html").read_text()
         self.assertIn("albedo", page)
         self.assertNotIn("http", page)
 
@@ -39,8 +39,8 @@ class Stress(ProgramTest):
         self.refuse(2, ["--cases", "no-such"], "stress", "--cases", "no-such-case")
         self.refuse(2, ["no mode"], "stress", "--modes", "nope")
         self.refuse(2, ["--modes"], "stress", "--modes", "cone", "--cases", "sun-behind")
-        self.write("file", "")
-        self.refuse(5, ["file"], "stress", "--cases", "phase-sum", "-o", "file")
+        file = self.write("file", "")
+        self.refuse(5, ["file"], "stress", "--cases", "phase-sum", "-o", file)
 
 
 if __name__ == "__main__":
