@@ -55,10 +55,10 @@ tyndall --help lists all commands; tyndall COMMAND --help explains one, with an 
 )";
 
 constexpr const char* exit_codes =
-    R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), more noise left than wanted (render)
-or a proof that failed (verify), 2 wrong command line, 3 input refused, 4 input missing or unreadable,
-5 output could not be written, 6 done but some samples or pixels were not finite numbers, 33 out of memory,
-70 internal error, 128+n stopped by signal n.)";
+    R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), more noise left than wanted (render),
+a proof that failed (verify) or a mode that fails in silence (stress), 2 wrong command line, 3 input refused,
+4 input missing or unreadable, 5 output could not be written, 6 done but some samples or pixels were not finite
+numbers, 33 out of memory, 70 internal error, 128+n stopped by signal n.)";
 
 struct GlobalTexts {
     std::string threads, progress;
@@ -154,8 +154,9 @@ int run(int argc, char** argv) {
     Globals globals;
     GlobalTexts texts;
     add_globals(app, globals, texts);
-    const std::vector<Run> commands{add_bake(app),    add_render(app), add_info(app), add_check(app),  add_modes(app),
-                                    add_compare(app), add_verify(app), add_plan(app), add_explain(app)};
+    const std::vector<Run> commands{add_bake(app),    add_render(app),  add_info(app),   add_check(app),
+                                    add_modes(app),   add_compare(app), add_verify(app), add_plan(app),
+                                    add_explain(app), add_stress(app)};
     const std::vector<CLI::App*> names = app.get_subcommands({});
     for (CLI::App* command : names) {
         command->fallthrough()->group("Commands");

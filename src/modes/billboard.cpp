@@ -14,8 +14,9 @@ std::string some_of(const std::vector<std::string>& names) {
 }
 
 std::vector<Limit> billboard_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<Limit> limits{
-        {Severity::wrong, "billboard", "cards are a look: they are not lit, shadowed or made of fog"}};
+    std::vector<Limit> limits;
+    if (std::ranges::any_of(snapshot.media, [](const Medium& medium) { return medium.majorant() > 0; }))
+        limits.push_back({Severity::wrong, "billboard", "cards are a look: they are not lit, shadowed or made of fog"});
     std::vector<float> open;
     const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard, &open);
     std::vector<std::string> around, along;

@@ -123,13 +123,30 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
     return cone;
 }
 
-std::vector<Limit> cone_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
+// Whether surfaces keep a light from fog that the picture shows.
+bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
+    constexpr int points = 16; // on each ray
+    for (Ray& ray : probing_rays(view, snapshot)) {
+        Hits hits;
+        snapshot.occluders->closest({&ray, 1}, 0, hits);
+        ray.t_max = std::min(ray.t_max, hits.t[0]);
+        for (int i = 0; i < points; ++i) {
+            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
+            const Arrival at = arrival(light, point);
+            if (max_component(at.irradiance) <= 0) continue;
+            if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
+        }
+    }
+    return false;
+}
+
+std::vector<Limit> cone_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits;
     const bool casts = snapshot.occluders && !snapshot.occluders->empty();
     for (const Light& light : snapshot.lights) {
         const std::string where = "light " + light.name;
         const bool sun = light.kind == LightKind::sun;
-        if (casts && light.shadows && sun)
+        if (casts && light.shadows && sun && is_shadowed(view, snapshot, light))
             limits.push_back({Severity::wrong, where, "a sun has no cone and shadows are not seen: no shafts"});
         else if (casts && light.shadows)
             limits.push_back({Severity::degraded, where, "shadows of surfaces are not seen in its light"});
@@ -148,7 +165,7 @@ std::vector<Limit> cone_limits(const View&, const Snapshot& snapshot, const Sett
         if (medium.kind == DensityKind::bricks)
             limits.push_back({Severity::degraded, "medium " + medium.name,
                               "drawn as even fog of its mean density in the grid's bounds"});
-    add_single_scattering_limits(snapshot, limits);
+    add_single_scattering_limits(view, snapshot, limits);
     return limits;
 }
 

@@ -81,7 +81,8 @@ HWY_INLINE Stretch16 inside_wedge(const SeenRays& seen, float cosine, float sine
     const Floats high_x = fused(seen.axis_out, cosine, -(seen.axis_along * turn));
     const Floats high_y = fused(seen.axis_along, cosine, seen.axis_out * turn);
     const Mask16 low_ahead = low_x > 0.0f, high_ahead = high_x > 0.0f;
-    const Mask16 met = (room > 0.0f) & (low_ahead | high_ahead);
+    // Of a half space the ray runs parallel to, neither border is ahead.
+    const Mask16 met = (room > 0.0f) & (low_ahead | high_ahead | (seen.axis_out > 0.0f));
     const Floats low = select(low_ahead, seen.distance * low_y / select(low_ahead, low_x, 1.0f), -infinity);
     const Floats high = select(high_ahead, seen.distance * high_y / select(high_ahead, high_x, 1.0f), infinity);
     return {select(met, low, 0.0f), select(met, high, 0.0f)};

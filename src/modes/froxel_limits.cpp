@@ -1,16 +1,11 @@
 // What a froxel cache cannot show of a scene, in words.
 #include "modes/froxel_grid.h"
+#include "modes/limits.h"
 #include "modes/techniques.h"
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
-std::string metres(float value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g m", static_cast<double>(value));
-    return text;
-}
+std::string metres(float value) { return number_text("%.2g m", static_cast<double>(value)); }
 
 // Size of a froxel in the middle of the scene: across, and in depth.
 struct FroxelSize {
@@ -27,6 +22,14 @@ FroxelSize middle_froxel(const View& view, const Snapshot& snapshot, const Froxe
 
 bool in_fog(const Snapshot& snapshot, vec3 point) {
     return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
+}
+
+// Whether the scene gives a light keys for where it is or shines to.
+bool is_moving(const Snapshot& snapshot, const Light& light) {
+    const auto moves = [&](const LightSource& source) {
+        return source.name == light.name && (!source.position.constant() || !source.direction.constant());
+    };
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->lights, moves);
 }
 }
 
@@ -49,15 +52,28 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
             limits.push_back({fine ? Severity::info : Severity::degraded, where,
                               "shafts are as coarse as froxels, here about " + metres(size.across) + " wide and " +
                                   metres(size.deep) + " deep; walls and gaps thinner than that leak or vanish"});
+        if (is_moving(snapshot, light))
+            limits.push_back({Severity::degraded, where, "moves: with --history it leaves a trail of some frames"});
         if (light.kind != LightKind::sun && in_fog(snapshot, light.position))
             limits.push_back({Severity::info, where, "its glow is even within " + metres(coarse) + " of it"});
     }
     for (const Medium& medium : snapshot.media) {
+        const std::string where = "medium " + medium.name;
+        const float depth = medium.majorant() * size.deep;
+        const vec3 sides = medium.world_bounds.size();
+        if (depth > 1)
+            limits.push_back({Severity::degraded, where,
+                              "froxels are up to " + number_text("%.2g", depth) +
+                                  " optical depths deep: light that changes within them is evened out"});
+        if (std::min(sides.x, std::min(sides.y, sides.z)) < size.deep)
+            limits.push_back(
+                {Severity::degraded, where,
+                 "is a sheet thinner than froxels, which are " + metres(size.deep) + " deep: it is seen blurred"});
         if (medium.kind != DensityKind::bricks) continue;
         const float voxel = 1 / glm::length(vec3(medium.bricks->world_to_index[0]));
         if (voxel < 0.5f * coarse)
             limits.push_back(
-                {Severity::info, "medium " + medium.name,
+                {Severity::info, where,
                  "detail finer than a froxel is lost: voxels of " + metres(voxel) + ", froxels of " + metres(coarse)});
     }
     const auto endless = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };

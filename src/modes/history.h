@@ -17,13 +17,13 @@ struct History {
     View view;      // of the last frame
     Settings settings;
     const Scene* scene = nullptr;
-    std::vector<vec3> lights; // what each shone into the fog
+    std::vector<vec3> lights; // of each: what it shone into the fog, where it was, which way it shone
     std::shared_ptr<const FroxelMemory> froxels;
     std::shared_ptr<const FogPicture> picture;
 };
 
 // Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another
-// scene, picture size, lens or settings, a cut, or a light switched on or off. Returns the number of frames it reaches
-// back.
+// scene, picture size, lens or settings, a cut, or a light switched or moved on. Returns the number of frames it
+// reaches back.
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings);
 }

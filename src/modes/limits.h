@@ -1,8 +1,22 @@
-// Limits that all modes of single scattering share.
+// Limits that several modes share.
 #pragma once
 #include "modes/mode.h"
 
 namespace tyndall {
-// Where a medium is so thick that light scattered more than once shows, and ambient light that nothing shadows.
-void add_single_scattering_limits(const Snapshot& snapshot, std::vector<Limit>& limits);
+// Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places
+// so far from the origin that floats do not resolve them.
+void add_single_scattering_limits(const View& view, const Snapshot& snapshot, std::vector<Limit>& limits);
+
+// Where fog dims the light to it within a cell of a light grid that has so many cells across the fog.
+void add_light_grid_limits(const Snapshot& snapshot, int cells, std::vector<Limit>& limits);
+
+// Rays through the middle and towards the corners of the picture, to the end of fog and scene.
+std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
+
+// Where so many steps along a ray are too few for the detail of a grid; with `fixed`, for its light in thick fog too.
+// `row` names the setting.
+void add_step_limits(const View& view, const Snapshot& snapshot, int steps, const char* row, bool fixed,
+                     std::vector<Limit>& limits);
+
+std::string number_text(const char* format, double value);
 }

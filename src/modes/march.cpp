@@ -31,7 +31,8 @@ ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
 std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     const MarchSettings& march = settings.march;
     std::vector<Limit> limits;
-    add_single_scattering_limits(snapshot, limits);
+    add_single_scattering_limits(view, snapshot, limits);
+    if (march.light == LightTransmittance::grid) add_light_grid_limits(snapshot, march.light_resolution, limits);
     for (const Medium& medium : snapshot.media)
         if (!march.heterogeneity && medium.kind == DensityKind::bricks)
             limits.push_back(

@@ -1,38 +1,15 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "modes/fog_picture.h"
+#include "modes/limits.h"
 #include "modes/march_kernel.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 
-#include <cstdio>
-
 namespace tyndall {
 namespace {
 constexpr float detail_voxels = 4; // of the finest detail of a noise
 constexpr float sharp_pixels = 4;  // a texel that covers more of the picture shows
-
-std::string number_text(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-// Rays through the middle and towards the corners of the picture, to the end of fog and scene.
-std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
-    Box fog;
-    for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
-    fog.low = glm::max(fog.low, snapshot.bounds.low), fog.high = glm::min(fog.high, snapshot.bounds.high);
-    std::vector<Ray> rays;
-    for (const vec2 at : {vec2(0.5f), vec2(0.1f), vec2(0.9f, 0.1f), vec2(0.1f, 0.9f), vec2(0.9f)}) {
-        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
-        const Interval inside = clip(fog, ray.origin, ray.direction, {0, infinity});
-        if (inside.empty()) continue;
-        ray.t_max = inside.high;
-        rays.push_back(ray);
-    }
-    return rays;
-}
 
 // The largest texel of a light's map at the ends of the rays: its size, and its share of a pixel there.
 void append_resolution_limit(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
@@ -61,20 +38,22 @@ bool has_blend(const Snapshot& snapshot) {
            });
 }
 
-void append_step_limits(const ShadowMapSettings& settings, const Snapshot& snapshot, std::span<const Ray> rays,
+// Edges of light that fall between steps: of shafts, and of the glow of lamps that the picture shows.
+void append_edge_limits(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings,
                         std::vector<Limit>& limits) {
-    for (const Medium& medium : snapshot.media) {
-        if (medium.kind != DensityKind::bricks || rays.empty()) continue;
-        float length = 0;
-        for (const Ray& ray : rays)
-            length += clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length();
-        const float step = length / static_cast<float>(rays.size()) / static_cast<float>(settings.steps);
-        const float detail = fog_detail({&medium, 1});
-        if (step > detail)
-            limits.push_back({step > 8 * detail ? Severity::degraded : Severity::info, "medium " + medium.name,
-                              "steps of about " + number_text("%.2g", step) + " m are longer than its detail of " +
-                                  number_text("%.2g", detail) + " m, which is seen blurred or as grain; more " +
-                                  "shadow_map.steps resolve it"});
+    constexpr int fine = 64; // steps
+    if (settings.steps >= fine || snapshot.media.empty()) return;
+    for (const Light& light : snapshot.lights) {
+        const std::string where = "light " + light.name, steps = std::to_string(settings.steps) + " steps a ray";
+        if (casts(light, snapshot))
+            limits.push_back(
+                {Severity::degraded, where,
+                 "shafts begin and end within one of " + steps + ": their edges show as grain (shadow_map.steps)"});
+        if (light.kind == LightKind::sun) continue;
+        const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
+        if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))
+            limits.push_back({Severity::degraded, where,
+                              "is in the picture: " + steps + " are few for its glow and the edges of its cone"});
     }
 }
 }
@@ -124,7 +103,8 @@ std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot,
     like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
     std::vector<Limit> limits = march_limits(view, snapshot, like);
     for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
-    append_step_limits(settings.shadow_map, snapshot, probing_rays(view, snapshot), limits);
+    add_step_limits(view, snapshot, settings.shadow_map.steps, "shadow_map.steps", true, limits);
+    append_edge_limits(view, snapshot, settings.shadow_map, limits);
     if (!snapshot.media.empty() && settings.shadow_map.light == LightTransmittance::off)
         limits.push_back(
             {Severity::degraded, "lights", "shadow_map.light is off: fog does not dim the light that crosses it"});

@@ -15,27 +15,27 @@ float half_diagonal(const Box& scene) {
     return std::isfinite(length) && length > 0 ? length : 1;
 }
 
-void add_fog_limits(const Snapshot& snapshot, const Settings& settings, std::vector<Limit>& limits) {
+void add_fog_limits(const View& view, const Snapshot& snapshot, const Settings& settings, std::vector<Limit>& limits) {
     const bool sampled = samples_fog(snapshot, settings.shadow_volume);
     for (const Medium& medium : snapshot.media) {
         const std::string where = "medium " + medium.name;
         if (medium.kind == DensityKind::bricks && !sampled)
             limits.push_back({Severity::wrong, where, "shadow_volume.fog is even: drawn at its mean density"});
-        if (medium.kind == DensityKind::bricks && sampled)
-            limits.push_back({Severity::info, where,
-                              "sampled in " + std::to_string(settings.shadow_volume.steps) +
-                                  " steps a ray: detail finer than a step is smoothed (shadow_volume.steps)"});
     }
-    add_single_scattering_limits(snapshot, limits);
+    if (sampled) {
+        add_step_limits(view, snapshot, settings.shadow_volume.steps, "shadow_volume.steps", false, limits);
+        add_light_grid_limits(snapshot, settings.shadow_volume.light_resolution, limits);
+    }
+    add_single_scattering_limits(view, snapshot, limits);
 }
 }
 
-std::vector<Limit> shadow_volume_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
+std::vector<Limit> shadow_volume_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits;
     if (settings.shadow_volume.draw == ShadowDraw::shells)
         limits.push_back({Severity::wrong, "shadow_volume.draw",
                           "shells are a look: bright sheets where light meets shadow, not light scattered by fog"});
-    add_fog_limits(snapshot, settings, limits);
+    add_fog_limits(view, snapshot, settings, limits);
     constexpr size_t many = 20000;
     bool shadows = false;
     for (const Light& light : snapshot.lights) {

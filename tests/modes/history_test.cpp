@@ -34,7 +34,13 @@ TEST(History, GoesOnWhileThePictureDoes) {
     EXPECT_TRUE(resets([&] { snapshot.lights.pop_back(); })) << "a light out";
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 2.1f; })) << "a light switched up";
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity.y *= 0.4f; })) << "a light of another colour";
-    EXPECT_FALSE(resets([&] { snapshot.lights[0].intensity *= 0.6f; })) << "a light that flickers";
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 0.6f; })) << "a light dimmed at once";
+    EXPECT_FALSE(resets([&] { snapshot.lights[0].intensity *= 0.85f; })) << "a light that flickers";
+    view.camera.position = vec3(0), snapshot.lights[0].position = vec3(0, 0, -5);
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].position.x += 0.005f; })) << "a light that moves";
+    EXPECT_FALSE(resets([&] { snapshot.lights[0].position.x += 0.002f; })) << "a light that hardly moves";
+    snapshot.lights[0].kind = LightKind::sun;
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].direction.x += 0.001f; })) << "a sun that moves";
     Scene other;
     EXPECT_TRUE(resets([&] { snapshot.scene = &other; })) << "scene";
 }

@@ -1,0 +1,110 @@
+// tyndall stress: the stability suite, mode by case.
+#include "base/error.h"
+#include "base/file.h"
+#include "output.h"
+#include "stress_report.h"
+
+#include <chrono>
+
+namespace tyndall {
+namespace {
+struct Options {
+    std::string modes, cases, output;
+    bool list = false;
+};
+
+std::vector<Mode> chosen_modes(const std::string& names) {
+    if (names.empty()) return {modes().begin(), modes().end()};
+    std::vector<Mode> chosen;
+    for (const std::string& name : comma_list(names)) chosen.push_back(find_mode(name));
+    return chosen;
+}
+
+// Those whose name or group contains one of the pieces between commas.
+std::vector<const StressCase*> chosen_cases(const std::string& patterns) {
+    std::vector<const StressCase*> chosen;
+    for (const StressCase& stress : stress_cases()) {
+        bool wanted = patterns.empty();
+        for (const std::string& part : comma_list(patterns))
+            wanted |=
+                stress.id.find(part) != std::string_view::npos || stress.group.find(part) != std::string_view::npos;
+        if (wanted) chosen.push_back(&stress);
+    }
+    if (chosen.empty())
+        fail(ExitCode::usage, "--cases",
+             "no case has '" + printable(patterns, 60) + "' in its name (--list names them)");
+    return chosen;
+}
+
+bool any_work(const std::vector<const StressCase*>& cases, const std::vector<Mode>& chosen) {
+    return std::ranges::any_of(cases, [&](const StressCase* stress) {
+        const auto takes = [&](const Mode& mode) { return takes_part(*stress, mode); };
+        return stress->modes.empty() || std::ranges::any_of(chosen, takes);
+    });
+}
+
+std::vector<std::string> columns(const std::vector<StressResult>& results) {
+    std::vector<std::string> names;
+    const auto took = [&](std::string_view name) {
+        return std::ranges::any_of(results, [&](const StressResult& result) { return result.mode == name; });
+    };
+    for (const Mode& mode : modes())
+        if (took(mode.name)) names.emplace_back(mode.name);
+    if (took("program")) names.emplace_back("program");
+    return names;
+}
+
+void write_files(const std::filesystem::path& directory, const StressReport& report) {
+    write_file_atomically(directory / "stress.txt", stress_text(report));
+    write_file_atomically(directory / "stress.json", stress_json(report));
+    write_file_atomically(directory / "stress.html", stress_html(report));
+}
+
+int run(const Options& texts, const Globals& globals) {
+    const std::vector<const StressCase*> cases = chosen_cases(texts.cases);
+    if (texts.list) {
+        print_report(stress_list(cases));
+        return 0;
+    }
+    const std::vector<Mode> chosen = chosen_modes(texts.modes);
+    if (!any_work(cases, chosen)) fail(ExitCode::usage, "--modes", "none of these takes part in the cases chosen");
+    const std::filesystem::path directory = texts.output;
+    OutputPlaces places;
+    if (!texts.output.empty())
+        for (const char* name : {"stress.txt", "stress.json", "stress.html"}) places.check(directory / name);
+
+    using Clock = std::chrono::steady_clock;
+    const auto start = Clock::now();
+    Progress progress(globals.progress, "stress", 1, true);
+    StressReport report;
+    report.results = run_stress(cases, chosen, {&cancel_flag(), [&](double done) { progress.set(done); }});
+    stop_if_cancelled();
+    progress.finish();
+    report.modes = columns(report.results);
+    report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    if (!texts.output.empty()) write_files(directory, report);
+    print_report(globals.json ? stress_json(report) : stress_text(report));
+    return static_cast<int>(report.count(Verdict::fails) ? ExitCode::differs : ExitCode::ok);
+}
+}
+
+Run add_stress(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("stress", "where each mode fails, and whether it says so");
+    auto texts = std::make_shared<Options>();
+    command->add_option("--modes", texts->modes, "which modes, between commas (default: all)")->type_name("NAMES");
+    command
+        ->add_option("--cases", texts->cases,
+                     "cases with one of these in their name or group, between commas\n(default: all)")
+        ->type_name("PARTS");
+    command->add_option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there")
+        ->type_name("DIR");
+    command->add_flag("--list", texts->list, "only list the cases and what they sweep");
+    command->footer("Examples: everything, one or two minutes; then one mode's shadows\n"
+                    "  tyndall stress -o out/stress\n"
+                    "  tyndall stress --modes shadow-map --cases shadows\n"
+                    "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"
+                    "from some value on and has said so before (tyndall render says it too), or fails in silence.\n"
+                    "Exit code 0: none fails in silence; 1: one does.");
+    return [texts](const Globals& globals) { return run(*texts, globals); };
+}
+}

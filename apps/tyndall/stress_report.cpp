@@ -1,0 +1,151 @@
+// Tables for people, and the same as JSON.
+#include "stress_report.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+std::string cell_text(const StressResult* result) {
+    if (!result) return "";
+    const StressPoint* point = result->first();
+    if (!point) return "holds";
+    return formatted(point->silent() ? "FAILS %.3g" : "from %.3g", point->value);
+}
+
+// What went wrong at a point, or was said to.
+std::string fault_text(const StressPoint& point) {
+    std::string text = formatted("error %.3g, allowed %.3g", point.error, point.allowed);
+    if (point.non_finite) text += "; " + count_text(point.non_finite, "value") + " not finite";
+    if (point.negative) text += "; " + count_text(point.negative, "value") + " below 0 or above 1";
+    if (point.silent()) return text + (point.excused ? "" : "; nothing said");
+    return text + "; " + point.warning;
+}
+
+std::string details(const StressReport& report, Verdict verdict, const char* heading) {
+    std::string text;
+    for (const StressResult& result : report.results) {
+        if (result.verdict() != verdict) continue;
+        const StressPoint& point = *result.first();
+        text +=
+            formatted("  %s, %s, %s %s: ", std::string(result.stress->id).c_str(), result.mode.c_str(),
+                      std::string(result.stress->sweep).c_str(), stress_value(*result.stress, point.value).c_str()) +
+            fault_text(point) + "\n";
+    }
+    return text.empty() ? "" : "\n" + std::string(heading) + "\n" + text;
+}
+
+Json point_json(const StressPoint& point) {
+    return json_object({{"value", json_of(point.value)},
+                        {"error", json_of(point.error)},
+                        {"allowed", json_of(point.allowed)},
+                        {"holds", json_of(point.holds())},
+                        {"said", json_of(point.excused)},
+                        {"warning", json_of(std::string_view(point.warning))},
+                        {"wrong", json_of(point.wrong)},
+                        {"rmse_rel", point.measured < 0 ? Json{} : json_of(point.measured)},
+                        {"non_finite", json_of(point.non_finite)},
+                        {"negative", json_of(point.negative)}});
+}
+
+Json result_json(const StressResult& result) {
+    std::vector<Json> points;
+    for (const StressPoint& point : result.points) points.push_back(point_json(point));
+    const StressPoint* first = result.first();
+    return json_object({{"mode", json_of(std::string_view(result.mode))},
+                        {"verdict", json_of(name_of(result.verdict()))},
+                        {"from", first ? json_of(first->value) : Json{}},
+                        {"seconds", json_of(result.seconds)},
+                        {"points", json_array(std::move(points))}});
+}
+
+Json case_json(const StressReport& report, const StressCase& stress) {
+    std::vector<Json> results;
+    for (const std::string& mode : report.modes)
+        if (const StressResult* result = report.find(stress, mode)) results.push_back(result_json(*result));
+    return json_object({{"case", json_of(stress.id)},
+                        {"group", json_of(stress.group)},
+                        {"title", json_of(stress.title)},
+                        {"sweep", json_of(stress.sweep)},
+                        {"unit", json_of(stress.unit)},
+                        {"criterion", json_of(stress.measure.criterion)},
+                        {"results", json_array(std::move(results))}});
+}
+}
+
+int StressReport::count(Verdict verdict) const {
+    return static_cast<int>(std::ranges::count(results, verdict, &StressResult::verdict));
+}
+
+const StressResult* StressReport::find(const StressCase& stress, const std::string& mode) const {
+    const auto found = std::ranges::find_if(
+        results, [&](const StressResult& result) { return result.stress == &stress && result.mode == mode; });
+    return found != results.end() ? &*found : nullptr;
+}
+
+std::vector<const StressCase*> StressReport::cases() const {
+    std::vector<const StressCase*> list;
+    for (const StressResult& result : results)
+        if (list.empty() || list.back() != result.stress) list.push_back(result.stress);
+    return list;
+}
+
+std::string stress_value(const StressCase& stress, double value) {
+    return formatted("%.3g", value) + (stress.unit.empty() ? "" : " " + std::string(stress.unit));
+}
+
+std::string stress_summary(const StressReport& report) {
+    const WrongWarnings warnings = wrong_warnings(report.results);
+    return formatted("%zu cases, %zu results: %d hold, %d degrade and say so, %d fail in silence; of %d warnings "
+                     "\"wrong\" %d (%.1f %%) with an error below 5 %%",
+                     report.cases().size(), report.results.size(), report.count(Verdict::holds),
+                     report.count(Verdict::degrades), report.count(Verdict::fails), warnings.count, warnings.idle,
+                     warnings.count ? 100.0 * warnings.idle / warnings.count : 0.0);
+}
+
+std::string stress_text(const StressReport& report) {
+    std::string text = formatted("%-20s", "");
+    for (const std::string& mode : report.modes) text += formatted(" %13s", mode.c_str());
+    std::string_view group;
+    for (const StressCase* stress : report.cases()) {
+        if (stress->group != group) text += "\n" + std::string(stress->group) + "\n";
+        group = stress->group;
+        text += formatted("  %-18s", std::string(stress->id).c_str());
+        for (const std::string& mode : report.modes)
+            text += formatted(" %13s", cell_text(report.find(*stress, mode)).c_str());
+        text.erase(text.find_last_not_of(' ') + 1);
+        text += "\n";
+    }
+    return text + details(report, Verdict::degrades, "Degrades, and says so beforehand:") +
+           details(report, Verdict::fails, "Fails in silence:") + "\n" + stress_summary(report) + "\n";
+}
+
+std::string stress_json(const StressReport& report) {
+    std::vector<Json> cases;
+    for (const StressCase* stress : report.cases()) cases.push_back(case_json(report, *stress));
+    const WrongWarnings warnings = wrong_warnings(report.results);
+    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
+                                    {"holds", json_of(report.count(Verdict::holds))},
+                                    {"degrades", json_of(report.count(Verdict::degrades))},
+                                    {"fails", json_of(report.count(Verdict::fails))},
+                                    {"wrong_warnings", json_of(warnings.count)},
+                                    {"idle_warnings", json_of(warnings.idle)},
+                                    {"seconds", json_of(report.seconds)},
+                                    {"cases", json_array(std::move(cases))}})) +
+           "\n";
+}
+
+std::string stress_list(std::span<const StressCase* const> cases) {
+    std::string text;
+    std::string_view group;
+    for (const StressCase* stress : cases) {
+        if (stress->group != group) text += (group.empty() ? "" : "\n") + std::string(stress->group) + "\n";
+        group = stress->group;
+        std::string values;
+        for (const double value : stress->values) values += formatted(values.empty() ? "%.3g" : ", %.3g", value);
+        text += formatted("  %-18s %s\n  %-18s %s %s%s%s\n", std::string(stress->id).c_str(),
+                          std::string(stress->title).c_str(), "", std::string(stress->sweep).c_str(), values.c_str(),
+                          stress->unit.empty() ? "" : " ", std::string(stress->unit).c_str());
+    }
+    return text;
+}
+}

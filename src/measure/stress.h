@@ -1,0 +1,96 @@
+// The stability suite: the known ways in which fog techniques fail, as tiny scenes with one condition swept from mild
+// to hard, rendered by every mode that claims to handle it. A mode may hold, or say beforehand that it will not; what
+// it must not do is fail in silence.
+#pragma once
+#include "modes/mode.h"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+// What is rendered at one value of a sweep.
+struct StressScene {
+    std::shared_ptr<Scene> scene; // of the snapshot's surfaces; null = none
+    Snapshot snapshot;
+    View view;
+    Settings settings;
+};
+
+struct Trial; // of measure/stress_trial.h
+
+// How an error is measured, and how large it may be.
+struct StressMeasure {
+    double allowed = -1; // below 0: what the mode promises at preview
+    std::string_view criterion = "relative RMSE of picture or fog light against the exact march";
+    double (*error)(Trial& trial) = nullptr; // null = by the criterion above
+};
+
+struct StressCase {
+    std::string_view id, group, title; // title: what is put to the test
+    std::string_view sweep, unit;      // the condition that is swept
+    std::vector<double> values;        // from mild to hard
+    std::string_view modes;            // names between spaces; empty = a part of the program that all modes share
+    // Parts of the limits, between bars, that may excuse an error here. Empty: every mode has to hold throughout.
+    std::string_view excuses;
+    StressScene (*scene)(double value) = nullptr;
+    StressMeasure measure{};
+};
+
+// All cases, group by group.
+const std::vector<StressCase>& stress_cases();
+
+// Whether the case is one for the mode.
+bool takes_part(const StressCase& stress, const Mode& mode);
+
+enum class Verdict { holds, degrades, fails };
+
+struct StressPoint {
+    double value = 0;
+    double error = 0, allowed = 0;
+    double measured = -1;                  // relative RMSE where the mode called itself wrong; else -1
+    bool wrong = false;                    // some limit says so
+    bool excused = false;                  // a limit that may excuse the error is degraded or wrong
+    std::string warning;                   // the worst such limit, in words
+    uint64_t non_finite = 0, negative = 0; // samples dropped; values of pixels below 0, or shares above 1
+
+    bool clean() const { return non_finite == 0 && negative == 0; }
+    bool holds() const { return clean() && error <= allowed; }
+    bool silent() const { return !clean() || (!holds() && !excused); }
+};
+
+// One mode in one case.
+struct StressResult {
+    const StressCase* stress = nullptr;
+    std::string mode; // "program" when all modes share what is tested
+    std::vector<StressPoint> points;
+    double seconds = 0;
+
+    Verdict verdict() const;
+    const StressPoint* first() const; // the point that decides the verdict; null when it holds
+};
+
+struct StressControl {
+    std::atomic<bool>* cancel = nullptr;
+    std::function<void(double)> progress; // 0..1
+};
+
+// Runs a case with those of the modes that it names; the program's own when there is one. Throws Error (internal) when
+// cancelled.
+std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
+                                     const StressControl& control);
+std::vector<StressResult> run_stress(std::span<const StressCase* const> cases, std::span<const Mode> modes,
+                                     const StressControl& control);
+
+// How often a mode called itself `wrong`, and how often its measured error was below 5 % then.
+struct WrongWarnings {
+    int count = 0, idle = 0;
+};
+WrongWarnings wrong_warnings(std::span<const StressResult> results);
+
+std::string_view name_of(Verdict verdict);
+}

@@ -1,0 +1,259 @@
+// The stability suite has to notice: modes broken on purpose, each caught by a case that the mode itself passes.
+#include "measure/stress.h"
+
+#include "base/parallel.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+using Prepare = decltype(Mode::prepare);
+
+Mode broken(std::string_view name, Prepare prepare) {
+    Mode mode = find_mode(name);
+    mode.prepare = prepare;
+    return mode;
+}
+
+Verdict verdict_of(std::string_view id, const Mode& mode) {
+    const StressCase& stress = *std::ranges::find(stress_cases(), id, &StressCase::id);
+    const std::vector<StressResult> results = run_stress(stress, {&mode, 1}, {});
+    EXPECT_EQ(results.size(), 1u) << id << " does not take " << mode.name;
+    return results.empty() ? Verdict::holds : results[0].verdict();
+}
+
+void expect_caught(std::string_view id, const Mode& mode) {
+    EXPECT_NE(verdict_of(id, find_mode(mode.name)), Verdict::fails) << "unbroken";
+    EXPECT_EQ(verdict_of(id, mode), Verdict::fails);
+}
+
+// A mode whose results are changed afterwards.
+template<class Change> ScatterFunction changed(ScatterFunction scatter, Change change) {
+    return [scatter = std::move(scatter), change](const RayBatch& batch, std::span<Scatter> results) {
+        scatter(batch, results);
+        for (size_t i = 0; i < results.size(); ++i) change(batch, i, results[i]);
+    };
+}
+
+// Another number of lights than the picture has: parts of lights are not asked for.
+ScatterFunction without_parts(ScatterFunction scatter) {
+    return [scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
+        RayBatch whole = batch;
+        whole.per_light = {};
+        scatter(whole, results);
+    };
+}
+
+// A plain march in four steps through even fog and sun light: each step's light and transmittance are taken where it
+// ends, or in its middle and integrated.
+template<bool at_end> ScatterFunction plain_march(const View&, const Snapshot& snapshot, const Settings&, History*) {
+    return [snapshot](const RayBatch& batch, std::span<Scatter> results) {
+        constexpr int steps = at_end ? 4 : 256;
+        const Medium& fog = snapshot.media[0];
+        const Light& sun = snapshot.lights[0];
+        for (size_t i = 0; i < results.size(); ++i) {
+            const Ray& ray = batch.rays[i];
+            const Interval inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+            const float step = inside.length() / steps, depth = fog.optics.extinction * step;
+            float passed = 1;
+            results[i] = {};
+            for (int s = 0; s < steps; ++s) {
+                const vec3 at = ray.at(inside.low + step * (static_cast<float>(s) + (at_end ? 1.0f : 0.5f)));
+                const double on_the_way = optical_depth(fog, Ray{at, -sun.direction, infinity});
+                const float lit = phase_value(fog.optics.phase, -glm::dot(sun.direction, ray.direction)) *
+                                  static_cast<float>(std::exp(-on_the_way));
+                const float after = passed * std::exp(-depth);
+                const float share = at_end ? after * depth : passed - after;
+                results[i].radiance += share * lit * fog.optics.albedo * sun.intensity;
+                passed = after;
+            }
+            results[i].transmittance = passed;
+        }
+    };
+}
+
+TEST(MutationCheck, SwappedPhaseSign) {
+    expect_caught("phase-sign", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                   History* history) {
+                      Snapshot other = snapshot;
+                      for (Medium& medium : other.media) medium.optics.phase.g *= -1;
+                      return find_mode("march").prepare(view, other, settings, history);
+                  }));
+}
+
+TEST(MutationCheck, RightEndpointRule) {
+    EXPECT_EQ(verdict_of("slab", broken("march", plain_march<false>)), Verdict::holds);
+    expect_caught("slab", broken("march", plain_march<true>));
+}
+
+TEST(MutationCheck, NoTransmittanceOnTheLightsSide) {
+    expect_caught("slab", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                             History* history) {
+                      Settings other = settings;
+                      other.march.light = LightTransmittance::off;
+                      return find_mode("march").prepare(view, snapshot, other, history);
+                  }));
+}
+
+TEST(MutationCheck, NoTestForTheSecondNappe) {
+    expect_caught("mirror-cone", broken("cone", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                   History* history) {
+                      Snapshot both = snapshot;
+                      both.lights.push_back(both.lights[0]), both.lights.back().direction *= -1;
+                      return without_parts(find_mode("cone").prepare(view, both, settings, history));
+                  }));
+}
+
+TEST(MutationCheck, NoRejectionOfHistory) {
+    const Mode stubborn =
+        broken("froxel", [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+            if (history && history->frames > 0) { // look the same to whoever compares
+            History same;
+            follow(same, view, snapshot, settings);
+            history->view = same.view, history->settings = same.settings;
+            history->scene = same.scene, history->lights = same.lights;
+        }
+            return find_mode("froxel").prepare(view, snapshot, settings, history);
+        });
+    expect_caught("cut", stubborn);
+}
+
+TEST(MutationCheck, ShadowsIgnored) {
+    expect_caught("dark-room", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                  History* history) {
+                      Settings other = settings;
+                      other.march.visibility = Visibility::off;
+                      return find_mode("march").prepare(view, snapshot, other, history);
+                  }));
+}
+
+TEST(MutationCheck, NotANumberInOnePixel) {
+    expect_caught("thin-fog", broken("shadow-volume", [](const View& view, const Snapshot& snapshot,
+                                                         const Settings& settings, History* history) {
+                      return changed(find_mode("shadow-volume").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch& batch, size_t i, Scatter& result) {
+                                         if (glm::distance(batch.positions[i], vec2(7.5f)) < 0.1f)
+                                             result.radiance.y = NAN;
+                                     });
+                  }));
+}
+
+TEST(MutationCheck, NegativeLightInOnePixel) {
+    expect_caught("albedo", broken("cone", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                              History* history) {
+                      return changed(find_mode("cone").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch& batch, size_t i, Scatter& result) {
+                                         if (glm::distance(batch.positions[i], vec2(7.5f)) < 0.1f)
+                                             result.radiance.y = -1e-9f;
+                                     });
+                  }));
+}
+
+TEST(MutationCheck, DepthIgnored) {
+    expect_caught("near-wall", broken("shadow-map", [](const View& view, const Snapshot& snapshot,
+                                                       const Settings& settings, History* history) {
+                      const ScatterFunction scatter =
+                          find_mode("shadow-map").prepare(view, snapshot, settings, history);
+                      return ScatterFunction([scatter](const RayBatch& batch, std::span<Scatter> results) {
+                          std::vector<Ray> rays(batch.rays.begin(), batch.rays.end());
+                          for (Ray& ray : rays) ray.t_max = 20;
+                          RayBatch far = batch;
+                          far.rays = rays;
+                          scatter(far, results);
+                      });
+                  }));
+}
+
+TEST(MutationCheck, ALightForgotten) {
+    expect_caught("many-lamps", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                   History* history) {
+                      Snapshot fewer = snapshot;
+                      fewer.lights.pop_back();
+                      return without_parts(find_mode("march").prepare(view, fewer, settings, history));
+                  }));
+}
+
+TEST(MutationCheck, TransmittanceSquared) {
+    expect_caught("transmittance", broken("froxel", [](const View& view, const Snapshot& snapshot,
+                                                       const Settings& settings, History* history) {
+                      return changed(find_mode("froxel").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch&, size_t, Scatter& result) {
+                                         result.transmittance *= result.transmittance;
+                                     });
+                  }));
+}
+
+TEST(MutationCheck, HalfASliceLost) {
+    expect_caught("near-wall", broken("froxel", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                   History* history) {
+                      const ScatterFunction scatter = find_mode("froxel").prepare(view, snapshot, settings, history);
+                      return ScatterFunction([scatter](const RayBatch& batch, std::span<Scatter> results) {
+                          std::vector<Ray> rays(batch.rays.begin(), batch.rays.end());
+                          for (Ray& ray : rays) ray.t_max = std::max(0.0f, ray.t_max - 0.02f);
+                          RayBatch shorter = batch;
+                          shorter.rays = rays;
+                          scatter(shorter, results);
+                      });
+                  }));
+}
+
+TEST(MutationCheck, BrightLightClamped) {
+    expect_caught("linear", broken("shadow-volume", [](const View& view, const Snapshot& snapshot,
+                                                       const Settings& settings, History* history) {
+                      return changed(find_mode("shadow-volume").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch&, size_t, Scatter& result) {
+                                         result.radiance = glm::min(result.radiance, vec3(100));
+                                     });
+                  }));
+}
+
+TEST(MutationCheck, TheLastFogWins) {
+    expect_caught("copies", broken("cone", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                              History* history) {
+                      Snapshot last = snapshot;
+                      last.media = {snapshot.media.back()};
+                      return find_mode("cone").prepare(view, last, settings, history);
+                  }));
+}
+
+TEST(MutationCheck, HalfAVoxelAside) {
+    expect_caught("ramp", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                             History* history) {
+                      Snapshot aside = snapshot;
+                      for (Medium& medium : aside.media) {
+                          const auto pool = std::make_shared<BrickPool>(*medium.bricks);
+                          pool->anchor.x += 0.5f * pool->voxel_size.x;
+                          medium.bricks = pool;
+                      }
+                      return find_mode("march").prepare(view, aside, settings, history);
+                  }));
+}
+
+TEST(MutationCheck, ThreadsShow) {
+    expect_caught("threads", broken("billboard", [](const View& view, const Snapshot& snapshot,
+                                                    const Settings& settings, History* history) {
+                      return changed(find_mode("billboard").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch&, size_t, Scatter& result) {
+                                         result.radiance += 1e-6f * static_cast<float>(thread_count());
+                                     });
+                  }));
+}
+
+TEST(MutationCheck, ALimitNotSaid) {
+    Mode silent = find_mode("cone");
+    silent.limits = [](const View&, const Snapshot&, const Settings&) { return std::vector<Limit>{}; };
+    expect_caught("slit", silent);
+}
+
+TEST(MutationCheck, AModeThatAlwaysWarns) {
+    Mode anxious = find_mode("march");
+    anxious.limits = [](const View&, const Snapshot&, const Settings&) {
+        return std::vector<Limit>{{Severity::wrong, "picture", "light scatters once only"}};
+    };
+    const StressCase& stress = *std::ranges::find(stress_cases(), "albedo", &StressCase::id);
+    const WrongWarnings warnings = wrong_warnings(run_stress(stress, {&anxious, 1}, {}));
+    EXPECT_EQ(warnings.count, static_cast<int>(stress.values.size()));
+    EXPECT_EQ(warnings.idle, warnings.count);
+}
+}
+}

@@ -1,0 +1,109 @@
+// The stability suite, case by case, and that its judgement is sound.
+#include "measure/stress.h"
+
+#include "base/error.h"
+#include "base/random.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace tyndall::test {
+namespace {
+std::vector<std::string> case_names() {
+    std::vector<std::string> names;
+    for (const StressCase& stress : stress_cases()) names.emplace_back(stress.id);
+    return names;
+}
+
+const StressCase& case_named(std::string_view id) { return *std::ranges::find(stress_cases(), id, &StressCase::id); }
+
+class Stability : public testing::TestWithParam<std::string> {};
+
+TEST_P(Stability, NoModeFailsInSilence) {
+    for (const StressResult& result : run_stress(case_named(GetParam()), modes(), {}))
+        for (const StressPoint& point : result.points)
+            EXPECT_FALSE(point.silent()) << result.mode << ", " << result.stress->sweep << " " << point.value
+                                         << ": error " << point.error << ", allowed " << point.allowed << "; "
+                                         << point.non_finite << " not finite, " << point.negative << " negative";
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
+    std::string name = parameter.param;
+    std::ranges::replace(name, '-', '_');
+    return name;
+}
+INSTANTIATE_TEST_SUITE_P(Cases, Stability, testing::ValuesIn(case_names()), test_name);
+
+TEST(StressCases, AreManyAndWellFormed) {
+    EXPECT_GE(stress_cases().size(), 60u);
+    std::set<std::string_view> ids;
+    for (const StressCase& stress : stress_cases()) {
+        EXPECT_TRUE(ids.insert(stress.id).second) << stress.id;
+        EXPECT_FALSE(stress.values.empty()) << stress.id;
+        EXPECT_TRUE(stress.scene || (stress.measure.error && stress.modes.empty())) << stress.id;
+        std::istringstream names{std::string(stress.modes)};
+        for (std::string name; names >> name;) EXPECT_NO_THROW(find_mode(name)) << stress.id;
+    }
+}
+
+// --- the judgement ---------------------------------------------------------------------------------------------------
+StressPoint point_of(double value, double error, bool excused) {
+    StressPoint point;
+    point.value = value, point.error = error, point.allowed = 0.1, point.excused = excused;
+    return point;
+}
+
+TEST(StressVerdict, HoldsDegradesOrFails) {
+    StressResult result;
+    result.points = {point_of(1, 0.05, false), point_of(2, 0.1, true)};
+    EXPECT_EQ(result.verdict(), Verdict::holds);
+    EXPECT_EQ(result.first(), nullptr);
+    result.points.push_back(point_of(3, 0.2, true));
+    EXPECT_EQ(result.verdict(), Verdict::degrades);
+    EXPECT_EQ(result.first()->value, 3);
+    result.points.push_back(point_of(4, 0.11, false));
+    EXPECT_EQ(result.verdict(), Verdict::fails);
+    EXPECT_EQ(result.first()->value, 4);
+}
+
+TEST(StressVerdict, NothingExcusesWhatIsNoLight) {
+    StressResult result;
+    result.points = {point_of(1, 0, true)};
+    result.points[0].negative = 1;
+    EXPECT_EQ(result.verdict(), Verdict::fails);
+    result.points[0].negative = 0, result.points[0].non_finite = 1;
+    EXPECT_EQ(result.verdict(), Verdict::fails);
+}
+
+TEST(StressVerdict, CountsWarningsThatNothingBearsOut) {
+    StressResult result;
+    for (const double measured : {0.01, 0.049, 0.051, 3.0}) {
+        StressPoint point = point_of(1, 0, true);
+        point.wrong = true, point.measured = measured;
+        result.points.push_back(point);
+    }
+    result.points.push_back(point_of(1, 0, true));
+    const WrongWarnings warnings = wrong_warnings({&result, 1});
+    EXPECT_EQ(warnings.count, 4);
+    EXPECT_EQ(warnings.idle, 2);
+}
+
+TEST(StressRun, StopsWhenCancelled) {
+    std::atomic<bool> cancel = true;
+    EXPECT_THROW(run_stress(case_named("thin-fog"), modes(), {&cancel, {}}), Error);
+}
+
+// A mode that always warns would never fail; the suite counts that too.
+TEST(StabilityOfWarnings, OfTenWrongOnesNineAreBorneOut) {
+    std::vector<const StressCase*> cases;
+    for (const StressCase& stress : stress_cases()) cases.push_back(&stress);
+    std::vector<Mode> warning; // those that ever say wrong of what they promise
+    for (const Mode& mode : modes())
+        if (mode.name != "path") warning.push_back(mode);
+    const WrongWarnings warnings = wrong_warnings(run_stress(cases, warning, {}));
+    EXPECT_GT(warnings.count, 0);
+    EXPECT_LE(warnings.idle, 0.1 * warnings.count);
+}
+}
+}
