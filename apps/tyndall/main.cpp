@@ -154,8 +154,8 @@ int run(int argc, char** argv) {
     Globals globals;
     GlobalTexts texts;
     add_globals(app, globals, texts);
-    const std::vector<Run> commands{add_bake(app),    add_render(app), add_info(app), add_check(app),  add_modes(app),
-                                    add_compare(app), add_verify(app), add_plan(app), add_explain(app)};
+    const std::vector<Run> commands{add_bake(app),    add_render(app), add_info(app), add_check(app),   add_modes(app),
+                                    add_compare(app), add_verify(app), add_plan(app), add_explain(app), add_chart(app)};
     const std::vector<CLI::App*> names = app.get_subcommands({});
     for (CLI::App* command : names) {
         command->fallthrough()->group("Commands");
