@@ -8,7 +8,7 @@
 
 namespace tyndall {
 inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
-inline constexpr ChartErrors no_errors{not_measured, not_measured, not_measured, not_measured,
+inline constexpr ChartErrors no_errors{not_measured, not_measured, not_measured, not_measured, not_measured,
                                        not_measured, not_measured, not_measured, not_measured};
 
 // A mode at one of its settings. Times are wall-clock seconds, errors shares of the reference's mean.
@@ -18,13 +18,14 @@ struct ChartPoint {
     double setup_seconds = 0;                                       // on top of a frame: what frames that follow share
     double frame_seconds = 0, frame_fastest = 0, frame_slowest = 0; // median of the runs; their range
     double seconds_1 = 0, seconds_100 = 0; // a frame with its share of the set-up for 1 and 100
+    double cpu_seconds = 0;                // of all threads together, for a frame and its set-up
     double memory_bytes = not_measured;    // most on top of the scene
     ChartErrors errors;
     double flicker = not_measured;
-    double gain = not_measured;      // of looks: the factor on their fog light that fits best
-    ChartErrors fitted = no_errors;  // with it
-    double best_1 = 0, best_100 = 0; // 1 where no point is both quicker and better
-    double non_finite = 0;           // samples left out
+    double gain = not_measured;                    // of looks: the factor on their fog light that fits best
+    ChartErrors fitted = no_errors;                // with it
+    double best_1 = 0, best_100 = 0, best_fog = 0; // 1: unbeaten by E, for 1 and for 100 frames; by fog light, for 1
+    double non_finite = 0;                         // samples left out
 };
 
 // The numbers of a point by name, in the order of reports.
@@ -91,7 +92,14 @@ struct ChartControl {
 // scene, settings and number of threads are not measured again. Throws Error.
 Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& control);
 
-// Marks the points that no other one beats in both time and error.
+// What a point is placed by: its time, and its error as it comes.
+enum class FrameTime { single, sequence };
+enum class ErrorOf { worse, fog }; // picture or fog light, whichever is worse (E); fog light alone
+double seconds_of(const ChartPoint& point, FrameTime time);
+double error_of(const ChartErrors& errors, ErrorOf what);
+
+// Whether no other point is both as quick and as good, and better in one of the two.
+bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what);
 void mark_best(std::vector<ChartPoint>& points);
 
 // Where a point's pictures lie, relative to the directory: the picture, its error, and both small.

@@ -38,6 +38,12 @@ double noise_of_square(const Image<vec3>& picture, const Image<vec3>& a, const I
 
 double root_share(double square, double mean) { return relative(std::sqrt(std::max(square, 0.0)), mean); }
 
+// Of a root, from the standard deviation of its square; of none it is the deviation's own root.
+double uncertainty(double square, double deviation, double mean) {
+    const double root = std::sqrt(std::max(square, 0.0));
+    return relative(std::sqrt(root * root + deviation) - root, mean);
+}
+
 double rel_mse(const Yardstick& yardstick, const Image<vec3>& color) {
     const Image<vec3>&a = yardstick.halves[0].color, &b = yardstick.halves[1].color;
     const double epsilon = rel_mse_epsilon * yardstick.mean * yardstick.mean;
@@ -88,14 +94,10 @@ ChartErrors chart_errors(const Yardstick& yardstick, const ColorLayers& picture)
     result.inscatter_rmse = root_share(fog_square, yardstick.inscatter_mean);
     result.error = std::max(result.rmse, result.inscatter_rmse);
 
-    // The square's noise carried over to its root, which is not known better than the noise's own root.
-    const bool fog = result.inscatter_rmse > result.rmse;
-    const double mean = fog ? yardstick.inscatter_mean : yardstick.mean;
-    const double noise = fog ? noise_of_square(picture.inscatter, a.inscatter, b.inscatter)
-                             : noise_of_square(picture.color, a.color, b.color);
-    const double root = std::sqrt(std::max(fog ? fog_square : square, 0.0));
-    result.uncertainty = relative(std::sqrt(root * root + noise) - root, mean);
-
+    const double own = uncertainty(square, noise_of_square(picture.color, a.color, b.color), yardstick.mean);
+    const double fog_noise = noise_of_square(picture.inscatter, a.inscatter, b.inscatter);
+    result.inscatter_uncertainty = uncertainty(fog_square, fog_noise, yardstick.inscatter_mean);
+    result.uncertainty = result.inscatter_rmse > result.rmse ? result.inscatter_uncertainty : own;
     result.bias = bias(picture.color, {&a.color, &b.color}, yardstick.mean);
     result.inscatter_bias = bias(picture.inscatter, {&a.inscatter, &b.inscatter}, yardstick.inscatter_mean);
     result.rel_mse = rel_mse(yardstick, picture.color);

@@ -6,8 +6,9 @@
 namespace tyndall {
 // Shares of the reference's mean, except for relMSE and FLIP.
 struct ChartErrors {
-    double error = 0;       // E: of the picture or of its fog light, whichever is larger
-    double uncertainty = 0; // of E: standard deviation, from the reference's noise
+    double error = 0; // E: of the picture or of its fog light, whichever is larger
+    // Standard deviations of E and of inscatter_rmse, from the reference's noise.
+    double uncertainty = 0, inscatter_uncertainty = 0;
     double rmse = 0, inscatter_rmse = 0;
     double bias = 0, inscatter_bias = 0; // mean differences
     double rel_mse = 0;

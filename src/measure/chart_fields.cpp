@@ -10,6 +10,8 @@ const std::vector<ChartField>& chart_fields() {
         {"samples", "camera rays per pixel", FIELD(samples)},
         {"runs", "times it was rendered", FIELD(runs)},
         {"setup_seconds", "before the first frame, on top of what each frame takes", FIELD(setup_seconds)},
+        {"cpu_seconds", "processor time of a frame and its set-up, all threads together: the median",
+         FIELD(cpu_seconds)},
         {"frame_seconds", "a frame, set-up apart: the median of the runs", FIELD(frame_seconds)},
         {"frame_fastest", "the fastest run", FIELD(frame_fastest)},
         {"frame_slowest", "the slowest run", FIELD(frame_slowest)},
@@ -20,6 +22,7 @@ const std::vector<ChartField>& chart_fields() {
         {"uncertainty", "standard deviation of the error, from the reference's noise", FIELD(errors.uncertainty)},
         {"rmse_rel", "root of the mean squared difference / mean of the reference", FIELD(errors.rmse)},
         {"inscatter_rmse_rel", "the same for the light of the fog alone", FIELD(errors.inscatter_rmse)},
+        {"inscatter_uncertainty", "standard deviation of that", FIELD(errors.inscatter_uncertainty)},
         {"bias_rel", "mean difference / mean of the reference", FIELD(errors.bias)},
         {"inscatter_bias_rel", "the same for the light of the fog alone", FIELD(errors.inscatter_bias)},
         {"rel_mse", "mean of squared difference / (squared reference + 0.01), scaled to a mean of 1",
@@ -32,8 +35,9 @@ const std::vector<ChartField>& chart_fields() {
         {"fitted_inscatter_rmse_rel", "inscatter_rmse_rel after that", FIELD(fitted.inscatter_rmse)},
         {"fitted_rel_mse", "rel_mse after that", FIELD(fitted.rel_mse)},
         {"fitted_flip", "flip after that", FIELD(fitted.flip)},
-        {"best_1", "1: nothing is quicker and better, for a single frame", FIELD(best_1)},
-        {"best_100", "1: nothing is quicker and better, for each of 100 frames", FIELD(best_100)},
+        {"best_1", "1: no other has less error in less time, for a single frame", FIELD(best_1)},
+        {"best_100", "the same for each of 100 frames", FIELD(best_100)},
+        {"best_fog", "as best_1, by inscatter_rmse_rel", FIELD(best_fog)},
         {"non_finite", "samples that were not finite numbers and were left out", FIELD(non_finite)},
     };
     return fields;
@@ -55,16 +59,27 @@ PointFiles files_of(const ChartPoint& point) {
             values / (name + ".jpg"), values / (name + ".error.jpg")};
 }
 
+double seconds_of(const ChartPoint& point, FrameTime time) {
+    return time == FrameTime::single ? point.seconds_1 : point.seconds_100;
+}
+
+double error_of(const ChartErrors& errors, ErrorOf what) {
+    return what == ErrorOf::worse ? errors.error : errors.inscatter_rmse;
+}
+
+bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what) {
+    const double seconds = seconds_of(point, time), error = error_of(point.errors, what);
+    return std::ranges::none_of(points, [&](const ChartPoint& other) {
+        const double its_seconds = seconds_of(other, time), its_error = error_of(other.errors, what);
+        return its_seconds <= seconds && its_error <= error && (its_seconds < seconds || its_error < error);
+    });
+}
+
 void mark_best(std::vector<ChartPoint>& points) {
-    const auto beaten = [&](const ChartPoint& point, double ChartPoint::*seconds) {
-        return std::ranges::any_of(points, [&](const ChartPoint& other) {
-            const bool no_worse = other.*seconds <= point.*seconds && other.errors.error <= point.errors.error;
-            return no_worse && (other.*seconds < point.*seconds || other.errors.error < point.errors.error);
-        });
-    };
     for (ChartPoint& point : points) {
-        point.best_1 = !beaten(point, &ChartPoint::seconds_1);
-        point.best_100 = !beaten(point, &ChartPoint::seconds_100);
+        point.best_1 = unbeaten(point, points, FrameTime::single, ErrorOf::worse);
+        point.best_100 = unbeaten(point, points, FrameTime::sequence, ErrorOf::worse);
+        point.best_fog = unbeaten(point, points, FrameTime::single, ErrorOf::fog);
     }
 }
 }

@@ -50,29 +50,28 @@ std::string number_words(double value) {
 
 std::string size_words(ivec2 size) { return std::to_string(size.x) + " × " + std::to_string(size.y); }
 
-const ChartedMode& mode_of(const Chart& chart, const std::string& name) {
-    return *std::ranges::find(chart.modes, name, &ChartedMode::name);
-}
-
 std::string point_words(const ChartPoint& point) {
     return point.mode + " " + std::to_string(static_cast<int>(point.rung));
 }
 
 // --- what to use when --------------------------------------------------------------------------------------------
-std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time) {
+std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time, ErrorOf what) {
     if (!point) return element("td class=\"words\"", "none of these");
     return element("td class=\"words\" title=\"" + escaped(point->settings) + "\"",
-                   "<b>" + point_words(*point) + "</b>: " + share_words(point->errors.error) + " in " +
+                   "<b>" + point_words(*point) + "</b>: " + share_words(error_of(point->errors, what)) + " in " +
                        seconds_words(seconds_of(*point, time)));
 }
 
 std::string advice_table(const Chart& chart) {
     std::string rows;
     for (const Advice& advice : advice_of(chart))
-        rows += "<tr>" + element("td", need_words(advice)) + answer_cell(advice.single, FrameTime::single) +
-                answer_cell(advice.sequence, FrameTime::sequence) + "</tr>\n";
-    return "<table><thead><tr><th>wanted</th><th class=\"words\">for a single frame</th>"
-           "<th class=\"words\">for each of 100 frames</th></tr></thead><tbody>\n" +
+        rows += "<tr>" + element("td", need_words(advice)) +
+                answer_cell(advice.single, FrameTime::single, ErrorOf::worse) +
+                answer_cell(advice.sequence, FrameTime::sequence, ErrorOf::worse) +
+                answer_cell(advice.fog, FrameTime::single, ErrorOf::fog) + "</tr>\n";
+    return "<table><thead><tr><th>wanted</th><th class=\"words\">by E, for a single frame</th>"
+           "<th class=\"words\">by E, for each of 100 frames</th><th class=\"words\">by the fog light alone, for a "
+           "single frame</th></tr></thead><tbody>\n" +
            rows + "</tbody></table>\n";
 }
 
@@ -92,9 +91,10 @@ const std::vector<Column>& columns() {
          [](const P& p) { return seconds_words(p.frame_fastest) + " to " + seconds_words(p.frame_slowest); }},
         {"single frame", [](const P& p) { return seconds_words(p.seconds_1); }},
         {"each of 100", [](const P& p) { return seconds_words(p.seconds_100); }},
+        {"processor time", [](const P& p) { return seconds_words(p.cpu_seconds); }},
         {"memory", [](const P& p) { return bytes_words(p.memory_bytes); }},
         {"error E", [](const P& p) { return share_words(p.errors.error); }},
-        {"of E from the reference", [](const P& p) { return "± " + share_words(p.errors.uncertainty); }},
+        {"uncertain by", [](const P& p) { return share_words(p.errors.uncertainty); }},
         {"rmse_rel", [](const P& p) { return share_words(p.errors.rmse); }},
         {"rmse_rel of the fog light", [](const P& p) { return share_words(p.errors.inscatter_rmse); }},
         {"bias", [](const P& p) { return share_words(p.errors.bias); }},
@@ -200,9 +200,13 @@ std::string chart_html(const Chart& chart) {
                        "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n"
                        "<link rel=\"icon\" href=\"data:,\">\n<style>" +
                        std::string(chart_page_style) + "</style></head><body>\n";
-    html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single);
+    html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
     html += element("h2", "What to use when") + advice_table(chart);
-    html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence);
+    html += element("h2", "The light of the fog alone") +
+            element("p class=\"quiet\"", "Edges of bright surfaces, which need many rays a pixel in every mode, do not "
+                                         "count here.") +
+            chart_svg(chart, FrameTime::single, ErrorOf::fog);
+    html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence, ErrorOf::worse);
     html += element("h2", "Pictures and where they are wrong") +
             element("p class=\"quiet\"", "Below each picture its error at every pixel, as a share of the mean: black "
                                          "0.1 % or less, white 1000 %.") +

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace tyndall {
 namespace {
@@ -33,8 +34,16 @@ View view_for(const ChartStage& stage, const Settings& settings, ivec2 size, int
     return view_of(stage.scene, job, frame);
 }
 
+// Of all threads of the process.
+double processor_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 struct Times {
     std::vector<double> cold, warm, render; // preparing the first frame and the next, rendering
+    std::vector<double> processor;          // the first frame
     double memory = not_measured;
 };
 
@@ -48,7 +57,9 @@ Layers timed_run(const ChartStage& stage, const Mode& mode, const Settings& sett
     options.cancel = stage.cancel, options.progress = progress;
     FrameStats stats;
     const MemoryGrowth memory;
+    const double before = processor_seconds();
     Layers layers = render_frame(mode, view, now, settings, options, stats);
+    times.processor.push_back(processor_seconds() - before);
     if (const std::optional<double> bytes = memory.peak()) times.memory = std::fmax(times.memory, *bytes);
     times.cold.push_back(stats.prepare_seconds), times.render.push_back(stats.render_seconds);
     non_finite = static_cast<double>(stats.non_finite);
@@ -72,6 +83,7 @@ void take_times(const Times& times, ChartPoint& point) {
     point.frame_fastest = *std::ranges::min_element(frames), point.frame_slowest = *std::ranges::max_element(frames);
     point.seconds_1 = point.frame_seconds + point.setup_seconds;
     point.seconds_100 = point.frame_seconds + point.setup_seconds / 100;
+    point.cpu_seconds = median(times.processor);
     point.memory_bytes = times.memory;
 }
 

@@ -51,6 +51,7 @@ Json advice_json(const Chart& chart) {
                                      : report::object({{"seconds", report::number(advice.seconds)}});
         item.members.emplace_back("single", name(advice.single));
         item.members.emplace_back("sequence", name(advice.sequence));
+        item.members.emplace_back("fog", name(advice.fog));
         items.push_back(std::move(item));
     }
     return report::array(std::move(items));
@@ -65,30 +66,28 @@ Json left_out_json(const Chart& chart) {
     return report::array(std::move(items));
 }
 
-// The point that answers a need, by the time that counts.
-std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time) {
+// The point that answers a need, by the time and the error that count.
+std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
     const ChartPoint* best = nullptr;
     for (const ChartPoint& point : chart.points) {
-        const double seconds = seconds_of(point, time), error = point.errors.error;
+        const double seconds = seconds_of(point, time), error = error_of(point.errors, what);
         if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds)) continue;
-        const bool better = !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < best->errors.error);
+        const bool better =
+            !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(best->errors, what));
         if (better) best = &point;
     }
     return best ? std::optional(*best) : std::nullopt;
 }
 }
 
-double seconds_of(const ChartPoint& point, FrameTime time) {
-    return time == FrameTime::single ? point.seconds_1 : point.seconds_100;
-}
-
 std::vector<Advice> advice_of(const Chart& chart) {
     std::vector<Advice> result;
-    for (const double error : {0.2, 0.1, 0.05, 0.02, 0.01}) result.push_back({error, 0, {}, {}});
-    for (const double seconds : {1.0 / 30, 0.1, 1.0}) result.push_back({0, seconds, {}, {}});
+    for (const double error : {0.2, 0.1, 0.05, 0.02, 0.01}) result.push_back({error, 0, {}, {}, {}});
+    for (const double seconds : {1.0 / 30, 0.1, 1.0}) result.push_back({0, seconds, {}, {}, {}});
     for (Advice& advice : result) {
-        advice.single = answer(chart, advice, FrameTime::single);
-        advice.sequence = answer(chart, advice, FrameTime::sequence);
+        advice.single = answer(chart, advice, FrameTime::single, ErrorOf::worse);
+        advice.sequence = answer(chart, advice, FrameTime::sequence, ErrorOf::worse);
+        advice.fog = answer(chart, advice, FrameTime::single, ErrorOf::fog);
     }
     return result;
 }
@@ -159,13 +158,14 @@ std::string chart_json(const Chart& chart) {
 
 std::string chart_text(const Chart& chart) {
     std::string text;
-    for (const Advice& advice : advice_of(chart)) {
-        text += need_words(advice) + ": ";
-        text += advice.single ? point_name(*advice.single) + ", " + share_words(advice.single->errors.error) + " in " +
-                                    seconds_words(advice.single->seconds_1)
-                              : "none of these";
-        text += "\n";
-    }
+    const auto words = [](const std::optional<ChartPoint>& point, ErrorOf what) {
+        return point ? point_name(*point) + ", " + share_words(error_of(point->errors, what)) + " in " +
+                           seconds_words(point->seconds_1)
+                     : std::string("none of these");
+    };
+    for (const Advice& advice : advice_of(chart))
+        text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the fog light alone " +
+                words(advice.fog, ErrorOf::fog) + "\n";
     return text;
 }
 }

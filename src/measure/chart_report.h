@@ -12,17 +12,13 @@ std::string chart_text(const Chart& chart); // a few lines: what to use when
 // A page with inline pictures, read from the chart's directory. Throws Error (unreadable).
 std::string chart_html(const Chart& chart);
 
-// What a chart's x axis counts.
-enum class FrameTime { single, sequence };
-double seconds_of(const ChartPoint& point, FrameTime time);
-
 // Error against time, both logarithmic; the marks carry data-id="march.3" and the names of the `chart_page` styles.
-std::string chart_svg(const Chart& chart, FrameTime time);
+std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what);
 
-// The answer to a need: the quickest point with an error of at most `error`, or the best within `seconds`.
+// The answers to a need: the quickest point with an error of at most `error`, or the best within `seconds`.
 struct Advice {
-    double error = 0, seconds = 0; // one of the two
-    std::optional<ChartPoint> single, sequence;
+    double error = 0, seconds = 0;                   // one of the two
+    std::optional<ChartPoint> single, sequence, fog; // by E, for 1 and for 100 frames; by fog light, for 1
 };
 std::vector<Advice> advice_of(const Chart& chart);
 

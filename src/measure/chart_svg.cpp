@@ -18,10 +18,6 @@ struct Axis {
     }
 };
 
-struct Frame {
-    Axis x, y;
-};
-
 struct Place {
     double x, y;
 };
@@ -34,8 +30,22 @@ std::string n(double value) {
 
 bool drawn(const ChartPoint& point) { return std::isfinite(point.errors.error) && point.seconds_1 > 0; }
 
-// The value drawn for an error: what is below the reference's noise lies on it.
-double height_of(const ChartErrors& errors) { return std::max(errors.error, std::max(errors.uncertainty, 1e-6)); }
+// What is drawn, and by what it is placed.
+struct Frame {
+    const Chart& chart;
+    FrameTime time;
+    ErrorOf what;
+    Axis x, y;
+
+    double seconds(const ChartPoint& point) const { return seconds_of(point, time); }
+    // What is below the reference's noise lies on it.
+    double error(const ChartErrors& errors) const {
+        return std::max({error_of(errors, what), uncertainty(errors), 1e-6});
+    }
+    double uncertainty(const ChartErrors& errors) const {
+        return what == ErrorOf::worse ? errors.uncertainty : errors.inscatter_uncertainty;
+    }
+};
 
 Axis axis_over(std::vector<double> values, double from, double to) {
     std::erase_if(values, [](double value) { return !(value > 0) || !std::isfinite(value); });
@@ -46,15 +56,17 @@ Axis axis_over(std::vector<double> values, double from, double to) {
     return axis;
 }
 
-Frame frame_of(const Chart& chart, FrameTime time) {
+Frame frame_of(const Chart& chart, FrameTime time, ErrorOf what) {
+    Frame frame{chart, time, what, {}, {}};
     std::vector<double> seconds, errors;
     for (const ChartPoint& point : chart.points) {
         if (!drawn(point)) continue;
-        seconds.push_back(seconds_of(point, time));
-        errors.push_back(height_of(point.errors));
-        if (is_look(point) && std::isfinite(point.fitted.error)) errors.push_back(height_of(point.fitted));
+        seconds.push_back(frame.seconds(point));
+        errors.push_back(frame.error(point.errors));
+        if (is_look(point) && std::isfinite(point.fitted.error)) errors.push_back(frame.error(point.fitted));
     }
-    return {axis_over(seconds, left, width - right), axis_over(errors, height - bottom, top)};
+    frame.x = axis_over(seconds, left, width - right), frame.y = axis_over(errors, height - bottom, top);
+    return frame;
 }
 
 // 1, 2 and 5 of each decade within the axis; those of 1 are strong.
@@ -93,7 +105,7 @@ std::string text(double x, double y, const char* style, const std::string& words
     return "<text x='" + n(x) + "' y='" + n(y) + "' class='" + style + "'" + more + ">" + words + "</text>\n";
 }
 
-std::string grid(const Frame& frame, FrameTime time) {
+std::string grid(const Frame& frame) {
     std::string svg;
     for (const Tick& tick : ticks_of(frame.x)) {
         const double x = frame.x.at(tick.value);
@@ -105,11 +117,13 @@ std::string grid(const Frame& frame, FrameTime time) {
         svg += line(left, y, width - right, y, tick.strong ? "grid strong" : "grid");
         svg += text(left - 8, y + 4, "tick", percent_words(tick.value), " text-anchor='end'");
     }
-    const std::string what = time == FrameTime::single ? "time of a single frame, set-up included"
-                                                       : "time of each of 100 frames, set-up shared among them";
+    const std::string what = frame.time == FrameTime::single ? "time of a single frame, set-up included"
+                                                             : "time of each of 100 frames, set-up shared among them";
     svg += text((left + width - right) / 2, height - 16, "axis", what, " text-anchor='middle'");
     const double middle = (top + height - bottom) / 2;
-    svg += text(18, middle, "axis", "error E (share of the mean)",
+    const char* error = frame.what == ErrorOf::worse ? "error E of the picture or its fog light, whichever is worse"
+                                                     : "error of the fog light";
+    svg += text(18, middle, "axis", std::string(error) + " / mean",
                 " text-anchor='middle' transform='rotate(-90 18 " + n(middle) + ")'");
     return svg;
 }
@@ -135,26 +149,26 @@ std::string shape(int kind, Place at, double size) {
 }
 
 // Where points lie, and how uncertain that is.
-std::string whiskers(const Frame& frame, const ChartPoint& point, const ChartErrors& errors, FrameTime time) {
-    const double x = frame.x.at(seconds_of(point, time)), y = frame.y.at(height_of(errors));
+std::string whiskers(const Frame& frame, const ChartPoint& point, const ChartErrors& errors) {
+    const double x = frame.x.at(frame.seconds(point)), y = frame.y.at(frame.error(errors));
+    const double error = error_of(errors, frame.what), uncertainty = frame.uncertainty(errors);
     std::string svg;
-    if (errors.uncertainty > 0.1 * errors.error) {
-        const double low = errors.error - 2 * errors.uncertainty;
-        svg += line(x, frame.y.at(errors.error + 2 * errors.uncertainty), x,
-                    low > 0 ? frame.y.at(low) : height - bottom, "whisker");
+    if (uncertainty > 0.1 * error) {
+        const double low = error - 2 * uncertainty;
+        svg += line(x, frame.y.at(error + 2 * uncertainty), x, low > 0 ? frame.y.at(low) : height - bottom, "whisker");
     }
     if (point.frame_slowest > 1.1 * point.frame_fastest) {
-        const double more = seconds_of(point, time) - point.frame_seconds;
+        const double more = frame.seconds(point) - point.frame_seconds;
         svg += line(frame.x.at(point.frame_fastest + more), y, frame.x.at(point.frame_slowest + more), y, "whisker");
     }
     return svg;
 }
 
-std::string mark(const ChartPoint& point, Place at, bool fitted) {
+std::string mark(const Frame& frame, const ChartPoint& point, Place at, bool fitted) {
     const MarkStyle style = style_of(point.mode);
     const std::string id = point_name(point) + (fitted ? ".fitted" : "");
-    const std::string words =
-        id + ": " + share_words((fitted ? point.fitted : point.errors).error) + ", " + seconds_words(point.seconds_1);
+    const std::string words = id + ": " + share_words(error_of(fitted ? point.fitted : point.errors, frame.what)) +
+                              ", " + seconds_words(frame.seconds(point));
     return "<g class='mark' data-id='" + id + "' tabindex='0' role='img' aria-label='" + words + "' fill='" +
            (fitted ? "#fff" : style.color) + "' stroke='" + (fitted ? style.color : "#222") + "' stroke-width='" +
            (fitted ? "2" : "0.8") + "'>" + shape(style.shape, at, 6) + "</g>\n";
@@ -166,16 +180,15 @@ struct Label {
 };
 
 // A mode's marks with a line through them; looks a second time with the gain that fits them.
-std::string series(const Chart& chart, const Frame& frame, FrameTime time, const std::string& mode, bool fitted,
-                   std::vector<Label>& labels) {
+std::string series(const Frame& frame, const std::string& mode, bool fitted, std::vector<Label>& labels) {
     std::string path, marks;
     Place last{};
-    for (const ChartPoint& point : chart.points) {
+    for (const ChartPoint& point : frame.chart.points) {
         const ChartErrors& errors = fitted ? point.fitted : point.errors;
         if (point.mode != mode || !drawn(point) || !std::isfinite(errors.error)) continue;
-        last = {frame.x.at(seconds_of(point, time)), frame.y.at(height_of(errors))};
+        last = {frame.x.at(frame.seconds(point)), frame.y.at(frame.error(errors))};
         path += (path.empty() ? "" : " ") + n(last.x) + "," + n(last.y);
-        marks += whiskers(frame, point, errors, time) + mark(point, last, fitted);
+        marks += whiskers(frame, point, errors) + mark(frame, point, last, fitted);
     }
     if (path.empty()) return {};
     const char* color = style_of(mode).color;
@@ -185,11 +198,11 @@ std::string series(const Chart& chart, const Frame& frame, FrameTime time, const
 }
 
 // Steps along the points that nothing beats.
-std::string front(const Chart& chart, const Frame& frame, FrameTime time) {
+std::string front(const Frame& frame) {
     std::vector<Place> best;
-    for (const ChartPoint& point : chart.points)
-        if (drawn(point) && (time == FrameTime::single ? point.best_1 : point.best_100) > 0)
-            best.push_back({frame.x.at(seconds_of(point, time)), frame.y.at(height_of(point.errors))});
+    for (const ChartPoint& point : frame.chart.points)
+        if (drawn(point) && unbeaten(point, frame.chart.points, frame.time, frame.what))
+            best.push_back({frame.x.at(frame.seconds(point)), frame.y.at(frame.error(point.errors))});
     std::ranges::sort(best, {}, &Place::x);
     if (best.empty()) return {};
     std::string path = "M" + n(best[0].x) + " " + n(top);
@@ -227,15 +240,14 @@ MarkStyle style_of(const std::string& mode) {
     return {colors[place % 8], place % 8};
 }
 
-std::string chart_svg(const Chart& chart, FrameTime time) {
-    const Frame frame = frame_of(chart, time);
+std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what) {
+    const Frame frame = frame_of(chart, time, what);
     std::vector<Label> labels;
     std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + n(width) + " " + n(height) +
-                      "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame, time) +
-                      front(chart, frame, time);
+                      "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + front(frame);
     for (const ChartedMode& mode : chart.modes) {
-        svg += series(chart, frame, time, mode.name, false, labels);
-        if (mode.accuracy == Accuracy::look) svg += series(chart, frame, time, mode.name, true, labels);
+        svg += series(frame, mode.name, false, labels);
+        if (mode.accuracy == Accuracy::look) svg += series(frame, mode.name, true, labels);
     }
     return svg + placed(labels) + "</svg>\n";
 }

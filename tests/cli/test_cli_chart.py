@@ -135,7 +135,7 @@ class Page(ProgramTest):
         self.assertNotIn("@import", text)
         for point in self.points:
             name = f"{point['mode']}.{point['rung']}"
-            self.assertEqual(text.count(f"data-id='{name}'"), 2, name)  # in both charts
+            self.assertEqual(text.count(f"data-id='{name}'"), 3, name)  # in every chart
             self.assertIn(f'id="row-{name}"', text)
 
     def opened(self, text, fragment=""):

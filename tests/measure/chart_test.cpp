@@ -148,7 +148,7 @@ TEST(Chart, SaysTheSameInCsvAndJson) {
 }
 
 TEST(Chart, DrawsEveryPointAndLooksTwice) {
-    const std::string svg = chart_svg(small_chart(), FrameTime::single);
+    const std::string svg = chart_svg(small_chart(), FrameTime::single, ErrorOf::worse);
     for (const char* id : {"march.1", "march.2", "march.3", "billboard.1", "billboard.1.fitted"})
         EXPECT_NE(svg.find(std::string("data-id='") + id + "'"), svg.npos) << id;
     EXPECT_NE(svg.find(">billboard, gain fitted<"), svg.npos);
