@@ -49,7 +49,7 @@ ChartJob make_job(const Options& texts) {
     job.render.isa = isa_name();
     job.modes = asked_modes(texts.modes);
     job.directory = texts.output;
-    if (texts.quick) job.reference_samples = 4, job.runs = 2, job.every = 2, job.longest = 1.5;
+    if (texts.quick) job.reference_samples = 4, job.runs = 2, job.longest = 0.7;
     if (!texts.samples.empty())
         job.reference_samples = static_cast<int>(integer_option("--samples", texts.samples, 4, 4096) + 1) / 2 * 2;
     if (!texts.runs.empty()) job.runs = static_cast<int>(integer_option("--runs", texts.runs, 1, 100));
@@ -123,15 +123,18 @@ Run add_chart(CLI::App& app) {
     option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html and pictures", "DIR")
         ->required();
     option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
-    command->add_flag("--quick", texts->quick, "every second setting of each mode, small pictures: under a minute");
+    command->add_flag("--quick", texts->quick,
+                      "small pictures, without the settings that take longest: under a minute");
     option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
     option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    option("--res", texts->resolution, "picture size in pixels (default: the scene's shape, 320 wide)", "WxH");
-    option("--samples", texts->samples, "rays per pixel of the reference, 4 or more (default: 16)", "N");
-    option("--runs", texts->runs, "times each picture is rendered at least (default: 3)", "N");
+    option("--res", texts->resolution,
+           "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
+    option("--samples", texts->samples, "rays per pixel of the reference, 4 or more (default: 16; 4 with\n--quick)",
+           "N");
+    option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
     option("--longest", texts->longest,
            "leave out settings whose picture would take more seconds than this\n"
-           "(default: 60)",
+           "(default: 60; 0.7 with --quick)",
            "SECONDS");
     command
         ->add_option("--set", texts->settings,

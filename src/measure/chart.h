@@ -45,7 +45,6 @@ struct ChartJob {
     std::vector<const Mode*> modes;
     int reference_samples = 16;
     int runs = 3;                    // of each picture, at least
-    int every = 1;                   // take each so-manieth rung
     double longest = 60;             // seconds a picture may take; rungs that would take longer are left out
     int sequence = 4;                // frames that flicker is measured on
     int smaller = 4;                 // their width and height as a share of the picture's

@@ -26,7 +26,7 @@ th:first-child, td:first-child, td.words, th.words { text-align: left; }
 .rung img { width: 100%; display: block; }
 #tip { position: fixed; z-index: 2; width: 330px; padding: 10px; font-size: 13px; background: #fff; color: #111;
        border: 1px solid #555; box-shadow: 0 3px 12px #0004; pointer-events: none; }
-#tip img { width: 49%; } #tip dl { display: grid; grid-template-columns: auto auto; margin: 4px 0; }
+#tip img { width: 49%; vertical-align: top; } #tip dl { display: grid; grid-template-columns: auto auto; margin: 4px 0; }
 #tip dt { color: #555; } #tip dd { margin: 0; text-align: right; } #tip code { font-size: 11px; }
 @media print { body { max-width: none; margin: 0; font-size: 11px; } #tip { display: none; }
   svg.chart, .rung, tr { break-inside: avoid; } table { font-size: 8px; } th, td { padding: 1px 3px; }

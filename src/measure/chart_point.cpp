@@ -107,8 +107,7 @@ std::vector<Rung> rungs_of(const ChartJob& job) {
     std::vector<Rung> rungs;
     for (const Mode* mode : job.modes) {
         const std::vector<Candidate> ladder = ladder_of(*mode, job.render.settings);
-        for (size_t i = 0; i < ladder.size(); i += static_cast<size_t>(job.every))
-            rungs.push_back({mode, ladder[i], static_cast<int>(i) + 1});
+        for (size_t i = 0; i < ladder.size(); ++i) rungs.push_back({mode, ladder[i], static_cast<int>(i) + 1});
     }
     return rungs;
 }
