@@ -22,7 +22,7 @@ table { border-collapse: collapse; font-size: 13px; } th, td { padding: 2px 9px;
 th { text-align: right; border-bottom: 1px solid #888; vertical-align: bottom; } td { border-bottom: 1px solid #e6e6e6; }
 th:first-child, td:first-child, td.words, th.words { text-align: left; }
 .wide { overflow-x: auto; }
-.rung { display: inline-block; width: 240px; margin: 0 10px 12px 0; font-size: 12px; vertical-align: top; }
+.rung { display: inline-block; width: 228px; margin: 0 9px 12px 0; font-size: 12px; vertical-align: top; }
 .rung img { width: 100%; display: block; }
 #tip { position: fixed; z-index: 2; width: 330px; padding: 10px; font-size: 13px; background: #fff; color: #111;
        border: 1px solid #555; box-shadow: 0 3px 12px #0004; pointer-events: none; }

@@ -179,22 +179,29 @@ struct Label {
     std::string words, color;
 };
 
+// What lies over what: lines, their names, marks.
+struct Drawing {
+    std::string lines, marks;
+    std::vector<Label> labels;
+};
+
 // A mode's marks with a line through them; looks a second time with the gain that fits them.
-std::string series(const Frame& frame, const std::string& mode, bool fitted, std::vector<Label>& labels) {
-    std::string path, marks;
+void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawing& drawing) {
+    std::string path;
     Place last{};
     for (const ChartPoint& point : frame.chart.points) {
         const ChartErrors& errors = fitted ? point.fitted : point.errors;
         if (point.mode != mode || !drawn(point) || !std::isfinite(errors.error)) continue;
         last = {frame.x.at(frame.seconds(point)), frame.y.at(frame.error(errors))};
         path += (path.empty() ? "" : " ") + n(last.x) + "," + n(last.y);
-        marks += whiskers(frame, point, errors) + mark(frame, point, last, fitted);
+        drawing.lines += whiskers(frame, point, errors);
+        drawing.marks += mark(frame, point, last, fitted);
     }
-    if (path.empty()) return {};
+    if (path.empty()) return;
     const char* color = style_of(mode).color;
-    labels.push_back({last.x + 11, last.y + 4, mode + (fitted ? ", gain fitted" : ""), color});
-    return "<polyline points='" + path + "' class='series" + (fitted ? " fitted" : "") + "' stroke='" + color +
-           "'/>\n" + marks;
+    drawing.labels.push_back({last.x + 11, last.y + 4, mode + (fitted ? ", gain fitted" : ""), color});
+    drawing.lines +=
+        "<polyline points='" + path + "' class='series" + (fitted ? " fitted" : "") + "' stroke='" + color + "'/>\n";
 }
 
 // Steps along the points that nothing beats.
@@ -242,13 +249,13 @@ MarkStyle style_of(const std::string& mode) {
 
 std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what) {
     const Frame frame = frame_of(chart, time, what);
-    std::vector<Label> labels;
-    std::string svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + n(width) + " " + n(height) +
-                      "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + front(frame);
+    Drawing drawing;
     for (const ChartedMode& mode : chart.modes) {
-        svg += series(frame, mode.name, false, labels);
-        if (mode.accuracy == Accuracy::look) svg += series(frame, mode.name, true, labels);
+        add_series(frame, mode.name, false, drawing);
+        if (mode.accuracy == Accuracy::look) add_series(frame, mode.name, true, drawing);
     }
-    return svg + placed(labels) + "</svg>\n";
+    return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + n(width) + " " + n(height) +
+           "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + front(frame) +
+           drawing.lines + placed(drawing.labels) + drawing.marks + "</svg>\n";
 }
 }
