@@ -46,14 +46,14 @@ def cell(chart, kind, limit):
     """The quickest point with so little error in the fog light, or the best in so much time."""
     points = chart["points"]
     if kind == "error":
-        fit = [p for p in points if p["inscatter_rmse_rel"] is not None and p["inscatter_rmse_rel"] <= limit]
+        fit = [p for p in points if p["fog_error"] is not None and p["fog_error"] <= limit]
         best = min(fit, key=lambda p: p["seconds_1"], default=None)
     else:
-        fit = [p for p in points if p["inscatter_rmse_rel"] is not None and p["seconds_1"] <= limit]
-        best = min(fit, key=lambda p: p["inscatter_rmse_rel"], default=None)
+        fit = [p for p in points if p["fog_error"] is not None and p["seconds_1"] <= limit]
+        best = min(fit, key=lambda p: p["fog_error"], default=None)
     if best is None:
         return "-"
-    return f"`{best['mode']}` {seconds_words(best['seconds_1'])}, {percent(best['inscatter_rmse_rel'])}"
+    return f"`{best['mode']}` {seconds_words(best['seconds_1'])}, {percent(best['fog_error'])}"
 
 
 def main():

@@ -35,7 +35,7 @@ std::vector<SequenceFrame> make_sequence(const Scene& scene, const ChartJob& job
 }
 
 ChartStage make_stage(const Scene& scene, const ChartJob& job, std::atomic<bool>* cancel) {
-    ChartStage stage{scene, job, {}, {}, 0, {}, ivec2(0), {}, {}, {}, {}, cancel};
+    ChartStage stage{scene, job, {}, {}, 0, {}, ivec2(0), {}, {}, {}, {}, {}, {}, cancel};
     stage.snapshot = make_snapshot(scene, moment_of(scene, job.frame), nullptr, job.render.missing);
     stage.next_frame = job.frame < scene.last_frame ? job.frame + 1 : job.frame;
     stage.next = make_snapshot(scene, moment_of(scene, stage.next_frame), &stage.snapshot, job.render.missing);
@@ -73,14 +73,14 @@ struct Task {
 
 // Seconds of all that is done for a point; frames of the sequence are smaller.
 double seconds_of(const Task& task, const ChartJob& job) {
-    return task.seconds * (job.runs + static_cast<double>(job.sequence) / (job.smaller * job.smaller));
+    return task.seconds * (job.runs + 1 + static_cast<double>(job.sequence) / (job.smaller * job.smaller));
 }
 
 bool wants_unlit(const ChartJob& job) {
     return std::ranges::any_of(job.modes, [](const Mode* mode) { return lights_only(*mode); });
 }
 ReferenceSamples picture_samples(const ChartJob& job) { return {job.reference_samples, false, wants_unlit(job)}; }
-ReferenceSamples sequence_samples(const ChartJob& job) { return {4, true, wants_unlit(job)}; }
+ReferenceSamples center_samples(const ChartJob& job) { return {4, true, wants_unlit(job)}; }
 
 struct References {
     Shot picture;
@@ -100,8 +100,9 @@ References references_of(const ChartStage& stage) {
 }
 
 std::string hash_of(const References& references, const ChartJob& job, FileHashes& files) {
-    std::string text = reference_hash(references.picture, picture_samples(job), files);
-    for (const Shot& shot : references.sequence) text += reference_hash(shot, sequence_samples(job), files);
+    std::string text = reference_hash(references.picture, picture_samples(job), files) +
+                       reference_hash(references.picture, center_samples(job), files);
+    for (const Shot& shot : references.sequence) text += reference_hash(shot, center_samples(job), files);
     return content_hash(text);
 }
 
@@ -121,6 +122,10 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
     const bool unlit = wants_unlit(stage.job);
     stage.all = make_yardstick(reference, false);
     if (unlit) stage.lights = make_yardstick(reference, true);
+    references.picture.progress = {};
+    const Reference centers = make_reference(references.picture, center_samples(stage.job), files);
+    stage.centers_all = make_yardstick(centers, false);
+    if (unlit) stage.centers_lights = make_yardstick(centers, true);
     for (const Shot& shot : references.sequence) {
         const bool again = !stage.sequence_all.empty() && shot.frame == references.sequence[0].frame;
         if (again) {
@@ -128,7 +133,7 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
             if (unlit) stage.sequence_lights.push_back(stage.sequence_lights[0]);
             continue;
         }
-        const Reference frame = make_reference(shot, sequence_samples(stage.job), files);
+        const Reference frame = make_reference(shot, center_samples(stage.job), files);
         stage.sequence_all.push_back(make_yardstick(frame, false));
         if (unlit) stage.sequence_lights.push_back(make_yardstick(frame, true));
     }

@@ -21,9 +21,12 @@ struct ChartPoint {
     double cpu_seconds = 0;                // of all threads together, for a frame and its set-up
     double memory_bytes = not_measured;    // most on top of the scene
     ChartErrors errors;
+    double fog_error = 0, fog_uncertainty = 0; // rmse of the fog light at pixel centres, which rays per pixel do not
+                                               // decide: what the technique itself is off by
     double flicker = not_measured;
-    double gain = not_measured;                    // of looks: the factor on their fog light that fits best
-    ChartErrors fitted = no_errors;                // with it
+    double gain = not_measured;     // of looks: the factor on their fog light that fits best
+    ChartErrors fitted = no_errors; // with it
+    double fitted_fog_error = not_measured;
     double best_1 = 0, best_100 = 0, best_fog = 0; // 1: unbeaten by E, for 1 and for 100 frames; by fog light, for 1
     double non_finite = 0;                         // samples left out
 };
@@ -93,9 +96,9 @@ Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& co
 
 // What a point is placed by: its time, and its error as it comes.
 enum class FrameTime { single, sequence };
-enum class ErrorOf { worse, fog }; // picture or fog light, whichever is worse (E); fog light alone
+enum class ErrorOf { worse, fog }; // picture or fog light, whichever is worse (E); fog light at pixel centres
 double seconds_of(const ChartPoint& point, FrameTime time);
-double error_of(const ChartErrors& errors, ErrorOf what);
+double error_of(const ChartPoint& point, ErrorOf what);
 
 // Whether no other point is both as quick and as good, and better in one of the two.
 bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what);

@@ -28,6 +28,9 @@ const std::vector<ChartField>& chart_fields() {
         {"rel_mse", "mean of squared difference / (squared reference + 0.01), scaled to a mean of 1",
          FIELD(errors.rel_mse)},
         {"flip", "mean HDR-FLIP: what an eye notices flipping between both, 0 to 1", FIELD(errors.flip)},
+        {"fog_error", "rmse_rel of the light of the fog at pixel centres, which rays per pixel do not decide",
+         FIELD(fog_error)},
+        {"fog_uncertainty", "standard deviation of that", FIELD(fog_uncertainty)},
         {"flicker", "changes between frames that the reference lacks / its mean, at pixel centres", FIELD(flicker)},
         {"gain", "of a look: the factor on its fog light that fits best", FIELD(gain)},
         {"fitted_error", "of a look: error after that", FIELD(fitted.error)},
@@ -35,9 +38,10 @@ const std::vector<ChartField>& chart_fields() {
         {"fitted_inscatter_rmse_rel", "inscatter_rmse_rel after that", FIELD(fitted.inscatter_rmse)},
         {"fitted_rel_mse", "rel_mse after that", FIELD(fitted.rel_mse)},
         {"fitted_flip", "flip after that", FIELD(fitted.flip)},
+        {"fitted_fog_error", "fog_error after that", FIELD(fitted_fog_error)},
         {"best_1", "1: no other has less error in less time, for a single frame", FIELD(best_1)},
         {"best_100", "the same for each of 100 frames", FIELD(best_100)},
-        {"best_fog", "as best_1, by inscatter_rmse_rel", FIELD(best_fog)},
+        {"best_fog", "as best_1, by fog_error", FIELD(best_fog)},
         {"non_finite", "samples that were not finite numbers and were left out", FIELD(non_finite)},
     };
     return fields;
@@ -63,14 +67,14 @@ double seconds_of(const ChartPoint& point, FrameTime time) {
     return time == FrameTime::single ? point.seconds_1 : point.seconds_100;
 }
 
-double error_of(const ChartErrors& errors, ErrorOf what) {
-    return what == ErrorOf::worse ? errors.error : errors.inscatter_rmse;
+double error_of(const ChartPoint& point, ErrorOf what) {
+    return what == ErrorOf::worse ? point.errors.error : point.fog_error;
 }
 
 bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what) {
-    const double seconds = seconds_of(point, time), error = error_of(point.errors, what);
+    const double seconds = seconds_of(point, time), error = error_of(point, what);
     return std::ranges::none_of(points, [&](const ChartPoint& other) {
-        const double its_seconds = seconds_of(other, time), its_error = error_of(other.errors, what);
+        const double its_seconds = seconds_of(other, time), its_error = error_of(other, what);
         return its_seconds <= seconds && its_error <= error && (its_seconds < seconds || its_error < error);
     });
 }

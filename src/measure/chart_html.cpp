@@ -58,7 +58,7 @@ std::string point_words(const ChartPoint& point) {
 std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time, ErrorOf what) {
     if (!point) return element("td class=\"words\"", "none of these");
     return element("td class=\"words\" title=\"" + escaped(point->settings) + "\"",
-                   "<b>" + point_words(*point) + "</b>: " + share_words(error_of(point->errors, what)) + " in " +
+                   "<b>" + point_words(*point) + "</b>: " + share_words(error_of(*point, what)) + " in " +
                        seconds_words(seconds_of(*point, time)));
 }
 
@@ -70,8 +70,9 @@ std::string advice_table(const Chart& chart) {
                 answer_cell(advice.sequence, FrameTime::sequence, ErrorOf::worse) +
                 answer_cell(advice.fog, FrameTime::single, ErrorOf::fog) + "</tr>\n";
     return "<table><thead><tr><th>wanted</th><th class=\"words\">by E, for a single frame</th>"
-           "<th class=\"words\">by E, for each of 100 frames</th><th class=\"words\">by the fog light alone, for a "
-           "single frame</th></tr></thead><tbody>\n" +
+           "<th class=\"words\">by E, for each of 100 frames</th><th class=\"words\">by the fog light at pixel "
+           "centres, "
+           "for a single frame</th></tr></thead><tbody>\n" +
            rows + "</tbody></table>\n";
 }
 
@@ -97,12 +98,14 @@ const std::vector<Column>& columns() {
         {"uncertain by", [](const P& p) { return share_words(p.errors.uncertainty); }},
         {"rmse_rel", [](const P& p) { return share_words(p.errors.rmse); }},
         {"rmse_rel of the fog light", [](const P& p) { return share_words(p.errors.inscatter_rmse); }},
+        {"fog light at pixel centres", [](const P& p) { return share_words(p.fog_error); }},
         {"bias", [](const P& p) { return share_words(p.errors.bias); }},
         {"relMSE", [](const P& p) { return number_words(p.errors.rel_mse); }},
         {"FLIP", [](const P& p) { return number_words(p.errors.flip); }},
         {"flicker", [](const P& p) { return share_words(p.flicker); }},
         {"fitted gain", [](const P& p) { return number_words(p.gain); }},
         {"E with it", [](const P& p) { return share_words(p.fitted.error); }},
+        {"fog light at pixel centres with it", [](const P& p) { return share_words(p.fitted_fog_error); }},
         {"FLIP with it", [](const P& p) { return number_words(p.fitted.flip); }},
         {"unbeaten", [](const P& p) { return std::string(p.best_1 > 0 ? "yes" : "-"); }},
     };
@@ -179,6 +182,8 @@ std::string method(const Chart& chart) {
             " pixels at pixel centres" +
             (chart.moves ? "." : "; the scene has no more frames, so time stands still in them.") +
             " Modes start each frame without history.",
+        "Fog light at pixel centres: every ray of a pixel goes through its centre, in the reference too. What is left "
+        "is the technique's own error and noise.",
         "Looks (<code>billboard</code>, <code>radial-blur</code>) promise no light: they are shown as they come, "
         "and again, dashed and hollow, with their fog light multiplied by the one number that fits best.",
         "<code>path</code> scatters light once here and is measured by the light of lamps and suns; ambient light, "
@@ -202,10 +207,12 @@ std::string chart_html(const Chart& chart) {
                        std::string(chart_page_style) + "</style></head><body>\n";
     html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
     html += element("h2", "What to use when") + advice_table(chart);
-    html += element("h2", "The light of the fog alone") +
-            element("p class=\"quiet\"", "Edges of bright surfaces, which need many rays a pixel in every mode, do not "
-                                         "count here.") +
-            chart_svg(chart, FrameTime::single, ErrorOf::fog);
+    html +=
+        element("h2", "The technique alone") +
+        element("p class=\"quiet\"",
+                "The light of the fog at pixel centres: edges of surfaces and lamps inside of pixels, which need many "
+                "rays a pixel in every mode, do not count here.") +
+        chart_svg(chart, FrameTime::single, ErrorOf::fog);
     html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence, ErrorOf::worse);
     html += element("h2", "Pictures and where they are wrong") +
             element("p class=\"quiet\"", "Below each picture its error at every pixel, as a share of the mean: black "

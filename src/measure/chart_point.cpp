@@ -87,6 +87,23 @@ void take_times(const Times& times, ChartPoint& point) {
     point.memory_bytes = times.memory;
 }
 
+// What the technique is off by where neither edges nor lamps inside of pixels matter.
+void measure_centers(const ChartStage& stage, const Mode& mode, Settings settings, ChartPoint& point) {
+    settings.pixel.filter = PixelFilter::center;
+    const View view = view_for(stage, settings, stage.job.render.resolution, stage.job.frame);
+    FrameOptions options;
+    options.cancel = stage.cancel;
+    FrameStats stats;
+    Layers layers = render_frame(mode, view, seen_by(mode, stage.snapshot), settings, options, stats);
+    const ColorLayers picture{std::move(layers.color), std::move(layers.inscatter)};
+    const Yardstick& yardstick = lights_only(mode) ? stage.centers_lights : stage.centers_all;
+    const ChartErrors errors = chart_errors(yardstick, picture);
+    point.fog_error = errors.inscatter_rmse, point.fog_uncertainty = errors.inscatter_uncertainty;
+    if (is_look(point))
+        point.fitted_fog_error =
+            chart_errors(yardstick, with_gain(picture, fitted_gain(yardstick, picture))).inscatter_rmse;
+}
+
 double flicker(const ChartStage& stage, const Mode& mode, Settings settings) {
     settings.pixel.filter = PixelFilter::center;
     std::vector<ColorLayers> pictures;
@@ -162,6 +179,7 @@ MeasuredPoint measure_point(const ChartStage& stage, const Rung& rung, const std
         picture = {std::move(layers.color), std::move(layers.inscatter)};
     }
     take_times(times, point);
+    measure_centers(stage, mode, settings, point);
     point.flicker = flicker(stage, mode, settings);
 
     const Yardstick& yardstick = lights_only(mode) ? stage.lights : stage.all;

@@ -70,10 +70,10 @@ Json left_out_json(const Chart& chart) {
 std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
     const ChartPoint* best = nullptr;
     for (const ChartPoint& point : chart.points) {
-        const double seconds = seconds_of(point, time), error = error_of(point.errors, what);
+        const double seconds = seconds_of(point, time), error = error_of(point, what);
         if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds)) continue;
         const bool better =
-            !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(best->errors, what));
+            !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(*best, what));
         if (better) best = &point;
     }
     return best ? std::optional(*best) : std::nullopt;
@@ -159,12 +159,12 @@ std::string chart_json(const Chart& chart) {
 std::string chart_text(const Chart& chart) {
     std::string text;
     const auto words = [](const std::optional<ChartPoint>& point, ErrorOf what) {
-        return point ? point_name(*point) + ", " + share_words(error_of(point->errors, what)) + " in " +
+        return point ? point_name(*point) + ", " + share_words(error_of(*point, what)) + " in " +
                            seconds_words(point->seconds_1)
                      : std::string("none of these");
     };
     for (const Advice& advice : advice_of(chart))
-        text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the fog light alone " +
+        text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the technique alone " +
                 words(advice.fog, ErrorOf::fog) + "\n";
     return text;
 }

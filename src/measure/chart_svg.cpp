@@ -38,12 +38,17 @@ struct Frame {
     Axis x, y;
 
     double seconds(const ChartPoint& point) const { return seconds_of(point, time); }
-    // What is below the reference's noise lies on it.
-    double error(const ChartErrors& errors) const {
-        return std::max({error_of(errors, what), uncertainty(errors), 1e-6});
+    double error(const ChartPoint& point, bool fitted) const {
+        if (!fitted) return error_of(point, what);
+        return what == ErrorOf::worse ? point.fitted.error : point.fitted_fog_error;
     }
-    double uncertainty(const ChartErrors& errors) const {
-        return what == ErrorOf::worse ? errors.uncertainty : errors.inscatter_uncertainty;
+    double uncertainty(const ChartPoint& point, bool fitted) const {
+        if (what == ErrorOf::fog) return point.fog_uncertainty;
+        return fitted ? point.fitted.uncertainty : point.errors.uncertainty;
+    }
+    // What is below the reference's noise lies on it.
+    double value(const ChartPoint& point, bool fitted) const {
+        return std::max({error(point, fitted), uncertainty(point, fitted), 1e-6});
     }
 };
 
@@ -62,8 +67,8 @@ Frame frame_of(const Chart& chart, FrameTime time, ErrorOf what) {
     for (const ChartPoint& point : chart.points) {
         if (!drawn(point)) continue;
         seconds.push_back(frame.seconds(point));
-        errors.push_back(frame.error(point.errors));
-        if (is_look(point) && std::isfinite(point.fitted.error)) errors.push_back(frame.error(point.fitted));
+        errors.push_back(frame.value(point, false));
+        if (is_look(point)) errors.push_back(frame.value(point, true));
     }
     frame.x = axis_over(seconds, left, width - right), frame.y = axis_over(errors, height - bottom, top);
     return frame;
@@ -122,7 +127,7 @@ std::string grid(const Frame& frame) {
     svg += text((left + width - right) / 2, height - 16, "axis", what, " text-anchor='middle'");
     const double middle = (top + height - bottom) / 2;
     const char* error = frame.what == ErrorOf::worse ? "error E of the picture or its fog light, whichever is worse"
-                                                     : "error of the fog light";
+                                                     : "error of the fog light at pixel centres";
     svg += text(18, middle, "axis", std::string(error) + " / mean",
                 " text-anchor='middle' transform='rotate(-90 18 " + n(middle) + ")'");
     return svg;
@@ -149,9 +154,9 @@ std::string shape(int kind, Place at, double size) {
 }
 
 // Where points lie, and how uncertain that is.
-std::string whiskers(const Frame& frame, const ChartPoint& point, const ChartErrors& errors) {
-    const double x = frame.x.at(frame.seconds(point)), y = frame.y.at(frame.error(errors));
-    const double error = error_of(errors, frame.what), uncertainty = frame.uncertainty(errors);
+std::string whiskers(const Frame& frame, const ChartPoint& point, bool fitted) {
+    const double x = frame.x.at(frame.seconds(point)), y = frame.y.at(frame.value(point, fitted));
+    const double error = frame.error(point, fitted), uncertainty = frame.uncertainty(point, fitted);
     std::string svg;
     if (uncertainty > 0.1 * error) {
         const double low = error - 2 * uncertainty;
@@ -167,8 +172,8 @@ std::string whiskers(const Frame& frame, const ChartPoint& point, const ChartErr
 std::string mark(const Frame& frame, const ChartPoint& point, Place at, bool fitted) {
     const MarkStyle style = style_of(point.mode);
     const std::string id = point_name(point) + (fitted ? ".fitted" : "");
-    const std::string words = id + ": " + share_words(error_of(fitted ? point.fitted : point.errors, frame.what)) +
-                              ", " + seconds_words(frame.seconds(point));
+    const std::string words =
+        id + ": " + share_words(frame.error(point, fitted)) + ", " + seconds_words(frame.seconds(point));
     return "<g class='mark' data-id='" + id + "' tabindex='0' role='img' aria-label='" + words + "' fill='" +
            (fitted ? "#fff" : style.color) + "' stroke='" + (fitted ? style.color : "#222") + "' stroke-width='" +
            (fitted ? "2" : "0.8") + "'>" + shape(style.shape, at, 6) + "</g>\n";
@@ -190,11 +195,10 @@ void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawin
     std::string path;
     Place last{};
     for (const ChartPoint& point : frame.chart.points) {
-        const ChartErrors& errors = fitted ? point.fitted : point.errors;
-        if (point.mode != mode || !drawn(point) || !std::isfinite(errors.error)) continue;
-        last = {frame.x.at(frame.seconds(point)), frame.y.at(frame.error(errors))};
+        if (point.mode != mode || !drawn(point) || !std::isfinite(frame.error(point, fitted))) continue;
+        last = {frame.x.at(frame.seconds(point)), frame.y.at(frame.value(point, fitted))};
         path += (path.empty() ? "" : " ") + n(last.x) + "," + n(last.y);
-        drawing.lines += whiskers(frame, point, errors);
+        drawing.lines += whiskers(frame, point, fitted);
         drawing.marks += mark(frame, point, last, fitted);
     }
     if (path.empty()) return;
@@ -209,7 +213,7 @@ std::string front(const Frame& frame) {
     std::vector<Place> best;
     for (const ChartPoint& point : frame.chart.points)
         if (drawn(point) && unbeaten(point, frame.chart.points, frame.time, frame.what))
-            best.push_back({frame.x.at(frame.seconds(point)), frame.y.at(frame.error(point.errors))});
+            best.push_back({frame.x.at(frame.seconds(point)), frame.y.at(frame.value(point, false))});
     std::ranges::sort(best, {}, &Place::x);
     if (best.empty()) return {};
     std::string path = "M" + n(best[0].x) + " " + n(top);

@@ -74,7 +74,8 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
     Snapshot unlit = shot.snapshot;
     unlit.lights.clear();
     const bool chance = !samples.centers || std::ranges::any_of(shot.snapshot.lights, is_soft);
-    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.frame);
+    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.job.resolution.x) +
+                               "x" + std::to_string(shot.job.resolution.y) + "." + std::to_string(shot.frame);
     Reference result;
     for (size_t half = 0; half < 2; ++half) {
         if (half == 1 && !chance) {

@@ -33,7 +33,7 @@ ChartPoint point_at(const char* mode, double rung, double seconds, double error)
     ChartPoint point;
     point.mode = mode, point.settings = "pixel.samples=1", point.rung = rung;
     point.frame_seconds = point.frame_fastest = point.frame_slowest = point.seconds_1 = point.seconds_100 = seconds;
-    point.errors.error = point.errors.rmse = error;
+    point.errors.error = point.errors.rmse = point.fog_error = error;
     return point;
 }
 
@@ -45,6 +45,7 @@ Chart small_chart() {
     chart.points = {point_at("march", 1, 0.01, 0.15), point_at("march", 2, 0.05, 0.04), point_at("march", 3, 0.2, 0.06),
                     point_at("billboard", 1, 0.002, 2)};
     chart.points[3].gain = 0.5, chart.points[3].fitted = chart.points[3].errors, chart.points[3].fitted.error = 0.9;
+    chart.points[3].fitted_fog_error = 0.8;
     mark_best(chart.points);
     return chart;
 }
