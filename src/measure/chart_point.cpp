@@ -148,8 +148,8 @@ std::string rows_of(const Settings& settings) {
 
 double expected_seconds(const ChartStage& stage, const Rung& rung) {
     Settings settings = settings_of(rung);
-    const double samples = settings.pixel.samples;
-    settings.pixel.samples = 1;
+    const int samples = settings.pixel.samples;
+    settings.pixel.samples = std::min(samples, 4); // edges take more rays from four on
     const ivec2 size = stage.job.render.resolution, small = glm::max(size / 2, ivec2(1));
     FrameOptions options;
     options.cancel = stage.cancel;
@@ -159,7 +159,7 @@ double expected_seconds(const ChartStage& stage, const Rung& rung) {
     Snapshot next = seen_by(*rung.mode, stage.next);
     prepare_frame(*rung.mode, view_for(stage, settings, small, stage.next_frame), next, settings, nullptr);
     const double larger = static_cast<double>(size.x) * size.y / (static_cast<double>(small.x) * small.y);
-    return stats.prepare_seconds + stats.render_seconds * larger * samples;
+    return stats.prepare_seconds + stats.render_seconds * larger * samples / settings.pixel.samples;
 }
 
 MeasuredPoint measure_point(const ChartStage& stage, const Rung& rung, const std::function<void(double)>& progress) {

@@ -43,8 +43,8 @@ Settings settings_of(const Rung& rung);
 // What differs from the usual settings, as rows for --set with spaces between.
 std::string rows_of(const Settings& settings);
 
-// About the seconds that a picture will take, from a smaller one with a single sample per pixel. Also wakes caches and
-// what belongs to the scene's triangles.
+// About the seconds that a picture will take, from a smaller one with few samples per pixel. Also wakes caches and what
+// belongs to the scene's triangles.
 double expected_seconds(const ChartStage& stage, const Rung& rung);
 
 struct MeasuredPoint {
