@@ -80,7 +80,9 @@ bool wants_unlit(const ChartJob& job) {
     return std::ranges::any_of(job.modes, [](const Mode* mode) { return lights_only(*mode); });
 }
 ReferenceSamples picture_samples(const ChartJob& job) { return {job.reference_samples, false, wants_unlit(job)}; }
-ReferenceSamples center_samples(const ChartJob& job) { return {4, true, wants_unlit(job)}; }
+ReferenceSamples center_samples(const ChartJob& job) {
+    return {std::min(4, job.reference_samples / 2), true, wants_unlit(job)};
+}
 
 struct References {
     Shot picture;

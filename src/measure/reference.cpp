@@ -16,7 +16,6 @@ RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
     job.mode = "march", job.quality = Quality::reference;
     job.settings = truth_of(job.settings);
     job.settings.pixel.samples = std::max(samples.count / 2, 1);
-    job.settings.pixel.lamp_samples = settings_for(Quality::reference).pixel.lamp_samples;
     if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
     job.seed = half_seeds[half];
     job.exr = exact_colors;
