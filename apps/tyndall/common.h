@@ -34,6 +34,7 @@ Run add_verify(CLI::App& app);
 Run add_plan(CLI::App& app);
 Run add_explain(CLI::App& app);
 Run add_stress(CLI::App& app);
+Run add_chart(CLI::App& app);
 
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();

@@ -58,4 +58,11 @@ void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb
         fail(ExitCode::out_of_memory, file.string(), "no memory to encode the picture");
     write_file_atomically(file, bytes);
 }
+
+void write_jpeg(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb, int quality) {
+    std::vector<std::byte> bytes;
+    if (!stbi_write_jpg_to_func(append, &bytes, srgb.size.x, srgb.size.y, 3, srgb.pixels.data(), quality))
+        fail(ExitCode::out_of_memory, file.string(), "no memory to encode the picture");
+    write_file_atomically(file, bytes);
+}
 }

@@ -13,4 +13,7 @@ Image<glm::u8vec3> display_codes(const Image<vec3>& linear, float exposure);
 
 // Codes as they are.
 void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb);
+
+// Codes nearly as they are, in a fraction of the room: for pictures inside of pages. Quality 1 to 100.
+void write_jpeg(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb, int quality);
 }

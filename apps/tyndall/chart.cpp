@@ -1,0 +1,152 @@
+// tyndall chart: every mode's error against its time on the user's scene, as CSV, JSON and a page.
+#include "base/error.h"
+#include "base/file.h"
+#include "base/isa.h"
+#include "base/text.h"
+#include "common.h"
+#include "measure/chart_report.h"
+#include "output.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+struct Options {
+    std::string scene, output, modes = "all", camera, frame, resolution, samples, runs, longest;
+    std::vector<std::string> settings;
+    bool quick = false;
+};
+
+constexpr int usual_width = 320, quick_width = 128;
+
+// The scene's shape at a width that pictures can be rendered in many times.
+ivec2 chart_size(const Scene& scene, bool quick) {
+    const int width = std::min(quick ? quick_width : usual_width, scene.resolution.x);
+    const double shape = static_cast<double>(scene.resolution.y) / scene.resolution.x;
+    return {width, std::max(1, static_cast<int>(std::lround(width * shape)))};
+}
+
+std::vector<const Mode*> asked_modes(const std::string& text) {
+    std::vector<const Mode*> result;
+    std::vector<std::string> names;
+    for (const Mode& mode : modes()) result.push_back(&mode), names.emplace_back(mode.name);
+    if (text == "all") return result;
+    result.clear();
+    for (const std::string& name : comma_list(text)) {
+        const Mode* mode = &modes()[choice_option("--modes", name, names)];
+        if (std::ranges::count(result, mode)) fail(ExitCode::usage, "--modes", name + " is named twice");
+        result.push_back(mode);
+    }
+    return result;
+}
+
+ChartJob make_job(const Options& texts) {
+    ChartJob job;
+    job.render.scene_file = texts.scene;
+    job.render.settings = settings_for(Quality::preview);
+    for (const std::string& assignment : texts.settings) apply_setting(job.render.settings, assignment);
+    job.render.camera = texts.camera;
+    job.render.isa = isa_name();
+    job.modes = asked_modes(texts.modes);
+    job.directory = texts.output;
+    if (texts.quick) job.reference_samples = 4, job.runs = 2, job.longest = 0.7;
+    if (!texts.samples.empty())
+        job.reference_samples = static_cast<int>(integer_option("--samples", texts.samples, 4, 4096) + 1) / 2 * 2;
+    if (!texts.runs.empty()) job.runs = static_cast<int>(integer_option("--runs", texts.runs, 1, 100));
+    if (!texts.longest.empty()) job.longest = number_option("--longest", texts.longest, 1e-3, 1e6);
+    if (!texts.resolution.empty()) job.render.resolution = resolution_option("--res", texts.resolution);
+    if (!texts.frame.empty()) job.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
+    return job;
+}
+
+// Every file that will be written, so that what cannot be is found out before the work.
+void check_places(const ChartJob& job, OutputPlaces& places) {
+    for (const char* name :
+         {"chart.csv", "chart.json", "chart.html", "points/a.json", "pictures/a.png", "reference/a.exr"})
+        places.check(job.directory / name);
+}
+
+void write_reports(const Chart& chart) {
+    const std::filesystem::path& directory = chart.job.directory;
+    write_file_atomically(directory / "chart.csv", chart_csv(chart));
+    write_file_atomically(directory / "chart.json", chart_json(chart));
+    write_file_atomically(directory / "chart.html", chart_html(chart));
+}
+
+void say_end(const Chart& chart) {
+    std::string line = count_text(chart.points.size(), "point") + " in " + seconds_text(chart.seconds);
+    if (chart.kept > 0) line += formatted(", %d kept from before", chart.kept);
+    if (!chart.left_out.empty()) line += formatted(", %zu left out", chart.left_out.size());
+    say(line);
+    if (chart.load_before > chart.threads + 0.5)
+        say(formatted("note: other work was running (load %.1f on %d threads): times are longer than they need be",
+                      chart.load_before, chart.threads));
+    say("look: " + printable((chart.job.directory / "chart.html").string()));
+}
+
+int run_chart(const Options& texts, const Globals& globals) {
+    ChartJob job = make_job(texts);
+    OutputPlaces places;
+    check_places(job, places);
+    const Scene scene = load_scene(job.render.scene_file);
+    if (scene.media.empty()) refuse(scene.file.string(), "has no fog to chart");
+    find_camera(scene, job.render.camera);
+    if (texts.frame.empty()) job.frame = scene.first_frame;
+    if (texts.resolution.empty()) job.render.resolution = chart_size(scene, texts.quick);
+
+    Progress progress(globals.progress, "chart", 1, true);
+    ChartControl control{&cancel_flag(), [&](double done) { progress.set(done); }, {}};
+    if (!globals.quiet) control.remark = [&](const std::string& line) { progress.line(line); };
+    const Chart chart = make_chart(scene, job, control);
+    stop_if_cancelled();
+    write_reports(chart);
+    progress.finish();
+    print_report(globals.json ? chart_json(chart) : chart_text(chart));
+    if (!globals.quiet) say_end(chart);
+    const auto broken = std::ranges::find_if(chart.points, [](const ChartPoint& p) { return p.non_finite > 0; });
+    if (broken != chart.points.end())
+        fail(ExitCode::non_finite, scene.file.string(),
+             point_name(*broken) + " met samples that were not finite numbers");
+    return 0;
+}
+}
+
+Run add_chart(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("chart", "every mode's error against its time on a scene");
+    auto texts = std::make_shared<Options>();
+    command->add_option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself")
+        ->type_name("")
+        ->required();
+    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
+        return command->add_option(name, text, help)->type_name(type);
+    };
+    option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html and pictures", "DIR")
+        ->required();
+    option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
+    command->add_flag("--quick", texts->quick,
+                      "small pictures, without the settings that take longest: under a minute");
+    option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
+    option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    option("--res", texts->resolution,
+           "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
+    option("--samples", texts->samples, "rays per pixel of the reference, 4 or more (default: 16; 4 with\n--quick)",
+           "N");
+    option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
+    option("--longest", texts->longest,
+           "leave out settings whose picture would take more seconds than this\n"
+           "(default: 60; 0.7 with --quick)",
+           "SECONDS");
+    command
+        ->add_option("--set", texts->settings,
+                     "one setting for all modes, for instance march.ambient=off; may be\n"
+                     "repeated. What makes a mode quicker or more careful is the chart's own")
+        ->type_name("ROW=VALUE")
+        ->allow_extra_args(false);
+    command->footer("Example: a first look, then the whole story\n"
+                    "  tyndall chart scenes/window.json -o out/chart --quick\n"
+                    "  tyndall chart scenes/window.json -o out/chart\n"
+                    "Each mode is rendered at six settings or more, each several times, and held against exact single\n"
+                    "scattering. Points are kept as they are measured: a run that was stopped goes on where it was.");
+    return [texts](const Globals& globals) { return run_chart(*texts, globals); };
+}
+}

@@ -1,0 +1,81 @@
+// Style and script of a chart's page. The script only shows what the page holds already.
+#pragma once
+#include <string_view>
+
+namespace tyndall {
+inline constexpr std::string_view chart_page_style = R"css(
+:root { color-scheme: light; }
+body { font: 15px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 1000px; margin: 2em auto;
+       padding: 0 1em; }
+h1 { font-size: 1.6em; } h2 { font-size: 1.2em; margin-top: 2em; } h3 { font-size: 1em; margin: 1.5em 0 0.3em; }
+p.quiet, .quiet { color: #555; }
+svg.chart { width: 100%; height: auto; display: block; background: #fff; }
+svg text { font-family: system-ui, sans-serif; }
+.grid { stroke: #ececec; stroke-width: 1; } .grid.strong { stroke: #cfcfcf; }
+.tick { font-size: 12px; fill: #444; } .axis { font-size: 13px; fill: #222; }
+.series { fill: none; stroke-width: 1.8; } .fitted { stroke-dasharray: 5 4; }
+.front { fill: none; stroke: #999; stroke-width: 7; stroke-opacity: 0.28; stroke-linejoin: round; }
+.whisker { stroke: #777; stroke-width: 1; }
+.label { font-size: 13px; font-weight: 600; paint-order: stroke; stroke: #fff; stroke-width: 4px; }
+.mark { cursor: pointer; } .mark:hover, .mark:focus { stroke: #000; stroke-width: 2.5; outline: none; }
+table { border-collapse: collapse; font-size: 13px; } th, td { padding: 2px 9px; text-align: right; }
+th { text-align: right; border-bottom: 1px solid #888; vertical-align: bottom; } td { border-bottom: 1px solid #e6e6e6; }
+th:first-child, td:first-child, td.words, th.words { text-align: left; }
+.wide { overflow-x: auto; }
+.rung { display: inline-block; width: 228px; margin: 0 9px 12px 0; font-size: 12px; vertical-align: top; }
+.rung img { width: 100%; display: block; }
+#tip { position: fixed; z-index: 2; width: 330px; padding: 10px; font-size: 13px; background: #fff; color: #111;
+       border: 1px solid #555; box-shadow: 0 3px 12px #0004; pointer-events: none; }
+#tip img { width: 49%; vertical-align: top; } #tip dl { display: grid; grid-template-columns: auto auto; margin: 4px 0; }
+#tip dt { color: #555; } #tip dd { margin: 0; text-align: right; } #tip code { font-size: 11px; }
+@media print { body { max-width: none; margin: 0; font-size: 11px; } #tip { display: none; }
+  svg.chart, .rung, tr { break-inside: avoid; } table { font-size: 8px; } th, td { padding: 1px 3px; }
+  .rung { width: 150px; } h2 { break-after: avoid; } .wide { overflow: visible; } }
+)css";
+
+// A mark's id names the table row with its numbers and the pictures in the gallery.
+inline constexpr std::string_view chart_page_script = R"js(
+"use strict";
+const tip = document.getElementById("tip");
+function show(id, x, y) {
+  const row = document.getElementById("row-" + id.replace(".fitted", ""));
+  if (!row) return;
+  const heads = row.closest("table").querySelectorAll("thead th");
+  const title = document.createElement("b");
+  title.textContent = id.endsWith(".fitted") ? row.cells[0].textContent + ", gain fitted" : row.cells[0].textContent;
+  const list = document.createElement("dl");
+  for (let i = 1; i < row.cells.length; ++i) {
+    if (row.cells[i].textContent === "-") continue;
+    const name = document.createElement("dt"), value = document.createElement("dd");
+    name.textContent = heads[i].textContent;
+    value.textContent = row.cells[i].textContent;
+    list.append(name, value);
+  }
+  const settings = document.createElement("code");
+  settings.textContent = row.dataset.settings;
+  tip.replaceChildren(title, list, settings, document.createElement("br"));
+  for (const image of document.querySelectorAll('[data-of="' + id.replace(".fitted", "") + '"] img')) {
+    const copy = document.createElement("img");
+    copy.src = image.src;
+    copy.alt = image.alt;
+    tip.append(copy, " ");
+  }
+  tip.hidden = false;
+  const box = tip.getBoundingClientRect();
+  tip.style.left = Math.max(4, x + 18 + box.width > innerWidth ? x - box.width - 18 : x + 18) + "px";
+  tip.style.top = Math.max(4, Math.min(y - 40, innerHeight - box.height - 4)) + "px";
+}
+function showMark(mark) {
+  const box = mark.getBoundingClientRect();
+  show(mark.dataset.id, box.right, box.top);
+}
+for (const mark of document.querySelectorAll(".mark")) {
+  mark.addEventListener("pointerenter", event => show(mark.dataset.id, event.clientX, event.clientY));
+  mark.addEventListener("focus", () => showMark(mark));
+  for (const end of ["pointerleave", "blur"]) mark.addEventListener(end, () => { tip.hidden = true; });
+}
+const asked = decodeURIComponent(location.hash).replace("#hover=", "");
+for (const mark of document.querySelectorAll(".mark"))
+  if (mark.dataset.id === asked) { showMark(mark); break; }
+)js";
+}

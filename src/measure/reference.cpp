@@ -1,0 +1,104 @@
+#include "measure/reference.h"
+
+#include "base/error.h"
+#include "base/file.h"
+#include "render/resume.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr uint32_t half_seeds[2] = {0x52454641u, 0x52454642u}; // unlike those of any picture measured
+const ExrOptions exact_colors{{"inscatter"}, true};
+
+RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
+    RenderJob job = shot.job;
+    job.mode = "march", job.quality = Quality::reference;
+    job.settings = truth_of(job.settings);
+    job.settings.pixel.samples = std::max(samples.count / 2, 1);
+    if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
+    job.seed = half_seeds[half];
+    job.exr = exact_colors;
+    return job;
+}
+
+Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
+    const Image<float>* channels[3];
+    for (int c = 0; c < 3; ++c) channels[c] = exr.channel(name + "." + "RGB"[c]);
+    Image<vec3> image(exr.size);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = {channels[0]->pixels[i], channels[1]->pixels[i], channels[2]->pixels[i]};
+    return image;
+}
+
+// A picture of the job, or the file an earlier run made of it.
+ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, const std::string& name,
+                     std::string hash, const std::function<void(double)>& progress) {
+    const View view = view_of(shot.scene, job, shot.frame);
+    const std::filesystem::path file = shot.directory / (name + ".exr");
+    if (!shot.directory.empty()) {
+        std::string why;
+        std::vector<std::string> channels = channel_names({}, exact_colors);
+        if (const auto kept = finished_frame(file, {view.size, ivec2(0), view.size, channels, hash}, why))
+            return {color_of(*kept), layer_of(*kept, "inscatter")};
+    }
+    FrameOptions options;
+    options.cancel = shot.cancel, options.progress = progress;
+    FrameStats stats;
+    Layers layers = render_frame(find_mode(job.mode), view, fresh(snapshot), job.settings, options, stats);
+    if (!shot.directory.empty()) {
+        Provenance provenance = provenance_of(shot.scene, job, view, hash, stats);
+        write_exr(file, layers, provenance, exact_colors);
+    }
+    return {std::move(layers.color), std::move(layers.inscatter)};
+}
+
+std::string half_hash(const Shot& shot, const RenderJob& job, FileHashes& files) {
+    return frame_hash(shot.scene, job, view_of(shot.scene, job, shot.frame), files);
+}
+}
+
+Snapshot fresh(const Snapshot& snapshot) {
+    Snapshot result = snapshot;
+    result.kept = std::make_shared<Kept>(), result.kept_before = nullptr;
+    return result;
+}
+
+std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
+    return content_hash(half_hash(shot, half_job(shot, samples, 0), files) +
+                        half_hash(shot, half_job(shot, samples, 1), files));
+}
+
+Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
+    Snapshot unlit = shot.snapshot;
+    unlit.lights.clear();
+    const bool chance = !samples.centers || std::ranges::any_of(shot.snapshot.lights, is_soft);
+    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.job.resolution.x) +
+                               "x" + std::to_string(shot.job.resolution.y) + "." + std::to_string(shot.frame);
+    Reference result;
+    for (size_t half = 0; half < 2; ++half) {
+        if (half == 1 && !chance) {
+            result.halves[1] = result.halves[0], result.unlit[1] = result.unlit[0];
+            break;
+        }
+        const auto part = [&](double done) {
+            if (shot.progress) shot.progress((static_cast<double>(half) + done) / (chance ? 2 : 1));
+        };
+        const RenderJob job = half_job(shot, samples, static_cast<int>(half));
+        const std::string hash = half_hash(shot, job, files), name = prefix + (half ? ".b" : ".a");
+        result.halves[half] = rendered(shot, shot.snapshot, job, name, hash, part);
+        if (samples.unlit)
+            result.unlit[half] = rendered(shot, unlit, job, name + ".unlit", content_hash(hash + "unlit"), {});
+    }
+    return result;
+}
+
+ColorLayers mean_of(const std::array<ColorLayers, 2>& halves) {
+    ColorLayers mean = halves[0];
+    for (size_t i = 0; i < mean.color.pixels.size(); ++i) {
+        mean.color.pixels[i] = 0.5f * (mean.color.pixels[i] + halves[1].color.pixels[i]);
+        mean.inscatter.pixels[i] = 0.5f * (mean.inscatter.pixels[i] + halves[1].inscatter.pixels[i]);
+    }
+    return mean;
+}
+}
