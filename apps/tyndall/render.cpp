@@ -74,7 +74,8 @@ void say_idle_settings(const std::vector<std::string>& settings, const RenderJob
         const std::string owner = setting.substr(0, setting.find('.'));
         const bool shared = owner == "march" && find_mode(job.mode).surfaces == Surfaces::shared;
         const auto owns = [&](const Mode& mode) { return setting_prefix(mode.name) == owner; };
-        const bool plain = owner == "style" && !honours_style(find_mode(job.mode));
+        const bool plain = (owner == "style" && !honours_style(find_mode(job.mode))) ||
+                           (owner == "fluence" && !has_fluence(find_mode(job.mode)));
         if (plain || (owner != setting_prefix(job.mode) && !shared && std::ranges::any_of(modes(), owns)))
             say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
     }

@@ -44,11 +44,14 @@ constexpr int noisy_factor = 16;
 
 // --orders, for modes that follow light further than once.
 void read_orders(const std::string& text, RenderJob& job) {
-    const int orders = static_cast<int>(integer_option("--orders", text, 1, all_orders));
+    const int orders = text == "all" ? all_orders : static_cast<int>(integer_option("--orders", text, 1, all_orders));
     if (find_mode(job.mode).accuracy == Accuracy::multiple_scattering)
         job.settings.path.orders = orders;
+    else if (has_fluence(find_mode(job.mode)))
+        job.settings.fluence.orders = orders;
     else if (orders > 1)
-        fail(ExitCode::usage, "--orders", job.mode + " scatters light once only; --mode path takes more");
+        fail(ExitCode::usage, "--orders",
+             job.mode + " scatters light once only; --mode march, froxel and path take more");
 }
 
 // A goal decides how many samples there are, but that path begins with as many as asked for when time is no matter.
@@ -111,8 +114,9 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "--target-error what comes first ends it",
            "SECONDS");
     option("--orders", texts.orders,
-           "how many times light scatters, in fog or on surfaces (default: as often\n"
-           "as the mode can)",
+           "how many times light scatters, in fog or on surfaces, or all of them\n"
+           "(default: 1; all for path). In march and froxel a grid of light that has\n"
+           "scattered before is added to exact single scattering",
            "N");
     option("--mode", texts.mode,
            "rendering technique (default: march), or auto: the quickest that gets to\n"
@@ -210,6 +214,9 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     if (!texts.history.empty() && has_goal(job))
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
+    if (has_goal(job) && has_fluence(mode) && job.settings.fluence.orders > 1)
+        fail(ExitCode::usage, job.time_budget > 0 ? "--time-budget" : "--target-error",
+             job.mode + " measures its error for --orders 1 only; --mode path does for all");
     if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     job.camera = texts.camera;
     if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);

@@ -17,7 +17,7 @@ struct FroxelFrame {
     bool has_history = false;
     int frame = 0;
 
-    // Of each light, and of ambient light and emission: made when first asked for.
+    // Of each light, and of all other light: made when first asked for.
     std::once_flag parts_made;
     std::vector<FroxelSums> parts;
 };
@@ -46,6 +46,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
+    scene.fluence = kept_fluence(scene.snapshot, settings.fluence, view.seed);
     if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
     if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
 }

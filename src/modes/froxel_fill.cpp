@@ -65,7 +65,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         total = total + here;
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
         if (!any(lit)) continue;
-        Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(snapshot, extinction) : splat(vec3(0));
+        Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(fill.scene, lanes, extinction) : splat(vec3(0));
         const Job job{packet.where, looks, slice, sample, fill.exact() ? &packet.exact[s] : nullptr, extinction};
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);

@@ -3,6 +3,7 @@
 #include "base/recycled.h"
 #include "modes/froxel_tiles.h"
 #include "modes/settings.h"
+#include "trace/fluence.h"
 #include "trace/light_grid.h"
 #include "trace/shadow_slices.h"
 #include "trace/shadow_view.h"
@@ -22,6 +23,7 @@ struct FroxelScene {
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
     ShadowSlices slices;
+    std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 };
 
 // Four floats per froxel, [tile · slices + slice]: the light that its fog sends towards the eye, per unit of
@@ -37,7 +39,7 @@ struct FroxelLight {
 };
 
 struct FillPass {
-    int only = -1;                  // 0..: this light alone; the number of lights: ambient light and emission alone
+    int only = -1;                  // 0..: this light alone; the number of lights: all other light alone
     int frame = 0;                  // of the history: 0 looks at the centres, later ones elsewhere in the froxels
     const uint8_t* stale = nullptr; // per froxel, 1 = its light is remembered: find its extinction only
     bool still = false;             // stale froxels need no extinction either; tiles all stale may be left as they are

@@ -8,6 +8,7 @@
 
 #include "modes/froxel_lit.h"
 #include "modes/froxel_look_simd.h"
+#include "trace/fluence_simd.h"
 #include "trace/light_grid_simd.h"
 #include "volume/phase_simd.h"
 
@@ -131,14 +132,17 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
     return scattering * amount * splat(light.intensity * light.volume_scale);
 }
 
-// Emission and ambient light, per metre.
-Vec3s glow_of(const Snapshot& snapshot, const float (*extinction)[16]) {
+// Emission, ambient light and light that has been scattered before, per metre.
+Vec3s glow_of(const FroxelScene& scene, const FroxelLanes& lanes, const float (*extinction)[16]) {
+    const Snapshot& snapshot = scene.snapshot;
     Vec3s glow = splat(vec3(0));
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
         const vec3 each = glow_per_extinction(snapshot.media[m].optics, snapshot.ambient);
         glow = fused(splat(each), load(extinction[m]), glow);
     }
-    return glow;
+    if (!scene.fluence) return glow;
+    return glow + scattered_fluence(*scene.fluence, snapshot.media, lanes.point, lanes.toward,
+                                    [&](size_t m) HWY_ATTR { return load(extinction[m]); });
 }
 
 Floats faded(const StyleSettings& style, const FroxelGrid& grid, const FroxelLanes& lanes) {

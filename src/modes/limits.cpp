@@ -1,5 +1,8 @@
 #include "modes/limits.h"
 
+#include "trace/light_paths.h"
+
+#include <algorithm>
 #include <cstdio>
 
 namespace tyndall {
@@ -29,6 +32,11 @@ void add_precision_limit(const View& view, const Snapshot& snapshot, std::vector
                       "lies so far from the origin that places are known to " + number_text("%.2g", offset) +
                           " m only: edges and shadows are as coarse"});
 }
+
+void add_ambient_limit(const Snapshot& snapshot, std::vector<Limit>& limits) {
+    if (max_component(snapshot.ambient) > 0)
+        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+}
 }
 
 std::string number_text(const char* format, double value) {
@@ -45,8 +53,7 @@ void add_single_scattering_limits(const View& view, const Snapshot& snapshot, st
                           "light scatters once only; up to " + number_text("%.2g", scattered) +
                               " optical depths of scattering make real fog this thick brighter and softer"});
     }
-    if (max_component(snapshot.ambient) > 0)
-        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+    add_ambient_limit(snapshot, limits);
     add_precision_limit(view, snapshot, limits);
 }
 
@@ -104,5 +111,27 @@ void add_step_limits(const View& view, const Snapshot& snapshot, int steps, cons
                                   " optical depths deep: what dims and brightens within them is lost; more " + row +
                                   " resolve it"});
     }
+}
+
+void add_fluence_limits(const View& view, const Snapshot& snapshot, const FluenceSettings& settings,
+                        std::vector<Limit>& limits) {
+    add_ambient_limit(snapshot, limits);
+    add_precision_limit(view, snapshot, limits);
+    const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
+    const Box fog = fog_bounds(snapshot, light_reach(snapshot));
+    if (snapshot.lights.empty() || fog.empty()) return;
+    const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
+    limits.push_back({Severity::info, "fluence.resolution",
+                      "light that has been scattered before comes from cells of " + number_text("%.2g", cell) +
+                          " m: its detail is no finer, and it leaks through walls thinner than that"});
+    limits.push_back({Severity::info, "fluence.orders",
+                      "fog lights no surfaces, and surfaces light fog but not each other; ambient light and what glows "
+                      "are not scattered again"});
+    if (std::ranges::any_of(snapshot.media, is_endless))
+        limits.push_back({Severity::info, "fluence.orders",
+                          "of endless fog only what lies in and around the scene scatters light again"});
+    if (settings.orders < all_orders)
+        limits.push_back({Severity::info, "fluence.orders",
+                          "light that scatters more than " + std::to_string(settings.orders) + " times is left out"});
 }
 }

@@ -19,4 +19,8 @@ void add_step_limits(const View& view, const Snapshot& snapshot, int steps, cons
                      std::vector<Limit>& limits);
 
 std::string number_text(const char* format, double value);
+
+// What a grid of light that has been scattered before cannot show; ambient light too.
+void add_fluence_limits(const View& view, const Snapshot& snapshot, const FluenceSettings& settings,
+                        std::vector<Limit>& limits);
 }

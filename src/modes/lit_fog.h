@@ -5,6 +5,7 @@
 #include "modes/light_along.h"
 #include "modes/march_steps.h"
 #include "modes/mode.h"
+#include "trace/fluence.h"
 #include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
 
@@ -42,8 +43,9 @@ struct LitFog {
     std::vector<Box> uneven; // fog that is not what it is taken for
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
-    std::vector<LitShadows> shadows; // one per light
-    ShadowSlices slices;             // for the lights that need them
+    std::vector<LitShadows> shadows;            // one per light
+    ShadowSlices slices;                        // for the lights that need them
+    std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 };
 
 // Whether a medium is a grid.

@@ -7,6 +7,7 @@
 #include "modes/lit_fog.h"
 #include "modes/style.h"
 
+#include "modes/lit_fog_fluence_simd.h"
 #include "modes/lit_fog_parts_simd.h"
 #include "modes/lit_fog_rows_simd.h"
 #include "modes/lit_fog_shells_simd.h"
@@ -192,6 +193,7 @@ void lit_fog_kernel(const LitFog& frame, const RayBatch& batch, std::span<Scatte
 
     vec3 total[16];
     add_glow(packet, depth);
+    add_fluence(packet);
     std::copy(packet.radiance, packet.radiance + 16, total);
     for (size_t light = 0; light < lights; ++light) {
         std::fill(packet.radiance, packet.radiance + 16, vec3(0));

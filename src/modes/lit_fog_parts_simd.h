@@ -44,7 +44,7 @@ double turns_of(double from, double to, double widest) {
 
 // The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
-    if (part.light != no_light && packet.frame.shadows[static_cast<size_t>(part.light)].by == ShadowsBy::rays)
+    if (part.light >= 0 && packet.frame.shadows[static_cast<size_t>(part.light)].by == ShadowsBy::rays)
         return {&packet.jittered[part.ray], 1};
     const int more = part.soft ? 2 : 0;
     if (!packet.frame.sampled) return gauss_legendre(packet.frame.nodes + more);

@@ -12,6 +12,7 @@
 #include "modes/lit_fog.h"
 #include "modes/shadow_rays_simd.h"
 #include "modes/style_simd.h"
+#include "trace/fluence_simd.h"
 #include "trace/light_depth_simd.h"
 #include "volume/medium_simd.h"
 #include "volume/phase_simd.h"
@@ -21,7 +22,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-constexpr int no_light = -1;
+constexpr int no_light = -1;  // emission and ambient light
+constexpr int any_light = -2; // light that has been scattered before
 
 // Places on stretches of rays, sixteen at once, whichever rays they are on. Stretches count from where their ray passes
 // the light (see Spread).
@@ -110,6 +112,14 @@ HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
     return sum;
 }
 
+// Light that has been scattered before, scattered towards the eye per metre.
+HWY_INLINE Vec3s scattered_again(const LitFog& frame, const Vec3s& position, const Vec3s& direction) {
+    const std::vector<Medium>& media = frame.snapshot.media;
+    return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
+        return density16(media[m], position) * media[m].optics.extinction;
+    });
+}
+
 HWY_INLINE Floats closed_depth(const LitFog& frame, const LightPaths& paths) {
     Floats depth = 0.0f;
     for (const Medium& medium : frame.snapshot.media) depth = depth + analytic_depth16(medium, paths);
@@ -157,8 +167,9 @@ void add_nodes(Packet& packet, int light) {
     const Floats depth = depth_at(packet, nodes, {origin, direction, placed.t});
     Floats weight = placed.length * exp(-depth * frame.style.view_depth);
     if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
-    const Vec3s source =
-        light == no_light ? glow(frame, position) : scattered(packet, static_cast<size_t>(light), position, direction);
+    const Vec3s source = light == no_light    ? glow(frame, position)
+                         : light == any_light ? scattered_again(frame, position, direction)
+                                              : scattered(packet, static_cast<size_t>(light), position, direction);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     for (int i = 0; i < nodes.count; ++i) {

@@ -31,7 +31,10 @@ ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
 std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     const MarchSettings& march = settings.march;
     std::vector<Limit> limits;
-    add_single_scattering_limits(view, snapshot, limits);
+    if (settings.fluence.orders < 2)
+        add_single_scattering_limits(view, snapshot, limits);
+    else
+        add_fluence_limits(view, snapshot, settings.fluence, limits);
     if (march.light == LightTransmittance::grid) add_light_grid_limits(snapshot, march.light_resolution, limits);
     for (const Medium& medium : snapshot.media)
         if (!march.heterogeneity && medium.kind == DensityKind::bricks)
@@ -90,6 +93,7 @@ ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const
         if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
     fog->sampled = has_grid(fog->snapshot) || !sampled.empty();
     if (fog->sampled) fog->rule = march_steps(march, std::move(sampled));
+    fog->fluence = kept_fluence(fog->snapshot, settings.fluence, view.seed);
     return [fog](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*fog, batch, results); };
 }
 }
@@ -106,6 +110,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march->cones.push_back(cone_falloff(light));
     }
     march->steps = march_steps(settings.march, march->snapshot.lights);
+    march->fluence = kept_fluence(march->snapshot, settings.fluence, view.seed);
     if (settings.march.visibility == Visibility::maps)
         march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
     if (settings.march.visibility != Visibility::exact)

@@ -6,6 +6,7 @@
 #include "volume/fog_pieces.h"
 
 #include <array>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -92,6 +93,30 @@ dvec3 glow(RayMarch& on) {
                 ++on.nodes;
             }
         });
+    return sum;
+}
+
+// Light that has been scattered before, cell by cell of its grid.
+dvec3 scattered_before(RayMarch& on) {
+    const FogPieces& fog = on.scratch.fog;
+    const FluenceGrid& grid = *on.march.fluence;
+    const double longest = std::exchange(on.longest, std::min<double>(on.longest, grid.cell));
+    dvec3 sum(0);
+    for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
+        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
+            for (const Node node : gauss) {
+                const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
+                const double weight = 0.5 * (high - low) * node.weight * seen(on, piece, t);
+                const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
+                for (size_t m = 0; m < fog.media; ++m) {
+                    const Optics& optics = on.march.snapshot.media[m].optics;
+                    const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
+                    sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
+                }
+                ++on.nodes;
+            }
+        });
+    on.longest = longest;
     return sum;
 }
 
@@ -251,6 +276,7 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
     const double stretch = fog.pieces.back().high - fog.pieces.front().low;
     on.longest = std::min<double>(march.settings.step_length, march.settings.step_share * stretch);
     dvec3 sum = glow(on);
+    if (march.fluence) sum += scattered_before(on);
     const std::vector<Light>& lights = march.snapshot.lights;
     for (size_t l = 0; l < lights.size(); ++l) {
         const dvec3 light = light_from(on, batch, ray_index, l);

@@ -8,6 +8,7 @@
 #include "modes/batch_simd.h"
 #include "modes/shadow_rays_simd.h"
 #include "modes/style_simd.h"
+#include "trace/fluence_simd.h"
 #include "trace/light_depth_simd.h"
 #include "trace/shadow_map_simd.h"
 #include "volume/medium_simd.h"
@@ -125,14 +126,16 @@ Floats extinction_at(const March& march, const Points& points, const Packet& pac
     return total;
 }
 
-// Emission and ambient light, per metre: neither needs a light's direction.
-Vec3s glow_at(const March& march, const Packet& packet) {
+// Emission, ambient light and light that has been scattered before, per metre: none needs a light's direction.
+Vec3s glow_at(const March& march, const Points& points, const Packet& packet) {
     Vec3s glow = splat(vec3(0));
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const vec3 each = glow_per_extinction(march.snapshot.media[m].optics, march.snapshot.ambient);
         glow = fused(splat(each), packet.extinction(m), glow);
     }
-    return glow;
+    if (!march.fluence) return glow;
+    return glow + scattered_fluence(*march.fluence, march.snapshot.media, points.position, packet.direction,
+                                    [&](size_t m) HWY_ATTR { return packet.extinction(m); });
 }
 
 void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
@@ -169,7 +172,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
             weight = seen * points.length * mean_transmittance(depth * march.style.view_depth) *
                      style_fade(march.style, march.camera, points.position);
         }
-        totals.radiance = totals.radiance + glow_at(march, packet) * weight;
+        totals.radiance = totals.radiance + glow_at(march, points, packet) * weight;
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;
             totals.radiance = totals.radiance + added;

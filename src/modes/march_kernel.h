@@ -2,6 +2,7 @@
 #pragma once
 #include "modes/march_steps.h"
 #include "modes/mode.h"
+#include "trace/fluence.h"
 #include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
 #include "trace/shadow_slices.h"
@@ -18,8 +19,9 @@ struct March {
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     MarchSteps steps;
-    ShadowSlices slices; // with Visibility::exact
-    ShadowMaps maps;     // with Visibility::maps, one per light
+    ShadowSlices slices;                        // with Visibility::exact
+    ShadowMaps maps;                            // with Visibility::maps, one per light
+    std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 };
 
 // The snapshot as march.* and style.* see it: terms that are off are taken out.

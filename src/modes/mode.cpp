@@ -41,6 +41,8 @@ const Mode& find_mode(std::string_view name) {
 
 bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }
 
+bool has_fluence(const Mode& mode) { return mode.prepare == prepare_march || mode.prepare == prepare_froxel; }
+
 bool error_is_noise(const Mode& mode) {
     return mode.surfaces == Surfaces::own && mode.accuracy == Accuracy::multiple_scattering;
 }

@@ -73,6 +73,9 @@ const Mode& find_mode(std::string_view name); // throws Error (usage) listing th
 // Whether style.* changes its pictures: the truth has none.
 bool honours_style(const Mode& mode);
 
+// Whether it can add light that scatters more than once (fluence.orders).
+bool has_fluence(const Mode& mode);
+
 // Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
 bool error_is_noise(const Mode& mode);
 

@@ -47,6 +47,7 @@ const std::vector<SettingRow>& setting_rows() {
         append_pixel_rows(all);
         append_style_rows(all);
         append_march_rows(all);
+        append_fluence_rows(all);
         append_froxel_rows(all);
         append_shadow_map_rows(all);
         append_shadow_volume_rows(all);
@@ -89,6 +90,7 @@ Settings settings_for(Quality quality) {
         march.nodes = 3;
         volume.nodes = 3, volume.steps = 16, volume.light_resolution = 32;
         froxel.tile = 16, froxel.depth_slices = 48;
+        settings.fluence.resolution = 32, settings.fluence.paths = 50'000;
         map.steps = 16, map.resolution = 256;
         break;
     case Quality::preview:
@@ -99,6 +101,7 @@ Settings settings_for(Quality quality) {
         march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128, march.nodes = 6;
         volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
         froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
+        settings.fluence.resolution = 96, settings.fluence.paths = 1'000'000;
         map.steps = 64, map.resolution = 2048, map.pcf = 1;
         break;
     case Quality::reference:
@@ -110,6 +113,7 @@ Settings settings_for(Quality quality) {
         march.light_resolution = 256, march.nodes = 16;
         volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
         froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
+        settings.fluence.resolution = 128, settings.fluence.paths = 4'000'000;
         map.steps = 256, map.resolution = 4096, map.pcf = 1, map.light = LightTransmittance::marched;
         break;
     }

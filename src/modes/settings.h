@@ -1,6 +1,7 @@
 // How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and
 // headers.
 #pragma once
+#include "trace/fluence.h"
 #include "trace/light_depth.h"
 #include "trace/view.h"
 
@@ -163,6 +164,7 @@ struct Settings {
     PixelSettings pixel;
     StyleSettings style;
     MarchSettings march;
+    FluenceSettings fluence; // of march and froxel
     ConeSettings cone;
     BillboardSettings billboard;
     PathSettings path;

@@ -64,6 +64,7 @@ inline const std::vector<std::string> picture_shares{"full", "half", "third", "q
 void append_pixel_rows(std::vector<SettingRow>& rows);
 void append_style_rows(std::vector<SettingRow>& rows);
 void append_march_rows(std::vector<SettingRow>& rows);
+void append_fluence_rows(std::vector<SettingRow>& rows);
 void append_cone_rows(std::vector<SettingRow>& rows);
 void append_billboard_rows(std::vector<SettingRow>& rows);
 void append_path_rows(std::vector<SettingRow>& rows);

@@ -100,6 +100,7 @@ std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const 
 std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     // What a march cannot do this one cannot either.
     Settings like = settings;
+    like.fluence.orders = 1;
     like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
     std::vector<Limit> limits = march_limits(view, snapshot, like);
     for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));

@@ -80,7 +80,7 @@ class CommandLine(ProgramTest):
             "--light-units": ["watts"],
             "--missing": ["ignore"],
             "--aov": ["depth", "Z,,inscatter", "Variance", "half_a"],
-            "--orders": ["", "0", "-1", "1.5", "65537", "all"],
+            "--orders": ["", "0", "-1", "1.5", "65537", "many"],
             "--target-error": ["", "0", "-0.1", "nan", "1e-6", "11", "low"],
             "--time-budget": ["", "0", "-1", "nan", "inf", "2e6", "soon"],
             "--seed": ["-1", "4294967296", "1.5"],
@@ -111,7 +111,10 @@ class CommandLine(ProgramTest):
             self.refuse(2, ["march"], *self.render("--mode", mode))
 
     def test_what_a_mode_cannot_do_is_refused(self):
-        self.refuse(2, ["--orders", "march scatters light once", "--mode path"], *self.render("--orders", "2"))
+        self.refuse(2, ["--orders", "cone scatters light once", "march, froxel and path"],
+                    *self.render("--orders", "2", "--mode", "cone"))
+        for option in ["--target-error", "--time-budget"]:
+            self.refuse(2, [option, "--orders 1", "--mode path"], *self.render("--orders", "2", option, "0.1"))
         for option in ["--target-error", "--time-budget"]:
             for mode in ["billboard", "radial-blur", "march,billboard"]:
                 self.refuse(2, [option, mode.split(",")[-1], "is a look"],

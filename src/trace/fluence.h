@@ -1,0 +1,50 @@
+// Light in the fog that has been scattered before: a grid of fluence and flux, filled by the flights of light paths
+// (track-length estimator: Spanier & Gelbard 1969) and smoothed over neighbouring cells. What it scatters towards the
+// eye is added to exact single scattering.
+//
+// Around each point the light is taken for a Henyey–Greenstein lobe about the flux F with the mean cosine |F|/φ. Fog of
+// mean cosine g turns it into a lobe of mean cosine g|F|/φ: exact for a beam scattered twice in thin fog and for light
+// from all around, and right to the first moment always.
+#pragma once
+#include "trace/snapshot.h"
+
+#include <memory>
+#include <vector>
+
+namespace tyndall {
+struct FluenceSettings {
+    int orders = 1;      // most scatterings of light, in fog or on surfaces; 1 = no grid
+    int resolution = 64; // cells along the longest side of the fog
+    int paths = 200'000; // of light
+};
+
+struct FluenceGrid {
+    Box bounds;
+    ivec3 size{0};  // cells
+    float cell = 1; // metres
+    // Twelve numbers per cell [(x·ny + y)·nz + z]: fluence of red, green, blue; then the flux of each, x, y, z by
+    // colour: [3 + 3·axis + colour].
+    std::vector<float> values;
+
+    bool empty() const { return values.empty(); }
+};
+
+// A grid's values between cell centres; zeros outside its bounds.
+struct FluenceAt {
+    vec3 fluence{0}, flux[3]{vec3(0), vec3(0), vec3(0)}; // flux: of each colour, by axis
+};
+FluenceAt fluence_at(const FluenceGrid& grid, vec3 point);
+
+// What a particle of scattering cross section 1 sends towards the eye, whose ray has this direction.
+vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase);
+
+// The same bits at any thread count.
+FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed = 0);
+
+// Kept while lights, media and surfaces stand still (trace/kept.h). Null when settings or scene ask for none.
+std::shared_ptr<const FluenceGrid> kept_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
+                                                uint32_t seed = 0);
+
+// Mean cosine of a phase function.
+float mean_cosine(Phase phase);
+}

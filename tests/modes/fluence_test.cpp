@@ -1,0 +1,232 @@
+// Light that scatters more than once, by the grid of fluence: closed forms, conservation, and path tracing.
+#include "froxel_fixtures.h"
+#include "path_rays.h"
+#include "path_scenes.h"
+#include "run_mode.h"
+#include "trace/fluence.h"
+#include "trace/light_paths.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+const Box unit_box{vec3(0), vec3(1)};
+
+Phase forward(float g) { return {PhaseKind::henyey_greenstein, g}; }
+
+FluenceSettings grid_settings(int orders, int resolution, int paths) { return {orders, resolution, paths}; }
+
+// ∫ dV / (4π r²) over the cube of side 1, r from its middle: the mean distance from there to its sides.
+double mean_inverse_square() {
+    // Six faces: the distance to a point of one, times the solid angle ½ / r³ dx dy.
+    const auto across = [](double x) {
+        return integral([&](double y) { return 0.5 / (x * x + y * y + 0.25); }, -0.5, 0.5, 50);
+    };
+    return 6 * integral(across, -0.5, 0.5, 50) / (4 * std::numbers::pi);
+}
+
+TEST(Fluence, IsWhatThinFogScattersOnce) {
+    // A sun of 1 lux in a cube of optical depth σ << 1: fluence at the middle is σ ∫ dV / (4π r²), flux 0; the grid
+    // knows the mean over the eight cells about it.
+    constexpr float sigma = 0.01f;
+    const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {sun({0, -1, 0})});
+    const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 16, 2'000'000));
+    const FluenceAt at = fluence_at(grid, vec3(0.5f));
+    const double expected = sigma * mean_inverse_square();
+    EXPECT_NEAR(at.fluence.x, expected, 0.06 * expected);
+    EXPECT_EQ(at.fluence.x, at.fluence.z);
+    EXPECT_LT(glm::length(at.flux[0]), 0.08 * expected);
+    EXPECT_EQ(fluence_at(grid, vec3(1.5f)).fluence.x, 0);
+}
+
+TEST(Fluence, AboveALitFloorIsTwiceItsLightAndGoesUp) {
+    // A floor of base colour ρ under a sun of E: radiance ρE/π from half of all directions, φ = 2ρE, F = ρE upwards.
+    Scene scene;
+    scene.materials = {lambert(vec3(0.5f, 0.25f, 1))};
+    add_mesh(scene, floor_at(0, 4, 0));
+    const Box box{vec3(-0.5f, 0, -0.5f), vec3(0.5f, 0.25f, 0.5f)};
+    Snapshot snapshot = scene_of({even_fog(1e-5f, box)}, {sun({0, -1, 0}, 3)});
+    add_surfaces(scene, snapshot);
+    const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 4, 400'000));
+    const FluenceAt at = fluence_at(grid, vec3(0, 0.125f, 0));
+    for (int c = 0; c < 3; ++c) {
+        const float lit = 3 * scene.materials[0].base_color[c];
+        EXPECT_NEAR(at.fluence[c], 2 * lit,
+                    0.12f * lit); // 3 % of the floor's half of all directions are beyond its rim
+        EXPECT_NEAR(at.flux[c].y, lit, 0.06f * lit);
+        EXPECT_NEAR(at.flux[c].x, 0, 0.06f * lit);
+    }
+    // The upper side is dark when light does not pass: a roof over it.
+    add_mesh(scene, floor_at(10, 80, 0));
+    add_surfaces(scene, snapshot);
+    const FluenceGrid dark = make_fluence(snapshot, grid_settings(2, 4, 20'000));
+    EXPECT_EQ(fluence_at(dark, vec3(0, 0.125f, 0)).fluence.x, 0);
+}
+
+TEST(Fluence, ScattersALobeIntoAWiderLobe) {
+    // Light with a Henyey–Greenstein lobe of mean cosine k becomes one of k·g (their moments multiply); by quadrature
+    // over the sphere.
+    const float k = 0.6f, g = 0.5f;
+    FluenceAt at;
+    at.fluence = vec3(2, 1, 0);
+    const vec3 axis = glm::normalize(vec3(1, 2, -0.5f));
+    at.flux[0] = axis * (k * 2), at.flux[1] = vec3(0);
+    vec3 x, y;
+    make_frame(axis, x, y);
+    for (const vec3 eye_ray : {axis, -axis, x, glm::normalize(x + axis)}) {
+        const auto over_cosine = [&](double c) {
+            const double s = std::sqrt(1 - c * c);
+            const auto around = [&](double a) {
+                const vec3 travel = static_cast<float>(c) * axis +
+                                    static_cast<float>(s) * (std::cos(float(a)) * x + std::sin(float(a)) * y);
+                return phase_value_of<double>(forward(k), c) *
+                       phase_value_of<double>(forward(g), glm::dot(travel, -eye_ray));
+            };
+            return integral(around, 0, 2 * std::numbers::pi, 20);
+        };
+        const vec3 got = scattered_fluence(at, eye_ray, forward(g));
+        EXPECT_NEAR(got.x, 2 * integral(over_cosine, -1, 1, 60), 2e-5 * got.x);
+        EXPECT_NEAR(got.y, 1 / (4 * pi), 1e-7f);
+        EXPECT_EQ(got.z, 0);
+    }
+    EXPECT_EQ(mean_cosine({PhaseKind::rayleigh, 0.5f}), 0);
+}
+
+TEST(Fluence, OfALampIsItsPowerInTheFog) {
+    // Light that fog scatters once: 4π I σ ∫ dV / (4π r²) about a lamp in the middle of a thin cube.
+    constexpr float sigma = 0.02f;
+    const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
+    const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
+    LightPathResult result;
+    trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 4), rules, 0, 200'000, 200'000, result);
+    const double expected = 4 * std::numbers::pi * 2 * sigma * mean_inverse_square();
+    EXPECT_NEAR(result.scattered_once, expected, 0.06 * expected); // 4 standard errors of 2100 collisions in 200000
+}
+
+TEST(Fluence, OfALampFarFromTheFogIsWhatArrivesThere) {
+    // From 20 m away the cube is lit like by a sun of I / r²; through a spot's beam too.
+    constexpr float sigma = 0.05f;
+    Light lamp = point_light(vec3(0.5f, 0.5f, 20.5f), 400);
+    Light spot = lamp;
+    spot.kind = LightKind::spot, spot.direction = vec3(0, 0, -1), spot.inner_cone = 0.1f, spot.outer_cone = 0.2f;
+    Light beyond = lamp;
+    beyond.range = 20;
+    for (const Light& light : {lamp, spot, beyond}) {
+        const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {light});
+        const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
+        LightPathResult result;
+        trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 8), rules, 0, 200'000, 200'000, result);
+        // σ ∫ E dV with E = 1 / (1 + (z - 20)/20)² and so on: under 1 % from 1 at the middle.
+        const double expected = light.range == 20 ? 0.0 : sigma * (1 - sigma / 2);
+        if (expected > 0) {
+            EXPECT_NEAR(result.scattered_once, expected, 0.08 * expected);
+        } else {
+            EXPECT_LT(result.scattered_once, 0.06 * sigma); // the window leaves 1 - (19.5/20)⁴ and less
+        }
+    }
+}
+
+TEST(Fluence, HasTheSameBitsAtAnyThreadCount) {
+    Scene scene;
+    scene.materials = {lambert(vec3(0.5f))};
+    add_mesh(scene, box_mesh(vec3(0.2f), vec3(0.6f), 0));
+    Snapshot snapshot = scene_of({even_fog(3, unit_box, forward(0.6f))}, {sun({1, -1, 0.5f}), point_light({2, 2, 2})});
+    add_surfaces(scene, snapshot);
+    const int threads = thread_count();
+    set_thread_count(1);
+    const FluenceGrid one = make_fluence(snapshot, grid_settings(all_orders, 12, 40'000));
+    set_thread_count(2);
+    const FluenceGrid two = make_fluence(snapshot, grid_settings(all_orders, 12, 40'000));
+    set_thread_count(threads);
+    EXPECT_EQ(one.values, two.values);
+    EXPECT_NE(one.values, make_fluence(snapshot, grid_settings(all_orders, 12, 40'000), 1).values) << "another seed";
+}
+
+Settings with_orders(Settings settings, int orders) {
+    settings.fluence = grid_settings(orders, 24, 30'000);
+    return settings;
+}
+
+TEST(Fluence, ChangesNoBitOfSingleScattering) {
+    const Snapshot snapshot = scene_of({even_fog(2, unit_box, forward(0.5f))}, {sun({1, -1, 0.5f})});
+    const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.8f, 64);
+    for (const Visibility visibility : {Visibility::rays, Visibility::slices, Visibility::exact}) {
+        Settings settings;
+        settings.march.visibility = visibility;
+        const std::vector<Scatter> plain = marched(snapshot, settings, rays),
+                                   once = marched(snapshot, with_orders(settings, 1), rays);
+        for (size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(plain[i].radiance, once[i].radiance);
+    }
+}
+
+// Everything that the cube sends out, by path, and by march with the grid, in all ways that march has.
+void expect_power_of_path(float g, int lines, double precision) {
+    Medium fog = even_fog(1.5f, unit_box, forward(g));
+    fog.optics.albedo = vec3(0.9f);
+    Medium grid = grid_fog(1.5f, unit_grid(16, [](vec3) { return 1.0f; }));
+    grid.optics = fog.optics;
+    const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.87f, lines);
+    for (const Medium& medium : {fog, grid}) {
+        const Snapshot snapshot = scene_of({medium}, {sun({0.4f, -1, 0.3f})});
+        const std::vector<Scatter> once = path_light(snapshot, rays, 1);
+        for (const int orders : {2, all_orders}) {
+            const std::vector<double> path = difference(path_light(snapshot, rays, orders), once);
+            const double power = mean_of(path).value;
+            for (const Visibility visibility : {Visibility::rays, Visibility::slices, Visibility::exact}) {
+                Settings settings = settings_for(Quality::preview);
+                settings.march.visibility = visibility;
+                const std::vector<double> march = difference(marched(snapshot, with_orders(settings, orders), rays),
+                                                             marched(snapshot, with_orders(settings, 1), rays));
+                std::vector<double> apart;
+                for (size_t i = 0; i < rays.size(); ++i) apart.push_back(march[i] - path[i]);
+                const Mean mean = mean_of(apart);
+                EXPECT_LT(std::abs(mean.value), 0.05 * power + 3 * mean.error) << mean.value / power;
+                EXPECT_LT(mean.error, precision * power);
+            }
+        }
+    }
+}
+
+class FluenceOfCube : public testing::TestWithParam<float> {};
+TEST_P(FluenceOfCube, AddsThePowerThatPathFinds) { expect_power_of_path(GetParam(), 6000, 0.09); }
+TEST_P(FluenceOfCube, NightlyAddsThePowerThatPathFindsPrecisely) { expect_power_of_path(GetParam(), 300'000, 0.015); }
+INSTANTIATE_TEST_SUITE_P(Fluence, FluenceOfCube, testing::Values(0.0f, 0.7f));
+
+TEST(Fluence, LooksTheSameInFroxels) {
+    // What orders beyond the first add to the picture, in small froxels and in the march.
+    const Stage stage = half_shadowed_fog();
+    const View view = view_of({0, 2, 9}, {0, 1.5f, 0});
+    const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
+    Settings settings;
+    settings.froxel.tile = 2, settings.froxel.depth_slices = 128;
+    const auto light = [&](const char* mode, int orders) {
+        settings.fluence = grid_settings(orders, 24, 150'000);
+        return run_mode(mode, view, stage.snapshot, settings, rays);
+    };
+    const std::vector<Scatter> march_once = light("march", 1), froxel_once = light("froxel", 1);
+    std::vector<Scatter> march = light("march", all_orders), froxel = light("froxel", all_orders);
+    for (size_t i = 0; i < rays.size(); ++i)
+        march[i].radiance -= march_once[i].radiance, froxel[i].radiance -= froxel_once[i].radiance;
+    EXPECT_GT(mean_light(march), 0.05 * mean_light(march_once));
+    EXPECT_NEAR(mean_light(froxel), mean_light(march), 0.02 * mean_light(march));
+    EXPECT_LT(relative_rmse(froxel, march), relative_rmse(froxel_once, march_once));
+}
+
+TEST(Fluence, SaysWhatItLeavesOut) {
+    const Snapshot snapshot = scene_of({even_fog(4, unit_box)}, {sun({0, -1, 0})}, vec3(1));
+    for (const char* name : {"march", "froxel"}) {
+        const auto texts = [&](int orders) {
+            std::string all;
+            for (const Limit& limit : find_mode(name).limits(View{}, snapshot, with_orders(Settings{}, orders)))
+                all += limit.why + "\n";
+            return all;
+        };
+        EXPECT_NE(texts(1).find("light scatters once only"), std::string::npos) << name;
+        EXPECT_EQ(texts(3).find("light scatters once only"), std::string::npos) << name;
+        EXPECT_NE(texts(3).find("more than 3 times is left out"), std::string::npos) << name;
+        EXPECT_NE(texts(all_orders).find("cells of 0.042 m"), std::string::npos) << texts(all_orders);
+        EXPECT_NE(texts(all_orders).find("ambient light is not shadowed"), std::string::npos) << name;
+    }
+}
+}
+}

@@ -1,0 +1,103 @@
+// How much light scatters more than once: closed forms, light paths, and the path tracer.
+#include "path_rays.h"
+#include "trace/scattering_orders.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+// A ball of diameter 1 in the unit box, of an optical radius and albedo 0.99.
+Medium ball(float optical_radius, float g) {
+    const SparseVolume volume = unit_grid(64, [](vec3 p) {
+        return std::clamp(0.5f + 64 * (0.484f - glm::length(p - 0.5f)), 0.0f, 1.0f); // a voxel's air around it
+    });
+    Medium medium = grid_fog(optical_radius / 0.484f, volume);
+    medium.optics.albedo = vec3(0.99f), medium.optics.phase = {PhaseKind::henyey_greenstein, g};
+    return medium;
+}
+
+TEST(ScatteringOrders, OfABallAsTheClosedFormSays) {
+    // Each within the last digit of w P / (1 - w P) worked out by hand.
+    const double expected[][2] = {{0.05, 0.0376}, {0.1, 0.0764}, {0.25, 0.195}, {0.5, 0.408}, {1, 0.880}, {2, 1.949}};
+    for (const auto& [radius, ratio] : expected)
+        EXPECT_NEAR(multiple_over_single(radius, 0.99), ratio, 6e-4 * (1 + ratio));
+    EXPECT_NEAR(multiple_over_single(0.0299999, 0.99), multiple_over_single(0.0300001, 0.99), 1e-6);
+    for (const float sigma : {0.1f, 1.0f, 4.0f}) {
+        const Medium cube = even_fog(sigma, {vec3(0), vec3(1)});
+        const double measured = measured_ratio(scene_of({cube}, {sun({0.2f, -1, 0.4f})}), 65536).ratio;
+        EXPECT_NEAR(multiple_over_single(cube), measured, 0.12 * measured) << sigma;
+    }
+    EXPECT_EQ(multiple_over_single(1, 0), 0);
+    EXPECT_EQ(multiple_over_single(even_fog(1)), double(infinity));
+}
+
+// Within a tenth of what light paths and path tracing find, give or take three standard errors.
+void expect_as_predicted(float optical_radius, float g, int paths, int points, double precision) {
+    const double predicted = multiple_over_single(optical_radius, 0.99);
+    const Snapshot snapshot = scene_of({ball(optical_radius, g)}, {sun({0.3f, -1, 0.2f})});
+    const ScatteringRatio measured = measured_ratio(snapshot, paths);
+    const double spread = measured.high - measured.ratio;
+    EXPECT_NEAR(measured.ratio, predicted, 0.1 * predicted + spread);
+    EXPECT_LT(spread, precision * predicted) << optical_radius << " g " << g;
+
+    // Power that the ball scatters of light that comes straight from the sun, σ e^-τ, and of all other light, σ 4π L in
+    // random directions, at points all over it.
+    std::vector<Ray> rays;
+    std::vector<double> straight, extinction;
+    const Medium& medium = snapshot.media[0];
+    for (uint32_t i = 0; i < static_cast<uint32_t>(points); ++i) {
+        const Sample2 u = sample2(i, 8);
+        const vec3 point(u.x, u.y, random_unit(i, 0, 0, 9));
+        extinction.push_back(medium.optics.extinction * density_at(medium, point));
+        straight.push_back(std::exp(-optical_depth(medium, {point, -snapshot.lights[0].direction, infinity})));
+        rays.push_back({point, random_direction(i, 10)});
+    }
+    const std::vector<Scatter> light = path_light(snapshot, rays, all_orders);
+    std::vector<double> once, apart;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        once.push_back(extinction[i] * straight[i]);
+        apart.push_back(extinction[i] * 4 * std::numbers::pi * light[i].radiance.x - predicted * once[i]);
+    }
+    const Mean mean = mean_of(apart);
+    const double more = predicted * mean_of(once).value;
+    EXPECT_LT(std::abs(mean.value), 0.1 * more + 3 * mean.error) << optical_radius << " g " << g;
+    EXPECT_LT(mean.error, precision * more) << optical_radius << " g " << g;
+}
+
+class ScatteringOrdersOfBall : public testing::TestWithParam<float> {};
+TEST_P(ScatteringOrdersOfBall, AsLightPathsAndPathTracingFind) {
+    for (const float g : {0.0f, 0.8f}) expect_as_predicted(GetParam(), g, 131072, 16000, 0.3);
+}
+TEST_P(ScatteringOrdersOfBall, NightlyAsLightPathsAndPathTracingFindPrecisely) {
+    for (const float g : {0.0f, 0.8f}) expect_as_predicted(GetParam(), g, 4 << 20, 1'000'000, 0.03);
+}
+INSTANTIATE_TEST_SUITE_P(ScatteringOrders, ScatteringOrdersOfBall, testing::Values(0.05f, 0.25f, 0.5f, 1.0f));
+
+TEST(ScatteringOrders, ConfidenceCoversTheTruth) {
+    // 95 % of intervals should: of 40, hardly ever less than 33.
+    const Snapshot snapshot = scene_of({even_fog(1, {vec3(0), vec3(1)})}, {sun({0, -1, 0})});
+    const double truth = measured_ratio(snapshot, 1 << 20, 99).ratio;
+    int covered = 0;
+    for (uint32_t seed = 0; seed < 40; ++seed) {
+        const ScatteringRatio ratio = measured_ratio(snapshot, 4096, seed);
+        covered += ratio.low <= truth && truth <= ratio.high;
+    }
+    EXPECT_GE(covered, 33);
+    EXPECT_LT(covered, 41);
+}
+
+TEST(ScatteringOrders, BoundIsAboveWhatIsMissing) {
+    for (const float sigma : {0.1f, 0.5f, 2.0f}) {
+        Medium fog = even_fog(sigma, {vec3(0), vec3(1)});
+        fog.optics.albedo = vec3(0.9f);
+        const Snapshot snapshot = scene_of({fog}, {sun({0, -1, 0})});
+        const double q = 0.9 * (1 - std::exp(-sigma * std::sqrt(3.0)));
+        EXPECT_NEAR(truncation_bound(snapshot, 1), q / (1 - q), 1e-5 * q);
+        EXPECT_NEAR(truncation_bound(snapshot, 3), q * q * q / (1 - q), 1e-5 * q);
+        EXPECT_GT(truncation_bound(snapshot, 1), measured_ratio(snapshot).high);
+    }
+    EXPECT_EQ(truncation_bound(scene_of({even_fog(1)}, {}), 1), double(infinity));
+    EXPECT_EQ(measured_ratio(scene_of({even_fog(1)}, {})).ratio, 0);
+}
+}
+}
