@@ -63,12 +63,14 @@ std::string plan_json(const Plan& plan, const RenderJob& job) {
 
 // How to render what was planned.
 std::string command_of(const Plan& plan, const RenderJob& job) {
-    std::string text =
-        "tyndall render " + job.scene_file.string() + " -o out.####.exr --mode " + std::string(plan.chosen.mode->name);
+    const bool again = plan.settings.fluence.orders > 1;
+    std::string text = "tyndall render " + job.scene_file.string() + " -o out.####.exr --mode " +
+                       std::string(again ? automatic : plan.chosen.mode->name);
     if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
     if (plan.goal.seconds > 0) text += formatted(" --time-budget %g", plan.goal.seconds);
+    if (again) text += " --orders " + std::to_string(plan.settings.fluence.orders);
     for (const SettingRow& row : setting_rows())
-        if (row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
+        if (row.name != "fluence.orders" && row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
             text += " --set " + row.name + "=" + row.get(plan.settings);
     return text;
 }
@@ -125,6 +127,11 @@ Run add_plan(CLI::App& app) {
     command->add_option("--set", render.settings, "a setting that is to stay as it is; may be repeated")
         ->type_name("ROW=VALUE")
         ->allow_extra_args(false);
+    command
+        ->add_option("--orders", render.orders,
+                     "how many times light may scatter, or all (default: 1); more than once only\n"
+                     "where the fog needs it")
+        ->type_name("N");
     command->add_option("--frame", texts->frame, "which frame of the scene (default: its first)")->type_name("N");
     command->add_option("--camera", render.camera, "which camera (default: the scene's)")->type_name("NAME");
     command->add_option("--res", render.resolution, "size of the picture (default: the scene's)")->type_name("WxH");

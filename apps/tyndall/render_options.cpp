@@ -214,7 +214,7 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     if (!texts.history.empty() && has_goal(job))
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
-    if (has_goal(job) && has_fluence(mode) && job.settings.fluence.orders > 1)
+    if (has_goal(job) && has_fluence(mode) && job.settings.fluence.orders > 1 && texts.mode != automatic)
         fail(ExitCode::usage, job.time_budget > 0 ? "--time-budget" : "--target-error",
              job.mode + " measures its error for --orders 1 only; --mode path does for all");
     if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));

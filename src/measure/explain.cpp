@@ -20,6 +20,7 @@ View centered(View view) {
 
 Settings truth_for(const Snapshot& snapshot, const Settings& settings, int light_points) {
     Settings truth = truth_of(settings);
+    truth.fluence.orders = 1;
     if (std::ranges::any_of(snapshot.lights, is_soft))
         truth.march.light_points = std::max(truth.march.light_points, light_points);
     return truth;

@@ -60,6 +60,7 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
     const Contender& winner = contest.best();
     for (const Mode& mode : modes) {
         Standing standing{&mode, {}, "a look, not light: its error is as large as it is"};
+        if (mode.accuracy != Accuracy::look) standing.why = "takes no part: light scattered again is asked for";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;
@@ -113,6 +114,7 @@ std::string Plan::certificate() const {
             left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
                         " (" + term.simpler + ": at most " + percent(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
+    if (settings.fluence.orders > 1) text += "; light scattered again comes from a grid of its own error";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
 }
 

@@ -4,6 +4,7 @@
 #include "modes/techniques.h"
 #include "render/candidates.h"
 #include "render/goal.h"
+#include "trace/scattering_orders.h"
 
 #include <optional>
 
@@ -190,6 +191,21 @@ void add_surfaces(Terms& terms, double thickest) {
 }
 }
 
+namespace {
+// The power that fog scatters again, over what it scatters once: as an error, since it is what the picture lacks.
+void add_orders(Terms& terms) {
+    const ScatteringRatio found = measured_ratio(terms.snapshot);
+    Term term{"light scattered again", "", "left out", found.ratio, found.high};
+    term.needed = term.bound > term_share * terms.error;
+    term.why = formatted("fog scatters %s of its light again (%s to %s)", percent(found.ratio).c_str(),
+                         percent(found.low).c_str(), percent(found.high).c_str());
+    const double bound = truncation_bound(terms.snapshot, 1);
+    if (bound < infinity) term.why += formatted("; never more than %s of the brightest", percent(bound).c_str());
+    if (terms.base.fluence.orders < 2) term.why += "; not asked for (--orders all)";
+    terms.terms.push_back(std::move(term));
+}
+}
+
 double thickest_line(const Snapshot& snapshot) {
     double depth = 0;
     for (const Medium& medium : snapshot.media) {
@@ -207,6 +223,7 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
     const auto done = [&](double share) {
         if (control.progress) control.progress(share);
     };
+    if (!snapshot.lights.empty()) add_orders(terms);
     add_shadows(terms), done(0.3);
     add_dimming(terms, thickest), done(0.7);
     add_switches(terms), done(0.9);
@@ -224,6 +241,7 @@ Settings without_needless(const std::vector<Term>& terms, const Snapshot& snapsh
             march.light = LightTransmittance::off;
         if (term.name == "dimming of light on its way" && term.simpler == "average")
             march.light = LightTransmittance::average;
+        if (term.name == "light scattered again") settings.fluence.orders = 1;
         if (term.name == "changing density") march.heterogeneity = false;
         if (term.name == "direction of scattering") march.phase = false;
         if (term.name == "emission") march.emission = false;

@@ -67,7 +67,8 @@ bool may_improve(const Contender& last, double before, const Contender& best, co
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
-        if (error_can_be_told(mode)) runners.push_back({&mode, candidates_of(mode, settings, quality)});
+        if (error_can_be_told(mode) && (settings.fluence.orders < 2 || has_fluence(mode)))
+            runners.push_back({&mode, candidates_of(mode, settings, quality)});
     return runners;
 }
 }

@@ -17,7 +17,8 @@ from compare import run_blender
 from scenes import SHAFTS
 
 # Ever finer: what the picture costs, what error is left.
-LADDER = ["--samples 1 --set march.step_share=0.0625 --set march.step_voxels=16", "--samples 1", "--samples 4",
+FEW_STEPS = "--set march.step_share=0.0625 --set march.step_voxels=16"
+LADDER = ["--samples 1 " + FEW_STEPS, "--samples 1", "--samples 4 " + FEW_STEPS, "--samples 4",
           "--quality final --samples 4", "--quality final --samples 16"]
 CONVERGED_OPTIONS = "--quality final --samples 128 --set march.light_resolution=256"
 # The same fog and a sun, as vdb_render has them: isotropic, white, the eye 12 m away.
