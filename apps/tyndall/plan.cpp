@@ -68,7 +68,8 @@ std::string command_of(const Plan& plan, const RenderJob& job) {
                        std::string(again ? automatic : plan.chosen.mode->name);
     if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
     if (plan.goal.seconds > 0) text += formatted(" --time-budget %g", plan.goal.seconds);
-    if (again) text += " --orders " + std::to_string(plan.settings.fluence.orders);
+    const int orders = plan.settings.fluence.orders;
+    if (again) text += " --orders " + (orders == all_orders ? "all" : std::to_string(orders));
     for (const SettingRow& row : setting_rows())
         if (row.name != "fluence.orders" && row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
             text += " --set " + row.name + "=" + row.get(plan.settings);

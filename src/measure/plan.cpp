@@ -29,8 +29,8 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
-    term.why =
-        percent(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) + " samples per pixel";
+    term.why = percent(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
+               (samples < 2 ? " sample" : " samples") + " per pixel";
     return term;
 }
 
@@ -90,7 +90,7 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
     const double start = goal.clock();
     const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
     plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
-    plan.settings = without_needless(plan.terms, snapshot, settings);
+    plan.settings = without_needless(plan.terms, settings);
     plan.terms_seconds = goal.clock() - start;
 
     const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
@@ -130,8 +130,9 @@ std::string plan_text(const Plan& plan) {
         const std::string name(standing.mode->name);
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
-            text += formatted("  %-14s chosen: %s in %s, %.0f samples per pixel", name.c_str(),
-                              percent(best.error).c_str(), seconds_text(best.seconds).c_str(), best.samples);
+            text +=
+                formatted("  %-14s chosen: %s in %s, %.0f %s per pixel", name.c_str(), percent(best.error).c_str(),
+                          seconds_text(best.seconds).c_str(), best.samples, best.samples < 2 ? "sample" : "samples");
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
         } else {
             text += "  " + name + std::string(15 - std::min<size_t>(14, name.size()), ' ') + standing.why + "\n";

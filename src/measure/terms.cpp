@@ -200,7 +200,7 @@ void add_orders(Terms& terms) {
     term.why = formatted("fog scatters %s of its light again (%s to %s)", percent(found.ratio).c_str(),
                          percent(found.low).c_str(), percent(found.high).c_str());
     const double bound = truncation_bound(terms.snapshot, 1);
-    if (bound < infinity) term.why += formatted("; never more than %s of the brightest", percent(bound).c_str());
+    if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent(bound).c_str());
     if (terms.base.fluence.orders < 2) term.why += "; not asked for (--orders all)";
     terms.terms.push_back(std::move(term));
 }
@@ -231,23 +231,23 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
     return std::move(terms.terms);
 }
 
-Settings without_needless(const std::vector<Term>& terms, const Snapshot& snapshot, Settings settings) {
+Settings without_needless(const std::vector<Term>& terms, Settings settings) {
     MarchSettings& march = settings.march;
-    bool shadows = snapshot.lights.empty();
+    bool shadows = false, needless = false;
     for (const Term& term : terms) {
-        shadows |= term.name == "shadows" && term.needed;
+        if (term.name == "shadows") (term.needed ? shadows : needless) |= term.bound > 0;
+        if (term.name == "light scattered again" && !term.needed) settings.fluence.orders = 1;
         if (term.needed || term.bound == 0) continue; // switching off what is not there changes nothing
         if (term.name == "dimming of light on its way" && term.simpler == "left out")
             march.light = LightTransmittance::off;
         if (term.name == "dimming of light on its way" && term.simpler == "average")
             march.light = LightTransmittance::average;
-        if (term.name == "light scattered again") settings.fluence.orders = 1;
         if (term.name == "changing density") march.heterogeneity = false;
         if (term.name == "direction of scattering") march.phase = false;
         if (term.name == "emission") march.emission = false;
         if (term.name == "ambient light in fog") march.ambient = false;
     }
-    if (!shadows) march.visibility = Visibility::off;
+    if (needless && !shadows) march.visibility = Visibility::off;
     return settings;
 }
 }

@@ -32,7 +32,7 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
                            const TermControl& control = {});
 
 // The settings with what is not needed switched off: march.* rows, which other modes follow too.
-Settings without_needless(const std::vector<Term>& terms, const Snapshot& snapshot, Settings settings);
+Settings without_needless(const std::vector<Term>& terms, Settings settings);
 
 // Optical depth that no line through the fog exceeds; infinite where no bound is known.
 double thickest_line(const Snapshot& snapshot);

@@ -120,8 +120,10 @@ void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, 
     for (size_t lane = 0; lane < 16; ++lane)
         if (lines.active >> lane & 1) rays.push_back(lines.rays[lane]), points.push_back(lines.points[lane]);
     const ShadowSlices near = shadows ? near_rays(scene.slices, rays, points) : ShadowSlices{};
+    static thread_local Stretches found;
+    find_lit(near, rays, points, found);
     for (size_t lane = 0, i = 0; lane < 16; ++lane)
-        if (lines.active >> lane & 1) find_lit(near, rays[i], points[i], lit[lane]), ++i;
+        if (lines.active >> lane & 1) std::swap(found[i++], lit[lane]);
 }
 
 // Adds a lit stretch of a sun, in planar depth, to the slices it crosses.
