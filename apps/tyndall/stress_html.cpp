@@ -1,6 +1,8 @@
 // The results of tyndall stress as one page that needs nothing else.
 #include "stress_report.h"
 
+#include "measure/svg.h"
+
 namespace tyndall {
 namespace {
 constexpr const char* style = R"(
@@ -14,30 +16,13 @@ td.fails { background: #f3b9b3; font-weight: 600 } summary { cursor: pointer; wh
 small { color: #666 } td table { font-size: 85%; background: #fff } td table td { border: 1px solid #ddd; min-width: 0 }
 )";
 
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else if (c == '>')
-            result += "&gt;";
-        else if (c == '"')
-            result += "&quot;";
-        else
-            result += c;
-    }
-    return result;
-}
-
 // Every value of the sweep: error, what is allowed, what was said.
 std::string points_table(const StressResult& result) {
-    std::string text = "<table><tr><td>" + escaped(result.stress->sweep) + "<td>error<td>allowed<td>said</tr>";
+    std::string text = "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>said</tr>";
     for (const StressPoint& point : result.points) {
         text +=
-            formatted("<tr><td>%s<td>%.3g<td>%.3g<td>%s", escaped(stress_value(*result.stress, point.value)).c_str(),
-                      point.error, point.allowed, escaped(point.warning).c_str());
+            formatted("<tr><td>%s<td>%.3g<td>%.3g<td>%s", xml_text(stress_value(*result.stress, point.value)).c_str(),
+                      point.error, point.allowed, xml_text(point.warning).c_str());
         if (!point.clean())
             text += formatted(" %llu not finite, %llu negative", static_cast<unsigned long long>(point.non_finite),
                               static_cast<unsigned long long>(point.negative));
@@ -51,7 +36,7 @@ std::string cell(const StressResult* result) {
     const StressPoint* point = result->first();
     std::string verdict = "holds";
     if (point)
-        verdict = (point->silent() ? "fails at " : "from ") + escaped(stress_value(*result->stress, point->value));
+        verdict = (point->silent() ? "fails at " : "from ") + xml_text(stress_value(*result->stress, point->value));
     return "<td class=" + std::string(name_of(result->verdict())) + "><details><summary>" + verdict + "</summary>" +
            points_table(*result) + "</details>";
 }
@@ -60,20 +45,20 @@ std::string cell(const StressResult* result) {
 std::string stress_html(const StressReport& report) {
     std::string text = "<!DOCTYPE html>\n<html lang=en><meta charset=utf-8><title>Tyndall: stability</title>\n<style>" +
                        std::string(style) + "</style>\n<h1>Stability of every mode</h1>\n<p>" +
-                       escaped(stress_summary(report)) +
+                       xml_text(stress_summary(report)) +
                        ".</p>\n<p>Each case sweeps a condition from mild to hard. Green: the mode holds throughout. "
                        "Yellow: it degrades from this value on and says so before it renders. Red: it fails and says "
                        "nothing. A click shows every value.</p>\n<table><thead><tr><th>case";
-    for (const std::string& mode : report.modes) text += "<th>" + escaped(mode);
+    for (const std::string& mode : report.modes) text += "<th>" + xml_text(mode);
     text += "</tr></thead><tbody>\n";
     std::string_view group;
     for (const StressCase* stress : report.cases()) {
         if (stress->group != group)
-            text += formatted("<tr class=group><th colspan=%zu>", report.modes.size() + 1) + escaped(stress->group) +
+            text += formatted("<tr class=group><th colspan=%zu>", report.modes.size() + 1) + xml_text(stress->group) +
                     "</tr>\n";
         group = stress->group;
-        text += "<tr><th><b>" + escaped(stress->id) + "</b> " + escaped(stress->title) + "<br><small>" +
-                escaped(stress->measure.criterion) + "</small>";
+        text += "<tr><th><b>" + xml_text(stress->id) + "</b> " + xml_text(stress->title) + "<br><small>" +
+                xml_text(stress->measure.criterion) + "</small>";
         for (const std::string& mode : report.modes) text += cell(report.find(*stress, mode));
         text += "</tr>\n";
     }

@@ -1,6 +1,7 @@
 // The page of a chart.
 #include "measure/chart_page.h"
 #include "measure/chart_report.h"
+#include "measure/svg.h"
 
 #include "base/file.h"
 
@@ -9,21 +10,6 @@
 
 namespace tyndall {
 namespace {
-std::string escaped(std::string_view text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '<')
-            result += "&lt;";
-        else if (c == '&')
-            result += "&amp;";
-        else if (c == '"')
-            result += "&quot;";
-        else if (static_cast<unsigned char>(c) >= 32)
-            result += c;
-    }
-    return result;
-}
-
 // RFC 4648.
 std::string base64(std::string_view bytes) {
     constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -57,7 +43,7 @@ std::string point_words(const ChartPoint& point) {
 // --- what to use when --------------------------------------------------------------------------------------------
 std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time, ErrorOf what) {
     if (!point) return element("td class=\"words\"", "none of these");
-    return element("td class=\"words\" title=\"" + escaped(point->settings) + "\"",
+    return element("td class=\"words\" title=\"" + xml_text(point->settings) + "\"",
                    "<b>" + point_words(*point) + "</b>: " + share_words(error_of(*point, what)) + " in " +
                        seconds_words(seconds_of(*point, time)));
 }
@@ -116,7 +102,7 @@ std::string number_table(const Chart& chart) {
     std::string head = "<th>mode, rung</th>", rows;
     for (const Column& column : columns()) head += element("th", column.head);
     for (const ChartPoint& point : chart.points) {
-        rows += "<tr id=\"row-" + point_name(point) + "\" data-settings=\"" + escaped(point.settings) + "\">" +
+        rows += "<tr id=\"row-" + point_name(point) + "\" data-settings=\"" + xml_text(point.settings) + "\">" +
                 element("td", point_words(point));
         for (const Column& column : columns()) rows += element("td", column.cell(point));
         rows += "</tr>\n";
@@ -127,19 +113,19 @@ std::string number_table(const Chart& chart) {
 
 // --- pictures ------------------------------------------------------------------------------------------------------
 std::string image(const std::filesystem::path& file, const std::string& words) {
-    return "<img alt=\"" + escaped(words) + "\" src=\"data:image/jpeg;base64," + base64(read_file(file)) + "\">";
+    return "<img alt=\"" + xml_text(words) + "\" src=\"data:image/jpeg;base64," + base64(read_file(file)) + "\">";
 }
 
 std::string gallery(const Chart& chart) {
     std::string html;
     for (const ChartedMode& mode : chart.modes) {
-        html += element("h3", escaped(mode.name) + " <span class=\"quiet\">(" + std::string(name_of(mode.accuracy)) +
-                                  ") " + escaped(mode.summary) + "</span>");
+        html += element("h3", xml_text(mode.name) + " <span class=\"quiet\">(" + std::string(name_of(mode.accuracy)) +
+                                  ") " + xml_text(mode.summary) + "</span>");
         std::string limits;
         for (const Limit& limit : mode.limits)
             if (limit.severity != Severity::info)
-                limits += element("li", std::string(name_of(limit.severity)) + ": " + escaped(limit.where) + ": " +
-                                            escaped(limit.why));
+                limits += element("li", std::string(name_of(limit.severity)) + ": " + xml_text(limit.where) + ": " +
+                                            xml_text(limit.why));
         if (!limits.empty()) html += element("ul class=\"quiet\"", limits);
         for (const ChartPoint& point : chart.points) {
             if (point.mode != mode.name) continue;
@@ -158,8 +144,8 @@ std::string gallery(const Chart& chart) {
 std::string summary(const Chart& chart) {
     char loads[80];
     std::snprintf(loads, sizeof loads, "%.1f before, %.1f after", chart.load_before, chart.load_after);
-    return "Frame " + std::to_string(chart.job.frame) + ", camera " + escaped(chart.camera) + ", " +
-           size_words(chart.size) + " pixels, " + std::to_string(chart.threads) + " threads, " + escaped(chart.isa) +
+    return "Frame " + std::to_string(chart.job.frame) + ", camera " + xml_text(chart.camera) + ", " +
+           size_words(chart.size) + " pixels, " + std::to_string(chart.threads) + " threads, " + xml_text(chart.isa) +
            ". Load of the machine: " + loads + ". Light scatters once everywhere.";
 }
 
@@ -193,14 +179,14 @@ std::string method(const Chart& chart) {
     std::string list;
     for (const std::string& text : lines) list += element("li", text);
     for (const LeftOut& rung : chart.left_out)
-        list += element("li", escaped(rung.mode) + " " + std::to_string(rung.rung) + " was left out: about " +
+        list += element("li", xml_text(rung.mode) + " " + std::to_string(rung.rung) + " was left out: about " +
                                   seconds_words(rung.seconds) + " a picture.");
     return element("ul", list);
 }
 }
 
 std::string chart_html(const Chart& chart) {
-    const std::string title = "Error against time: " + escaped(chart.job.render.scene_file.filename().string());
+    const std::string title = "Error against time: " + xml_text(chart.job.render.scene_file.filename().string());
     std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
                        "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n"
                        "<link rel=\"icon\" href=\"data:,\">\n<style>" +

@@ -7,11 +7,6 @@
 
 namespace tyndall {
 namespace {
-std::string percent(double share) {
-    if (!(share < infinity)) return "any";
-    return formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
-}
-
 std::string seconds_text(double seconds) {
     return formatted(seconds < 1 ? "%.0f ms" : "%.3g s", seconds < 1 ? 1000 * seconds : seconds);
 }
@@ -29,7 +24,7 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
-    term.why = percent(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
+    term.why = percent_text(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
                (samples < 2 ? " sample" : " samples") + " per pixel";
     return term;
 }
@@ -44,7 +39,8 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     if (best.gets_there() && goal.error > 0)
         return "gets there in " + seconds_text(best.seconds) +
                formatted(", %.2g times as long", best.seconds / winner.seconds);
-    std::string text = goal.error > 0 ? "stays " + percent(best.error) + " off" : percent(best.error) + " off";
+    std::string text =
+        goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
         text = "too noisy: " + formatted("%.0f", 1.0 * most_target_samples) + " samples would not do";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
@@ -105,14 +101,14 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
 std::string Plan::certificate() const {
     std::string text = std::string(chosen.mode->name);
     if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
-    text += ": error " + percent(chosen.error) + " expected";
-    if (goal.error > 0) text += ", " + percent(goal.error) + " wanted";
+    text += ": error " + percent_text(chosen.error) + " expected";
+    if (goal.error > 0) text += ", " + percent_text(goal.error) + " wanted";
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
     for (const Term& term : terms)
         if (!term.needed && term.bound > 0)
             left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
-                        " (" + term.simpler + ": at most " + percent(term.bound) +
+                        " (" + term.simpler + ": at most " + percent_text(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
     if (settings.fluence.orders > 1) text += "; light scattered again comes from a grid of its own error";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
@@ -131,7 +127,7 @@ std::string plan_text(const Plan& plan) {
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
             text +=
-                formatted("  %-14s chosen: %s in %s, %.0f %s per pixel", name.c_str(), percent(best.error).c_str(),
+                formatted("  %-14s chosen: %s in %s, %.0f %s per pixel", name.c_str(), percent_text(best.error).c_str(),
                           seconds_text(best.seconds).c_str(), best.samples, best.samples < 2 ? "sample" : "samples");
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
         } else {

@@ -17,10 +17,6 @@ struct Variant {
     Settings settings;
 };
 
-std::string percent(double share) {
-    return share < infinity ? formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share) : "any error";
-}
-
 // The march with surfaces and background as bright as without fog before them.
 Mode undimmed_march() {
     Mode mode = find_mode("march");
@@ -99,12 +95,12 @@ struct Terms {
         if (bound <= allowed) {
             term.error = term.bound = bound, term.rigorous = true, term.needed = false;
             if (term.why.empty())
-                term.why = bound == 0 ? "there is none" : "no pixel is off by more than " + percent(most);
+                term.why = bound == 0 ? "there is none" : "no pixel is off by more than " + percent_text(most);
         } else {
             const SquaredError seen = error_of((this->*against)(), variant());
             term.error = std::sqrt(seen.value), term.bound = std::sqrt(seen.bound);
             term.needed = term.bound > allowed;
-            term.why = percent(term.error) + " measured, at most " + percent(term.bound);
+            term.why = percent_text(term.error) + " measured, at most " + percent_text(term.bound);
         }
         terms.push_back(std::move(term));
     }
@@ -197,13 +193,17 @@ void add_orders(Terms& terms) {
     const ScatteringRatio found = measured_ratio(terms.snapshot);
     Term term{"light scattered again", "", "left out", found.ratio, found.high};
     term.needed = term.bound > term_share * terms.error;
-    term.why = formatted("fog scatters %s of its light again (%s to %s)", percent(found.ratio).c_str(),
-                         percent(found.low).c_str(), percent(found.high).c_str());
+    term.why = formatted("fog scatters %s of its light again (%s to %s)", percent_text(found.ratio).c_str(),
+                         percent_text(found.low).c_str(), percent_text(found.high).c_str());
     const double bound = truncation_bound(terms.snapshot, 1);
-    if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent(bound).c_str());
+    if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent_text(bound).c_str());
     if (terms.base.fluence.orders < 2) term.why += "; not asked for (--orders all)";
     terms.terms.push_back(std::move(term));
 }
+}
+
+std::string percent_text(double share) {
+    return share < infinity ? formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share) : "any";
 }
 
 double thickest_line(const Snapshot& snapshot) {

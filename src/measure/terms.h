@@ -34,6 +34,9 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
 // The settings with what is not needed switched off: march.* rows, which other modes follow too.
 Settings without_needless(const std::vector<Term>& terms, Settings settings);
 
+// A share as "4.2 %".
+std::string percent_text(double share);
+
 // Optical depth that no line through the fog exceeds; infinite where no bound is known.
 double thickest_line(const Snapshot& snapshot);
 }

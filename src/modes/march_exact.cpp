@@ -75,24 +75,30 @@ double seen(const RayMarch& on, size_t piece, double t) {
     return share * style_fade(style, eye_distance(on.march.camera, on.ray.at(static_cast<float>(t))));
 }
 
-// Emission and ambient light of all fog, lit or not.
-dvec3 glow(RayMarch& on) {
+// Calls body(piece, t, weight) at the nodes of all fog on the ray; the weights hold what of their light arrives.
+template<class Body> void at_nodes(RayMarch& on, const Body& body) {
     const FogPieces& fog = on.scratch.fog;
-    dvec3 sum(0);
     for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
         split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
             for (const Node node : gauss) {
                 const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
-                const double weight = 0.5 * (high - low) * node.weight * seen(on, piece, t);
-                for (size_t m = 0; m < fog.media; ++m) {
-                    const Optics& optics = on.march.snapshot.media[m].optics;
-                    const dvec3 per_density =
-                        double(optics.extinction) * dvec3(optics.albedo * on.march.snapshot.ambient);
-                    sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
-                }
+                body(piece, t, 0.5 * (high - low) * node.weight * seen(on, piece, t));
                 ++on.nodes;
             }
         });
+}
+
+// Emission and ambient light of all fog, lit or not.
+dvec3 glow(RayMarch& on) {
+    const FogPieces& fog = on.scratch.fog;
+    dvec3 sum(0);
+    at_nodes(on, [&](size_t piece, double t, double weight) {
+        for (size_t m = 0; m < fog.media; ++m) {
+            const Optics& optics = on.march.snapshot.media[m].optics;
+            const dvec3 per_density = double(optics.extinction) * dvec3(optics.albedo * on.march.snapshot.ambient);
+            sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
+        }
+    });
     return sum;
 }
 
@@ -102,20 +108,14 @@ dvec3 scattered_before(RayMarch& on) {
     const FluenceGrid& grid = *on.march.fluence;
     const double longest = std::exchange(on.longest, std::min<double>(on.longest, grid.cell));
     dvec3 sum(0);
-    for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
-        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
-            for (const Node node : gauss) {
-                const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
-                const double weight = 0.5 * (high - low) * node.weight * seen(on, piece, t);
-                const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
-                for (size_t m = 0; m < fog.media; ++m) {
-                    const Optics& optics = on.march.snapshot.media[m].optics;
-                    const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
-                    sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
-                }
-                ++on.nodes;
-            }
-        });
+    at_nodes(on, [&](size_t piece, double t, double weight) {
+        const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
+        for (size_t m = 0; m < fog.media; ++m) {
+            const Optics& optics = on.march.snapshot.media[m].optics;
+            const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
+            sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
+        }
+    });
     on.longest = longest;
     return sum;
 }
