@@ -11,11 +11,12 @@ void append_pixel_rows(std::vector<SettingRow>& rows) {
                               "how far a sample may lie from the pixel's centre", TYNDALL_FIELD(pixel.filter_radius)));
     rows.push_back(number_row("pixel.lamp_samples", "", 1, 64,
                               "most times as many rays around a local light, whose glow in the fog changes within a "
-                              "pixel there; 1 = none more",
+                              "pixel there; 1 = none more; with --target-error, as measured instead",
                               TYNDALL_FIELD(pixel.lamp_samples)));
     rows.push_back(number_row("pixel.edge_samples", "", 1, 64,
                               "most times as many rays where 4x4 pixels differ: at edges of surfaces and shafts; for "
-                              "pictures of 4 rays per pixel or more; 1 = none more",
+                              "pictures of 4 rays per pixel or more; 1 = none more; with --target-error, as measured "
+                              "instead",
                               TYNDALL_FIELD(pixel.edge_samples)));
     rows.push_back(
         choice_row("pixel.jitter", {"none", "ordered", "white", "blue", "interleaved", "spatiotemporal"},

@@ -13,9 +13,9 @@ float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
 
 Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
-    const vec2 position = sample_position(view, pixel, sample);
+    const auto [position, weight] = sample_point(view, pixel, sample);
     const vec2 off = position - (vec2(pixel) + 0.5f);
-    result.off_center = glm::dot(off, off);
+    result.off_center = glm::dot(off, off), result.weight = weight;
 
     Path path;
     path.ray = camera_ray(view.camera, view.size, position);

@@ -52,7 +52,8 @@ struct RayNumbers {
     vec2 positions[16];
 };
 
-// Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are.
+// Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are and
+// how much they count.
 void start_paths(const View& view, std::span<const ivec2> pixels, int sample, Stretches& s,
                  std::span<PixelSample> samples);
 
@@ -65,7 +66,7 @@ bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<P
 
 RayNumbers ray_numbers(const View& view, int layer, const Stretches& s);
 
-// One way to trace_samples: modes with Surfaces::own.
-void trace_own_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample,
-                       std::span<PixelSample> samples, std::span<vec3> per_light);
+// Modes with Surfaces::own: one whole ray for each path.
+void follow_own_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples,
+                      std::span<vec3> per_light);
 }

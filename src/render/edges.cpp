@@ -63,19 +63,20 @@ float contrast(const Probes& probes, ivec2 corner) {
 
 std::shared_ptr<const TileFactors> edge_factors(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
     const View& view = tracer.view;
-    if (view.edge_samples <= 1 || view.filter == PixelFilter::center || view.pixel_samples < fewest_samples)
+    if (view.edge_samples <= 1 || view.allotted || view.filter == PixelFilter::center ||
+        view.pixel_samples < fewest_samples)
         return nullptr;
     const ivec2 first = low / tile_side, last = (high - 1) / tile_side;
     const Probes probes =
         probe(tracer, glm::max(first - 1, 0) * tile_side, glm::min((last + 2) * tile_side, view.size), stats);
-    auto factors = std::make_shared<TileFactors>(TileFactors{first, Image<uint8_t>(last - first + 1, uint8_t{1})});
+    auto factors = std::make_shared<TileFactors>(TileFactors{first, Image<uint16_t>(last - first + 1, uint16_t{1})});
     for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) {
             const float share =
                 (contrast(probes, ivec2(x, y) * tile_side) - least_contrast) / (full_contrast - least_contrast);
             const float most = static_cast<float>(view.edge_samples);
             factors->factors.at(x - first.x, y - first.y) =
-                static_cast<uint8_t>(std::clamp(1 + share * (most - 1), 1.0f, most));
+                static_cast<uint16_t>(std::clamp(1 + share * (most - 1), 1.0f, most));
         }
     return factors;
 }

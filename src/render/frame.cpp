@@ -6,6 +6,7 @@
 #include "render/edges.h"
 #include "render/noise.h"
 #include "render/pixel_sum.h"
+#include "trace/lamp_samples.h"
 
 #include <algorithm>
 #include <cassert>
@@ -212,21 +213,6 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     stats.add(probed);
     if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
     return std::move(task.layers);
-}
-
-// Local lights that glow in the fog of the picture, if more samples around them make a difference.
-std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
-    std::vector<View::Lamp> lamps;
-    if (view.lamp_samples <= 1 || view.filter == PixelFilter::center || snapshot.media.empty()) return lamps;
-    for (const Light& light : snapshot.lights) {
-        const std::optional<vec2> at =
-            light.kind == LightKind::sun ? std::nullopt : pixel_of(view.camera, view.size, light.position);
-        if (!at) continue;
-        const vec3 rim = light.position + light.radius * view.camera.right;
-        const vec2 beside = pixel_of(view.camera, view.size, rim).value_or(*at);
-        lamps.push_back({*at, glm::distance(*at, beside)});
-    }
-    return lamps;
 }
 
 // The part of an image a crop window shows.

@@ -32,10 +32,8 @@ void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> s
 }
 }
 
-void trace_own_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample,
-                       std::span<PixelSample> samples, std::span<vec3> per_light) {
-    Stretches s;
-    start_paths(tracer.view, pixels, sample, s, samples);
+void follow_own_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples,
+                      std::span<vec3> per_light) {
     add_light(tracer, s, samples, per_light);
 
     // What covers the background, and the depth.

@@ -13,7 +13,9 @@ vec3 RunningMean::variance() const {
 
 void PixelSum::add(const PixelSample& sample) {
     color += sample.color, inscatter += sample.inscatter;
-    alpha += sample.alpha, transmittance += sample.transmittance, validity += sample.validity;
+    const float w = sample.weight;
+    ++kept, weight += w, alpha += w * sample.alpha, transmittance += w * sample.transmittance,
+        validity += w * sample.validity;
     if (sample.off_center < off_center) off_center = sample.off_center, depth = sample.depth;
 }
 
@@ -26,7 +28,8 @@ void PixelSum::end_batch(int samples) {
 }
 
 void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers) {
-    const float count = static_cast<float>(samples);
+    const float all = static_cast<float>(samples);
+    const float count = sum.kept ? sum.weight * all / static_cast<float>(sum.kept) : all;
     layers.color.at(p.x, p.y) = vec3(sum.color_mean.mean);
     layers.inscatter.at(p.x, p.y) = vec3(sum.inscatter_mean.mean);
     layers.alpha.at(p.x, p.y) = sum.alpha / count;

@@ -16,13 +16,14 @@ struct RunningMean {
 struct PixelSum {
     vec3 color{0}, inscatter{0}; // of the current batch
     RunningMean color_mean, inscatter_mean, half_means[2];
-    float alpha = 0, transmittance = 0, validity = 0;
+    float weight = 0, alpha = 0, transmittance = 0, validity = 0; // weighted
+    int kept = 0;                                                 // samples
     float depth = infinity, off_center = infinity;
 
     void add(const PixelSample& sample);
     void end_batch(int samples); // even batches go to the first half, odd ones to the second
 };
 
-// Writes the pixel at `p` of the layers there are.
+// Writes the pixel at `p` of the layers there are; of `samples`, those not added count as black and not valid.
 void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers);
 }

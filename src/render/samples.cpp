@@ -81,13 +81,8 @@ bool PixelSample::finite() const {
     return is_finite(color) && is_finite(inscatter) && std::isfinite(alpha + transmittance + validity);
 }
 
-void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
-                   std::span<vec3> per_light) {
-    std::fill(per_light.begin(), per_light.end(), vec3(0));
-    if (tracer.surfaces == Surfaces::own) return trace_own_samples(tracer, pixels, sample, samples, per_light);
-
-    Stretches s;
-    start_paths(tracer.view, pixels, sample, s, samples);
+namespace {
+void follow_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
     for (int layer = 0; layer < most_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         add_fog(tracer, layer, s, samples, per_light);
@@ -98,6 +93,25 @@ void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int
         if (met.count == 0) return;
         add_surfaces(tracer, layer, s, met, samples, per_light);
         if (!advance(tracer.view, met, s, samples)) return;
+    }
+}
+}
+
+void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
+                   std::span<vec3> per_light) {
+    std::fill(per_light.begin(), per_light.end(), vec3(0));
+    Stretches s;
+    start_paths(tracer.view, pixels, sample, s, samples);
+    if (tracer.surfaces == Surfaces::own)
+        follow_own_paths(tracer, s, samples, per_light);
+    else
+        follow_paths(tracer, s, samples, per_light);
+
+    const size_t lights = per_light.size() / pixels.size();
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const float weight = samples[i].weight;
+        samples[i].color *= weight, samples[i].inscatter *= weight;
+        for (size_t l = 0; l < lights; ++l) per_light[i * lights + l] *= weight;
     }
 }
 }

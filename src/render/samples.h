@@ -9,7 +9,8 @@
 namespace tyndall {
 // What one camera ray sees.
 struct PixelSample {
-    vec3 color{0}, inscatter{0};
+    vec3 color{0}, inscatter{0}; // times the weight
+    float weight = 1;            // of the sample in its pixel
     float alpha = 0, transmittance = 1, validity = 1;
     float depth = infinity; // planar z of the first opaque surface
     float off_center = 0;   // squared distance of the ray from the pixel's centre, pixels

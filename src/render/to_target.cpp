@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "render/allotment.h"
 #include "render/layers_mean.h"
 #include "render/noise.h"
 
@@ -19,20 +20,26 @@ int samples_needed(const Noise& noise, int samples, double target, int batches) 
     return std::max(whole, samples + batches);
 }
 
-// The rounds of one picture.
+// The rounds of one picture. First all pixels take equally many samples; where that shows that some need many more than
+// others, it is begun anew with as many as each needs. Work is counted in samples of all pixels; then in allotments.
 struct Rounds {
     const Mode& mode;
-    const View& view; // as asked for
+    View view; // as asked for; what spreads most is measured, not guessed from lamps and edges
     const Goal& goal;
     double start = 0;             // of the goal's time
     std::optional<Choice> choice; // where anything was measured beforehand
-    double sample_seconds = 0;    // by the last round, or by what was measured
-    int freedom = 0;              // differences between batches so far
-    int expected = most_target_samples;
+    std::optional<Allotment> allotment{};
+    double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
+    double done = 0, expected = most_target_samples;
+    int freedom = 0; // differences between batches so far
 
     double left() const { return goal.seconds - (goal.clock() - start); }
     int most_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
+    int unit() const {
+        return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2;
+    } // samples that are allotted at once
+    double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
 
     // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than it.
     double noise_target() const {
@@ -41,10 +48,29 @@ struct Rounds {
         const double share = std::sqrt(std::max(1 - bound / (goal.error * goal.error), 0.0));
         return goal.error * (bound < goal.error * goal.error ? share : integrator_share);
     }
+
+    // The view of so much work, and the work it is.
+    View round_view(double& work, int round) const {
+        View result = view;
+        if (round) result.seed = hash(view.seed, static_cast<uint32_t>(round));
+        result.batches = allotment ? unit() : std::min(most_batches(), static_cast<int>(work));
+        result.pixel_samples = allotment ? unit() : static_cast<int>(work) / result.batches * result.batches;
+        if (allotment)
+            result.allotted = factors_of(*allotment, work, unit());
+        else
+            work = result.pixel_samples;
+        return result;
+    }
 };
 
-// Where nothing is known, the first round is as the view asks; otherwise less than what is likely to be needed, since a
-// round too many costs less than one too large. More rays at edges leave less to do for others.
+Rounds rounds_of(const Mode& mode, const View& view, const Goal& goal) {
+    Rounds rounds{mode, view, goal, goal.clock(), {}};
+    rounds.view.lamp_samples = rounds.view.edge_samples = 1;
+    return rounds;
+}
+
+// Where nothing is known, the first round is as the view asks; otherwise a small part of what is likely to be needed:
+// it shows which pixels need it.
 int first_round(Rounds& rounds) {
     if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), most_target_samples);
     const Measured& measured = rounds.choice->measured;
@@ -52,30 +78,67 @@ int first_round(Rounds& rounds) {
     if (rounds.goal.error > 0) {
         const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
         const double needed = std::pow(ratio, 1 / rounds.choice->power);
-        const double part = rounds.view.edge_samples > 1 ? 6 : 3;
-        samples = static_cast<int>(std::clamp(std::ceil(needed / part), 2.0, most_target_samples / 2.0));
+        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, most_target_samples / 2.0));
+        if (needed < 8) samples = std::max(static_cast<int>(std::ceil(needed / 2)), 2);
         if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
-        rounds.expected = std::max(samples, static_cast<int>(std::min<double>(needed, most_target_samples)));
+        rounds.expected = std::max<double>(samples, std::min<double>(needed, most_target_samples));
     }
     if (rounds.goal.seconds > 0) {
-        const double time = std::floor(std::min(rounds.left() / rounds.sample_seconds, 0.0 + most_target_samples));
-        samples = std::min(samples, static_cast<int>(std::max(time > 4 ? time / 2 : time, 1.0)));
-        rounds.expected = std::min(rounds.expected, static_cast<int>(std::max(time, 1.0)));
+        const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + most_target_samples));
+        samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
+        rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
     }
     return std::max(samples, rounds.fewest());
 }
 
+// After the first round: whether samples are better spread by what it showed. Then they are, from nothing.
+bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
+    if (rounds.allotment || rounds.freedom == 0 || !(stats.noise->error > 0) || !std::isfinite(stats.noise->bound))
+        return false;
+    const double pixels = static_cast<double>(layers.size.x) * layers.size.y;
+    const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
+    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
+    Enough enough{0, most_target_samples * pixels};
+    if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
+    if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
+    const Allotment allotment = allot(layers, rounds.done, enough, power, rounds.unit());
+
+    // As good with all pixels alike, without beginning anew.
+    const double alike = rounds.done * std::pow(squared / allotment.squared_error, 1 / power) - rounds.done;
+    if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
+    rounds.work_seconds = ray_seconds * allotment.rays;
+    rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
+    return true;
+}
+
+// Parts of an allotment: what noise asks for, and time leaves; 0 when time is up.
+double next_part(Rounds& rounds, const FrameStats& stats) {
+    double wanted = 1;
+    if (rounds.done > 0 && rounds.goal.error > 0) {
+        const double ratio = stats.noise->bound / rounds.noise_target();
+        rounds.expected = 1.02 * rounds.done * ratio * ratio;
+        wanted = std::clamp(rounds.expected - rounds.done, 0.125 * rounds.done, rounds.done);
+    }
+    if (rounds.goal.seconds > 0) {
+        wanted = std::min(wanted, rounds.left() / rounds.work_seconds);
+        if (wanted < 0.1 && rounds.done > 0) return 0;
+        if (rounds.goal.error == 0) rounds.expected = rounds.done + wanted;
+    }
+    return std::max(wanted, 0.05);
+}
+
 // Rounds stay large enough for a few to do, and no round wastes more than all before it; 0 when time is up.
-int next_round(Rounds& rounds, const FrameStats& stats) {
-    const int samples = stats.samples, batches = std::min(rounds.most_batches(), samples);
+double next_round(Rounds& rounds, const FrameStats& stats) {
+    if (rounds.allotment) return next_part(rounds, stats);
+    const int samples = static_cast<int>(rounds.done), batches = std::min(rounds.most_batches(), samples);
     int wanted = most_target_samples - samples;
     if (rounds.goal.error > 0) {
         rounds.expected = samples_needed(*stats.noise, samples, rounds.noise_target(), batches);
         const int least = (samples / 8 + batches - 1) / batches * batches;
-        wanted = std::min(std::clamp(rounds.expected - samples, least, samples), wanted);
+        wanted = std::min(std::clamp(static_cast<int>(rounds.expected) - samples, least, samples), wanted);
     }
     if (rounds.goal.seconds > 0) {
-        const double time = std::floor(std::min<double>(rounds.left() / rounds.sample_seconds, wanted));
+        const double time = std::floor(std::min<double>(rounds.left() / rounds.work_seconds, wanted));
         if (time < std::max({2, batches / 8, samples / 16})) return 0;
         wanted = static_cast<int>(time);
         if (rounds.goal.error == 0) rounds.expected = samples + wanted;
@@ -102,6 +165,11 @@ bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
     return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
 }
+
+double pixel_count(const View& view) {
+    const ivec2 size = view.crop_low == view.crop_high ? view.size : view.crop_high - view.crop_low;
+    return static_cast<double>(size.x) * size.y;
+}
 }
 
 int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_batches * noise_batches; }
@@ -117,7 +185,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
                         Goal goal, const FrameOptions& options, FrameStats& stats) {
     assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
     if (!goal.clock) goal.clock = steady_seconds;
-    Rounds rounds{mode, view, goal, goal.clock(), {}, 0};
+    Rounds rounds = rounds_of(mode, view, goal);
     FrameOptions round_options = options;
     Settings chosen = settings;
     stats = {};
@@ -125,7 +193,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         rounds.choice =
             goal.choice ? *goal.choice : choose(mode, view, snapshot, settings, goal, rounds.start, options);
         chosen = rounds.choice->candidate.settings;
-        rounds.sample_seconds = rounds.choice->measured.sample_seconds;
+        rounds.work_seconds = rounds.choice->measured.sample_seconds;
         round_options.prepared = rounds.choice->measured.prepared;
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (round_options.prepared) stats.fog_seconds = round_options.prepared->mode_seconds;
@@ -136,32 +204,32 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     }
 
     // Until the first round has shown how noisy the scene is, all samples there may be count as work.
-    View round_view = view;
     Layers result;
-    double begun = 0;
-    int samples = first_round(rounds);
-    for (int round = 0; samples > 0; ++round) {
-        if (round) round_view.seed = hash(view.seed, static_cast<uint32_t>(round));
-        round_view.batches = std::min(rounds.most_batches(), samples);
-        round_view.pixel_samples = samples / round_view.batches * round_view.batches;
-        const double share = std::min(1.0, 1.0 * (stats.samples + round_view.pixel_samples) / rounds.expected);
-        const double reached = std::max(begun, share);
+    const double pixels = pixel_count(view);
+    double begun = 0, work = first_round(rounds), rays = 0; // rays: that count
+    for (int round = 0; work > 0; ++round) {
+        const View round_view = rounds.round_view(work, round);
+        const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
         if (options.progress)
             round_options.progress = [&](double part) { options.progress(begun + part * (reached - begun)); };
 
         FrameStats round_stats;
         const double round_start = goal.clock();
         Layers layers = render_frame(mode, round_view, snapshot, chosen, round_options, round_stats);
-        rounds.sample_seconds = (goal.clock() - round_start) / round_view.pixel_samples;
-        stats.add(round_stats), rounds.freedom += round_view.batches - 1, begun = reached;
-        if (round == 0)
+        rounds.work_seconds = (goal.clock() - round_start) / work;
+        rounds.freedom += round_view.batches - 1, begun = reached;
+        if (rounds.done == 0)
             result = std::move(layers);
         else
-            blend_layers(result, layers, static_cast<float>(round_stats.samples) / static_cast<float>(stats.samples));
+            blend_layers(result, layers, static_cast<float>(work / (rounds.done + work)));
+        rounds.done += work, rays += static_cast<double>(round_stats.camera_rays);
+        stats.add(round_stats);
+        stats.samples = static_cast<int>(std::lround(rays / pixels));
 
         // A picture of one sample is the end: it has no variance to go on from.
-        if (judge(rounds, result, stats) || stats.samples >= most_target_samples || rounds.freedom == 0) break;
-        samples = next_round(rounds, stats);
+        if (judge(rounds, result, stats) || rays >= most_target_samples * pixels || rounds.freedom == 0) break;
+        if (begin_allotment(rounds, result, stats)) rays = 0;
+        work = next_round(rounds, stats);
     }
     stats.goal_seconds = goal.clock() - rounds.start;
     if (options.progress) options.progress(1);

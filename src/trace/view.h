@@ -3,18 +3,17 @@
 #include "base/image.h"
 #include "scene/camera.h"
 #include "trace/jitter.h"
+#include "trace/pixel_filter.h"
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace tyndall {
-enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
-
 // How many times as many samples tiles of 4×4 pixels take.
 struct TileFactors {
     ivec2 low{0}; // the first tile's place
-    Image<uint8_t> factors;
+    Image<uint16_t> factors;
 
     int at(ivec2 tile) const {
         const ivec2 p = tile - low;
@@ -38,16 +37,20 @@ struct View {
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 
+    // A local light in the picture, around which the fog's glow changes within a pixel.
     struct Lamp {
-        vec2 at;      // pixels from the upper left
-        float radius; // pixels
+        vec2 at;               // pixels from the upper left
+        float radius = 0;      // pixels
+        vec2 axis{0, 1};       // unit: the way a spot shines, in the picture
+        float half_angle = pi; // radians to both sides of it; pi = all around
     };
-    std::vector<Lamp> lamps; // local lights in the picture, around which the fog's glow changes within a pixel
-    std::shared_ptr<const TileFactors> edges{}; // found for the picture; null = none
+    std::vector<Lamp> lamps;
+    std::shared_ptr<const TileFactors> edges{};    // found for the picture; null = none
+    std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take
 };
 
-// Samples of a pixel: more around the view's lamps and at its edges, the same for all pixels of a tile of 4×4. The
-// light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
+// Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile
+// of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
 
 // A sample as part of a low-discrepancy sequence: each pixel and batch has its own.
@@ -57,7 +60,12 @@ struct SamplePlace {
 };
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
 
-// Position of a sample in its pixel, in pixels from the upper left of the picture: importance sampled by the filter, so
-// every sample has weight one.
-vec2 sample_position(const View& view, ivec2 pixel, int sample);
+// Where a sample lies and how much its light counts: 1 on the average.
+struct SamplePoint {
+    vec2 position; // pixels from the upper left of the picture
+    float weight = 1;
+};
+
+// Importance sampled by the filter, so that weights are one, or by filter and glow where a lamp is seen.
+SamplePoint sample_point(const View& view, ivec2 pixel, int sample);
 }

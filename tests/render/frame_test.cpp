@@ -132,7 +132,7 @@ TEST(Frame, KeepsBetweenNearAndFar) {
     layers = rendered(mode_of(prepare_glow), view, snapshot);
     EXPECT_LT(layers.alpha.at(1, 1), 0.65f);
     EXPECT_TRUE(std::isinf(layers.depth.at(0, 0)));
-    const Ray corner = camera_ray(view.camera, view.size, sample_position(view, {0, 0}, 0));
+    const Ray corner = camera_ray(view.camera, view.size, sample_point(view, {0, 0}, 0).position);
     EXPECT_NEAR(layers.transmittance.at(0, 0), std::exp(-0.1f * 8 / -corner.direction.z), 1e-6f);
 }
 

@@ -16,7 +16,7 @@ View view_with(PixelFilter filter, int samples, float radius = 1) {
 
 TEST(View, OneSampleIsThePixelCentre) {
     for (const PixelFilter filter : {PixelFilter::box, PixelFilter::blackman_harris})
-        EXPECT_EQ(sample_position(view_with(filter, 1), ivec2(7, 3), 0), vec2(7.5f, 3.5f));
+        EXPECT_EQ(sample_point(view_with(filter, 1), ivec2(7, 3), 0).position, vec2(7.5f, 3.5f));
 }
 
 TEST(View, BoxSamplesAreStratifiedInEveryElementaryInterval) {
@@ -24,7 +24,7 @@ TEST(View, BoxSamplesAreStratifiedInEveryElementaryInterval) {
     for (const ivec2 cells : {ivec2(16, 1), ivec2(8, 2), ivec2(4, 4), ivec2(2, 8), ivec2(1, 16)}) {
         std::set<std::pair<int, int>> seen;
         for (int sample = 0; sample < 16; ++sample) {
-            const vec2 p = sample_position(view, ivec2(5, 9), sample) - vec2(5, 9);
+            const vec2 p = sample_point(view, ivec2(5, 9), sample).position - vec2(5, 9);
             EXPECT_TRUE(p.x >= 0 && p.x < 1 && p.y >= 0 && p.y < 1) << p.x << " " << p.y;
             seen.insert({static_cast<int>(p.x * cells.x), static_cast<int>(p.y * cells.y)});
         }
@@ -54,7 +54,7 @@ TEST(View, SamplesHaveTheMomentsOfTheirFilter) {
         const View view = view_with(filter, 4096, radius);
         glm::dvec2 mean(0), square(0);
         for (int sample = 0; sample < 4096; ++sample) {
-            const vec2 p = sample_position(view, ivec2(2, 2), sample) - vec2(2.5f);
+            const vec2 p = sample_point(view, ivec2(2, 2), sample).position - vec2(2.5f);
             EXPECT_LE(max_component(vec3(glm::abs(p), 0)), radius);
             mean += glm::dvec2(p) / 4096.0, square += glm::dvec2(p * p) / 4096.0;
         }
@@ -73,22 +73,67 @@ TEST(View, FewSamplesKeepTheMeanOverManyPixels) {
     for (int pixel = 0; pixel < 4096; ++pixel)
         for (int sample = 0; sample < 4; ++sample) {
             const ivec2 at(pixel % 64, pixel / 64);
-            mean += (sample_position(view, at, sample) - vec2(at) - 0.5f) / (4.0f * 4096);
+            mean += (sample_point(view, at, sample).position - vec2(at) - 0.5f) / (4.0f * 4096);
         }
     EXPECT_NEAR(mean.x, 0, 3e-3);
     EXPECT_NEAR(mean.y, 0, 3e-3);
 }
 
+// One of a lamp a third of a pixel off the middle: what g has for a mean over the filter, and how much samples spread.
+struct Spread {
+    double mean = 0, variance = 0;
+};
+template<class F> Spread spread(const View& view, F g) {
+    Spread result;
+    constexpr int count = 1 << 14;
+    for (int sample = 0; sample < count; ++sample) {
+        const SamplePoint point = sample_point(view, ivec2(9, 4), sample % view.pixel_samples);
+        const double value = point.weight * g(point.position), off = value - result.mean;
+        result.mean += off / (sample + 1), result.variance += off * (value - result.mean) / count;
+    }
+    return result;
+}
+
+TEST(View, SamplesAtALampKeepTheMean) {
+    for (const PixelFilter filter : {PixelFilter::box, PixelFilter::blackman_harris}) {
+        View plain = view_with(filter, 1 << 14), lamp = plain;
+        lamp.lamps.push_back({{9.7f, 4.4f}, 0.0f});
+        const auto slope = [](vec2 p) { return 1 + (p.x - 9.5) + 0.5 * (p.y - 4.5) * (p.y - 4.5); };
+        const Spread wanted = spread(plain, slope), seen = spread(lamp, slope);
+        EXPECT_NEAR(seen.mean, wanted.mean, 4 * std::sqrt(seen.variance / (1 << 14)));
+        EXPECT_LT(seen.variance, 2 * wanted.mean * wanted.mean); // smooth light grows no worse than this
+    }
+}
+
+TEST(View, GlowOfALampHasNextToNoNoise) {
+    View plain = view_with(PixelFilter::blackman_harris, 1 << 14), lamp = plain;
+    lamp.lamps.push_back({{9.7f, 4.4f}, 0.0f});
+    const auto glow = [](vec2 p) { return 1 / glm::distance(p, vec2(9.7f, 4.4f)); };
+    const Spread wanted = spread(plain, glow), seen = spread(lamp, glow);
+    EXPECT_NEAR(seen.mean, wanted.mean, 4 * std::sqrt(wanted.variance / (1 << 14)));
+    EXPECT_LT(seen.variance, wanted.variance / 20);
+}
+
+TEST(View, OnlyPixelsAtALampAreWeighted) {
+    View plain = view_with(PixelFilter::box, 16), lamp = plain;
+    lamp.lamps.push_back({{30.0f, 4.4f}, 0.0f});
+    for (int sample = 0; sample < 16; ++sample) {
+        const SamplePoint a = sample_point(plain, ivec2(9, 4), sample), b = sample_point(lamp, ivec2(9, 4), sample);
+        EXPECT_EQ(a.position, b.position);
+        EXPECT_EQ(b.weight, 1);
+    }
+}
+
 TEST(View, PixelSeedAndFrameDecorrelate) {
     View view = view_with(PixelFilter::box, 4);
-    const vec2 p = sample_position(view, ivec2(1, 2), 0) - vec2(1, 2);
-    EXPECT_NE(p, sample_position(view, ivec2(2, 1), 0) - vec2(2, 1));
-    EXPECT_EQ(p, sample_position(view, ivec2(1, 2), 0) - vec2(1, 2));
+    const vec2 p = sample_point(view, ivec2(1, 2), 0).position - vec2(1, 2);
+    EXPECT_NE(p, sample_point(view, ivec2(2, 1), 0).position - vec2(2, 1));
+    EXPECT_EQ(p, sample_point(view, ivec2(1, 2), 0).position - vec2(1, 2));
     view.frame = 1;
-    const vec2 next_frame = sample_position(view, ivec2(1, 2), 0) - vec2(1, 2);
+    const vec2 next_frame = sample_point(view, ivec2(1, 2), 0).position - vec2(1, 2);
     EXPECT_NE(p, next_frame);
     view.seed = 1;
-    EXPECT_NE(next_frame, sample_position(view, ivec2(1, 2), 0) - vec2(1, 2));
+    EXPECT_NE(next_frame, sample_point(view, ivec2(1, 2), 0).position - vec2(1, 2));
 }
 }
 }

@@ -1,0 +1,17 @@
+// Samples of pixels that show a lamp. The light that fog scatters along a ray falls with the ray's distance from the
+// lamp as 1 / distance, which has no variance in the limit: even samples never settle.
+#pragma once
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+namespace tyndall {
+// Local lights whose glow shows in the picture; none where it does not matter where in a pixel samples lie.
+std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot);
+
+// Whether the glow of a lamp changes much within the pixel around `center`.
+bool beside_lamp(const View& view, vec2 center);
+
+// Sampled by the filter times the brightness of the glow, with the weight that keeps means: one of many candidates, of
+// the filter and of the lamps, each as likely as both together ask for (Talbot, Cline & Egbert 2005).
+SamplePoint lamp_sample(const View& view, vec2 center, SamplePlace place);
+}
