@@ -100,16 +100,6 @@ std::string plain_key(std::string_view quoted) {
     return inside.find('\\') == inside.npos ? std::string(inside) : parse_json(quoted, "a key").string;
 }
 
-std::string plain_token(std::string_view token) {
-    std::string key;
-    for (size_t i = 0; i < token.size(); ++i) {
-        const bool escape = token[i] == '~' && i + 1 < token.size();
-        key += !escape ? token[i] : token[i + 1] == '1' ? '/' : '~';
-        i += escape;
-    }
-    return key;
-}
-
 std::optional<size_t> plain_index(std::string_view token) {
     size_t index = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
@@ -123,7 +113,7 @@ std::optional<TextSpan> child(std::string_view text, TextSpan parent, std::strin
         const std::optional<size_t> index = plain_index(token);
         return index && *index < elements.size() ? std::optional(elements[*index].value) : std::nullopt;
     }
-    const std::string key = plain_token(token);
+    const std::string key = json_pointer_key(token);
     for (const Element& element : elements)
         if (plain_key(element.key.of(text)) == key) return element.value;
     return {};
@@ -227,7 +217,7 @@ std::string with_json(std::string_view text, std::string_view pointer, std::stri
     if (const auto span = find_json(text, pointer)) return replaced(text, *span, value);
     const size_t slash = pointer.rfind('/');
     const std::string_view parent = pointer.substr(0, slash), token = pointer.substr(slash + 1);
-    const std::string key = quote_json(plain_token(token));
+    const std::string key = quote_json(json_pointer_key(token));
     const std::optional<TextSpan> container = find_json(text, parent);
     if (!container) {
         const std::string colon = colon_of(text, {}), pad = colon.size() > 1 ? " " : "";
@@ -261,6 +251,7 @@ std::string line_end_of(std::string_view text) {
 
 std::string json_number(float value) {
     if (!std::isfinite(value)) refuse("a number", "is not finite");
+    if (value == 0) return std::signbit(value) ? "-0.0" : "0"; // "-0" would be read as a whole number, without its sign
     char digits[64];
     char* const end = digits + sizeof digits;
     const bool whole = value == std::floor(value) && std::abs(value) < 1e7f;

@@ -48,7 +48,7 @@ struct LightPlace {
 };
 LightPlace light_place(const Scene& scene, size_t light, double seconds);
 
-// The value at a moment.
+// The value at a moment; a range is infinite where none is given.
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds);
 bool is_keyed(const Scene& scene, const Property& property, size_t index);
 }

@@ -41,15 +41,14 @@ void go_to(SceneSession& session, size_t steps) {
 
 // The file's text and the scene made of that very text.
 SceneSession read_scene_session(const std::filesystem::path& file, const LoadOptions& options) {
-    SceneSession session;
     for (int attempt = 0; attempt < 10; ++attempt) {
-        session.text = read_file(file);
+        SceneSession session;
+        session.text = session.on_disk = read_file(file);
         session.scene = load_scene(file, options);
-        if (read_file(file) == session.text) break;
+        session.has_file = true;
+        if (read_file(file) == session.text) return session;
     }
-    session.has_file = true;
-    session.on_disk = session.text;
-    return session;
+    fail(ExitCode::unreadable, file.string(), "keeps changing while it is read");
 }
 
 SceneSession read_session(const std::filesystem::path& file, const LoadOptions& options) {

@@ -38,7 +38,8 @@ struct SceneSession {
 // A scene file, .gltf, .glb or .vdb. Throws Error.
 SceneSession open_session(const std::filesystem::path& file, const LoadOptions& options = {});
 
-// Applies an edit. Edits in a row with the same drag, not 0, are one step to undo. Throws Error as apply does.
+// Applies an edit. Every drag has a number of its own: edits in a row with the same one are one step to undo; 0 stands
+// alone. Throws Error as apply does.
 void edit(SceneSession& session, const Edit& edit, uint64_t drag = 0);
 
 bool undo(SceneSession& session); // false when there is nothing

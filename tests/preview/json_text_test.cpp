@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "base/json.h"
+#include "base/json_pointer.h"
 #include "base/random.h"
 #include "preview/json_text.h"
 
@@ -13,6 +14,44 @@ namespace {
 std::string_view found(std::string_view text, std::string_view pointer) {
     const auto span = find_json(text, pointer);
     return span ? span->of(text) : "nothing";
+}
+
+// Documents of every shape, with white space and comments wherever they may stand.
+struct Documents {
+    uint32_t key, count = 0;
+
+    uint32_t below(uint32_t limit) {
+        return static_cast<uint32_t>(to_unit(hash(count++, key)) * static_cast<float>(limit));
+    }
+    std::string space() {
+        static const std::string_view kinds[] = {
+            "", "", " ", "\n", "\r\n  ", "\t", " /* , \"}] */ ", " // ] {\" \\\n", "    "};
+        return std::string(kinds[below(9)]);
+    }
+    std::string scalar() {
+        static const std::string_view kinds[] = {"0",   "-1.5e+3",    "true",   "null",          "\"\"",
+                                                 "1E2", "\"a\\\"b\"", "\"//\"", "\"\\u00e4/~\"", "\"\\\\\""};
+        return std::string(kinds[below(10)]);
+    }
+    std::string value(int depth) {
+        if (depth == 0 || below(3) == 0) return scalar();
+        const bool object = below(2) == 0;
+        std::string text(1, object ? '{' : '[');
+        const uint32_t size = below(4);
+        for (uint32_t i = 0; i < size; ++i) {
+            text += (i ? "," : "") + space();
+            if (object) text += "\"k/" + std::to_string(i) + (i == 1 ? "\\u007e" : "") + "\"" + space() + ":" + space();
+            text += value(depth - 1) + space();
+        }
+        return text + (size ? "" : space()) + (object ? '}' : ']');
+    }
+};
+
+// Every place in a document.
+void list_places(Json& value, const std::string& pointer, std::vector<std::pair<std::string, Json*>>& places) {
+    places.push_back({pointer, &value});
+    for (size_t i = 0; i < value.items.size(); ++i) list_places(value.items[i], json_pointer(pointer, i), places);
+    for (auto& [name, member] : value.members) list_places(member, json_pointer(pointer, name), places);
 }
 
 constexpr std::string_view nasty = "\xef\xbb\xbf// a note with \"quotes\" and { brackets\r\n"
@@ -48,6 +87,37 @@ TEST(JsonText, ReplacesAValueAndNothingElse) {
     const size_t place = nasty.find("-2E+5");
     EXPECT_EQ(text, std::string(nasty.substr(0, place)) + "3" + std::string(nasty.substr(place + 5)));
     EXPECT_EQ(with_json("{\"a\": 1, \"b\": [1, 2]} ", "/b", "\"x\""), "{\"a\": 1, \"b\": \"x\"} ");
+}
+
+// Whatever is replaced or put in, wherever: a parser reads the document as before, with that one change.
+TEST(JsonText, AnyChangeToAnyDocumentIsThatChange) {
+    for (uint32_t i = 0; i < 1500; ++i) {
+        Documents random{i};
+        const std::string text = random.space() + random.value(4) + random.space();
+        Json tree = parse_json(text, "random");
+        std::vector<std::pair<std::string, Json*>> places;
+        list_places(tree, "", places);
+        const auto& [pointer, place] = places[random.below(static_cast<uint32_t>(places.size()))];
+        const auto span = find_json(text, pointer);
+        ASSERT_TRUE(span) << pointer << "\n" << text;
+        ASSERT_EQ(format_json(parse_json(span->of(text), "found")), format_json(*place)) << pointer << "\n" << text;
+
+        const Json seven = parse_json("[7]", "new");
+        std::string changed;
+        if (place->kind == Json::Kind::object && random.below(2)) {
+            changed = with_json(text, json_pointer(pointer, "new~/"), "[7]");
+            place->members.emplace_back("new~/", seven);
+        } else if (place->kind == Json::Kind::array && random.below(2)) {
+            const size_t index = random.below(static_cast<uint32_t>(place->items.size()) + 1);
+            changed = with_json_item(text, pointer, index, "[7]");
+            place->items.insert(place->items.begin() + static_cast<std::ptrdiff_t>(index), seven);
+        } else {
+            changed = with_json(text, pointer, "[7]");
+            EXPECT_EQ(changed, text.substr(0, span->begin) + "[7]" + text.substr(span->end));
+            *place = seven;
+        }
+        ASSERT_EQ(format_json(parse_json(changed, "changed")), format_json(tree)) << text << "\n->\n" << changed;
+    }
 }
 
 TEST(JsonText, PutsAMemberInAsItsNeighboursAre) {
@@ -90,6 +160,11 @@ TEST(JsonText, PutsItemsAnywhereIntoAList) {
     EXPECT_THROW(with_json_item("{\"k\": 1}", "/k", 0, "7"), Error);
 }
 
+TEST(JsonText, PointersSpellKeysWithTheirSlashes) {
+    for (const char* key : {"", "a/b", "~", "~1", "/~0/", "plain"})
+        EXPECT_EQ(json_pointer_key(json_pointer("", key).substr(1)), key);
+}
+
 TEST(JsonText, TellsIndentationAndLineEnds) {
     EXPECT_EQ(indentation_of("{\n\t\"a\": 1}"), "\t");
     EXPECT_EQ(indentation_of("// x\n{\n   \"a\": 1}"), "   ");
@@ -119,8 +194,8 @@ TEST(JsonText, NumbersKeepTheirBits) {
     EXPECT_EQ(json_number(100000), "100000");
     EXPECT_EQ(json_number(-2.5f), "-2.5");
     for (uint32_t i = 0; i < 200000; ++i) {
-        const float value = std::bit_cast<float>(hash(i, 17u));
-        if (!std::isfinite(value) || value == 0) continue;
+        const float value = i < 2 ? std::bit_cast<float>(i << 31) : std::bit_cast<float>(hash(i, 17u)); // 0, -0, any
+        if (!std::isfinite(value)) continue;
         const float read = static_cast<float>(parse_json(json_number(value), "number").number);
         ASSERT_EQ(std::bit_cast<uint32_t>(read), std::bit_cast<uint32_t>(value)) << json_number(value);
     }
