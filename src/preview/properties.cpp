@@ -21,6 +21,9 @@ bool has_mean_cosine(const Scene& scene, size_t i) {
 }
 bool is_height(const Scene& scene, size_t i) { return scene.media[i].kind == MediumKind::height; }
 bool is_noise(const Scene& scene, size_t i) { return scene.media[i].recipe.has_value(); }
+bool has_bounds(const Scene& scene, size_t i) {
+    return is_finite(scene.media[i].bounds.low) && is_finite(scene.media[i].bounds.high);
+}
 bool is_own_camera(const Scene& scene, size_t i) { return scene.cameras[i].node < 0; }
 bool has_view_angle(const Scene& scene, size_t i) {
     return is_own_camera(scene, i) && scene.cameras[i].ortho_height == 0;
@@ -85,6 +88,11 @@ const Property table[] = {
      [](Scene& s, size_t i) -> Slot { return &s.media[i].rotate; }, always},
     {Part::medium, "scale", vector, "", -1e6f, 1e6f, 0.1f, 10, "Factors along the fog's own axes, not 0",
      [](Scene& s, size_t i) -> Slot { return &s.media[i].scale; }, always},
+
+    {Part::medium, "bounds/low", vector, "m", -far, far, -20, 20, "Lower corner of the box the fog fills",
+     [](Scene& s, size_t i) -> Slot { return &s.media[i].bounds.low; }, has_bounds},
+    {Part::medium, "bounds/high", vector, "m", -far, far, -20, 20, "Upper corner of the box the fog fills",
+     [](Scene& s, size_t i) -> Slot { return &s.media[i].bounds.high; }, has_bounds},
 
     // cameras that are not the glTF's
     {Part::camera, "position", vector, "m", -far, far, -10, 10, "Where the eye is",

@@ -68,6 +68,8 @@ void check(const LightSource& light, const std::string& place) {
 void check(const MediumSource& medium, const std::string& place) {
     for (const vec3 scale : medium.scale.values)
         if (scale.x * scale.y * scale.z == 0) refuse(place, "must not be 0: the fog would have no volume");
+    if (!glm::all(glm::lessThan(medium.bounds.low, medium.bounds.high)))
+        refuse(place, "the lower corner of the bounds must be less than the upper one");
     for (const float g : medium.g.values)
         if (medium.phase == PhaseKind::schlick && std::abs(g) > largest_schlick_g)
             refuse(place, "the phase function \"schlick\" goes up to 0.5 only");

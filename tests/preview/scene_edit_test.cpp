@@ -81,11 +81,11 @@ TEST(SceneEdit, ListsWhatEachThingHas) {
     EXPECT_THAT(names(Part::light, 6),
                 ElementsAre("direction", "color", "intensity", "volume_scale", "surface_scale", "angle", "shadows"));
     EXPECT_THAT(names(Part::medium, 1), ElementsAre("extinction", "albedo", "g", "emission", "base", "falloff",
-                                                    "translate", "rotate", "scale"));
+                                                    "translate", "rotate", "scale", "bounds/low", "bounds/high"));
     EXPECT_THAT(names(Part::medium, 2),
                 ElementsAre("extinction", "albedo", "g", "emission", "wind", "translate", "rotate", "scale"));
-    EXPECT_THAT(names(Part::medium, 3),
-                ElementsAre("extinction", "albedo", "emission", "translate", "rotate", "scale"));
+    EXPECT_THAT(names(Part::medium, 3), ElementsAre("extinction", "albedo", "emission", "translate", "rotate", "scale",
+                                                    "bounds/low", "bounds/high"));
     EXPECT_THAT(names(Part::camera, 0), ElementsAre("position", "target", "vertical_fov"));
     EXPECT_THAT(names(Part::scene, 0), ElementsAre("exposure", "ambient", "background/sky/zenith",
                                                    "background/sky/horizon", "background/sky/ground"));
@@ -200,6 +200,7 @@ TEST(SceneEdit, RefusesWhatASceneFileMayNotSayAndChangesNothing) {
     EXPECT_NE(refusal(scene, "lights/stage/inner_cone", "9", 0).find("outer_cone"), std::string::npos);
     EXPECT_NE(refusal(scene, "lights/5/direction", "0 0 0"), "");
     EXPECT_NE(refusal(scene, "media/0/scale", "1 0 1"), "");
+    EXPECT_NE(refusal(scene, "media/0/bounds/low", "-4 4 -4").find("upper"), std::string::npos);
     EXPECT_NE(refusal(scene, "cameras/eye/position", "0 1 0"), "");
     EXPECT_NE(refusal(scene, "media/3/g", "0.1").find("there is extinction"), std::string::npos);
     EXPECT_NE(refusal(scene, "lights/nobody/intensity", "1").find("there is"), std::string::npos);
