@@ -30,9 +30,8 @@ vec3 across_view(const Camera& camera, ivec2 size, vec3 place, vec2 pixel) {
 
 // The point nearest to a pixel on the line that an axis through a point draws in the picture.
 std::optional<vec2> on_drawn_axis(const Camera& camera, ivec2 size, vec3 place, vec3 axis, vec2 pixel) {
-    const vec3 step = 16 * pixel_span(camera, size, place) * axis; // away from the eye, where it surely is seen
-    const vec3 other = glm::dot(axis, camera.forward) < 0 ? place - step : place + step;
-    const std::optional<vec2> a = pixel_of(camera, size, place), b = pixel_of(camera, size, other);
+    const vec3 step = 16 * pixel_span(camera, size, place) * axis;
+    const std::optional<vec2> a = pixel_of(camera, size, place), b = pixel_of(camera, size, place + step);
     if (!a || !b || *a == *b) return {};
     const vec2 along = glm::normalize(*b - *a);
     return *a + glm::dot(pixel - *a, along) * along;

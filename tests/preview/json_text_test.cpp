@@ -193,6 +193,9 @@ TEST(JsonText, NumbersKeepTheirBits) {
     EXPECT_EQ(json_number(400), "400");
     EXPECT_EQ(json_number(100000), "100000");
     EXPECT_EQ(json_number(-2.5f), "-2.5");
+    // 7.038531e-26 is the shortest name of this float, but as a double it lies halfway to the next one.
+    const float halfway = std::bit_cast<float>(0x15ae43fdu);
+    EXPECT_EQ(static_cast<float>(parse_json(json_number(halfway), "number").number), halfway);
     for (uint32_t i = 0; i < 200000; ++i) {
         const float value = i < 2 ? std::bit_cast<float>(i << 31) : std::bit_cast<float>(hash(i, 17u)); // 0, -0, any
         if (!std::isfinite(value)) continue;

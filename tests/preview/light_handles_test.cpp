@@ -47,8 +47,8 @@ TEST(LightHandles, IconsStandWhereTheLightsAre) {
 }
 
 TEST(LightHandles, PicksTheNearestIconWithinReach) {
-    const Scene scene = scene_of(
-        {lamp(LightKind::point, {0, 0, 0}), lamp(LightKind::point, {1.5f, 0, 0}), lamp(LightKind::spot, {0, 0, 5})});
+    const Scene scene = scene_of({lamp(LightKind::point, {0, 0, 0}), lamp(LightKind::point, {1.5f, 0, 0}),
+                                  lamp(LightKind::spot, {0, 0, 5}), lamp(LightKind::point, {0, 0, -5})});
     const auto pick = [&](vec2 pixel) { return pick_light(eye, size, pixel, scene, 0, 12); };
     EXPECT_EQ(pick({208, 100}), 1u) << "7 pixels from the second, 8 from the first";
     EXPECT_EQ(pick({205, 104}), 2u) << "behind one another: the nearer";

@@ -53,6 +53,10 @@ TEST(KeyPlace, FindsTheKeyAtAMomentOrTheGapForANewOne) {
     EXPECT_EQ(at(-0.5, true).index, 2u);
     EXPECT_EQ(at(-0.5, true).time, 1.5f);
     EXPECT_FALSE(key_place(std::vector<float>{3}, true, 4, 24).there);
+    // Of two keys within reach the nearer one.
+    const std::vector<float> close{1, 1.003f};
+    EXPECT_EQ(key_place(close, false, 1.002, 24).index, 1u);
+    EXPECT_EQ(key_place(close, false, 1.0012, 24).index, 0u);
     // Where floats are further apart than the reach, a moment that rounds onto a key is that key.
     const std::vector<float> late{999999.9375f, 1e6f};
     EXPECT_TRUE(key_place(late, false, 999999.95, 1000).there);

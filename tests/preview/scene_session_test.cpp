@@ -84,6 +84,7 @@ TEST(SceneSession, ADragOfSeveralValuesIsDoneAgainAsItEnded) {
         set(session, path, value, 1);
     set(session, "lights/3/intensity", "1", 1, 0.25), set(session, "lights/3/intensity", "2", 1, 0.251);
     set(session, "lights/3/intensity", "3", 1, 0.25);
+    set(session, "lights/3/intensity", "4", 1, 0.75); // while time goes on
     const std::vector<std::string> ended = state_of(session.scene);
     EXPECT_EQ(session.steps.size(), 1u);
     undo(session), redo(session);
