@@ -29,7 +29,7 @@ TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
     const Folder folder;
     const std::string text = R"({"tyndall": 1, "lights": [{"name": "a", "type": "sun", "direction": [0, -1, 0],
         "intensity": 1}], "media": [{"type": "noise", "recipe": "fog/dust.json"}]})";
-    folder.write("fog/dust.json", "{}");
+    folder.write("fog/dust.json", R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 0.1})");
     EXPECT_THROW(load_scene_text("{", folder / "no.json"), Error);
     EXPECT_THROW(load_scene_text(R"({"tyndall": 2})", folder / "no.json"), Error);
     const Scene scene = load_scene_text(text, folder / "no.json"), other = loaded(folder, text);
