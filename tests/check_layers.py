@@ -3,7 +3,7 @@ import pathlib
 import re
 import sys
 
-LAYERS = ["base", "volume", "scene", "trace", "modes", "render", "measure"]
+LAYERS = ["base", "volume", "scene", "trace", "modes", "render", "measure", "preview"]
 OWNERS = {  # header prefix -> where it may be included
     "tbb/": ["src/base"], "nlohmann/": ["src/base"], "valijson/": ["src/base"], "openvdb/": ["src/volume/vdb"],
     "nanovdb/": ["tests"], "embree3/": ["src/trace/occluders"], "tiny_gltf": ["src/scene"],

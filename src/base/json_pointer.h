@@ -23,6 +23,17 @@ inline std::string json_pointer(std::string_view parent, size_t index) {
     return std::string(parent) + "/" + std::to_string(index);
 }
 
+// The key that a part of a pointer stands for: "a~1b" is "a/b".
+inline std::string json_pointer_key(std::string_view part) {
+    std::string key;
+    for (size_t i = 0; i < part.size(); ++i) {
+        const bool escape = part[i] == '~' && i + 1 < part.size();
+        key += !escape ? part[i] : part[i + 1] == '1' ? '/' : '~';
+        i += escape;
+    }
+    return key;
+}
+
 // "scenes/a.json: /lights/0"; the file alone for the root.
 inline std::string json_place(std::string_view file, std::string_view pointer) {
     return std::string(file) + (pointer.empty() ? "" : ": ") + std::string(pointer);

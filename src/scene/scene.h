@@ -34,6 +34,7 @@ struct CameraSource {
     Keyed<vec3> position{vec3(0, 1, 4)}, target{vec3(0)}, up{vec3(0, 1, 0)}; // ... else these
     Keyed<float> vertical_fov{0.8f};                                         // radians
     float ortho_height = 0, near = 0.01f, far = infinity;
+    std::string entry; // JSON pointer of what the scene file says of it; empty = nothing
 };
 
 struct LightSource {
@@ -48,6 +49,8 @@ struct LightSource {
     Keyed<float> radius{0.0f}, angle{0.0f};
     float range = infinity;
     bool shadows = true;
+    std::optional<Keyed<vec3>> target; // what `direction` was made from
+    std::string entry;                 // as of a camera
 };
 
 enum class MediumKind { homogeneous, height, noise, vdb };
@@ -60,11 +63,13 @@ struct MediumSource {
     PhaseKind phase = PhaseKind::henyey_greenstein;
     Box bounds = everywhere(); // homogeneous, height: in the medium's own space
     Keyed<vec3> translation{vec3(0)}, scale{vec3(1)};
+    Keyed<vec3> rotate{vec3(0)}; // degrees about X, then Y, then Z: what `rotation` is made from
     Keyed<quat> rotation{quat(1, 0, 0, 0)};
     Keyed<float> height_base{0.0f}, height_falloff{1.0f};
     std::optional<FogRecipe> recipe; // noise
     float voxel_size = 0;            // noise: instead of the recipe's, metres
     VdbSequence sequence;            // vdb
+    std::string entry;               // as of a camera
 };
 
 enum class BackgroundKind { color, sky, image };
@@ -73,6 +78,7 @@ struct Background {
     BackgroundKind kind = BackgroundKind::color;
     Keyed<vec3> color{vec3(0)};                   // color; horizon of the sky
     Keyed<vec3> zenith{vec3(0)}, ground{vec3(0)}; // sky
+    bool own_ground = false;                      // else it is the horizon's
     std::shared_ptr<const Image<vec3>> image;     // image
     bool lat_long = false;                        // wrapped around the scene; else a plate behind the picture
     Keyed<float> intensity{1.0f};
@@ -120,6 +126,9 @@ struct LoadOptions {
 
 // Reads a scene file, or a bare .gltf/.glb (framed by a default camera when it has none). Throws Error.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
+
+// A scene from the text of a scene file that need not exist: paths in it are relative to where `file` would be.
+Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options = {});
 
 mat4 node_matrix(const Scene& scene, int node, double seconds); // local to world
 }

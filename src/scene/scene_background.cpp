@@ -36,6 +36,7 @@ void read_background(const Field& root, Scene& scene) {
     background.kind = BackgroundKind::sky;
     background.zenith = keyed_color(sky.member("zenith"));
     background.color = keyed_color(sky.member("horizon"));
-    background.ground = sky.member("ground") ? keyed_color(sky.member("ground")) : background.color;
+    background.own_ground = static_cast<bool>(sky.member("ground"));
+    background.ground = background.own_ground ? keyed_color(sky.member("ground")) : background.color;
 }
 }

@@ -14,6 +14,7 @@ void check_aim(const CameraSource& camera, const Field& field) {
 CameraSource camera_source(const Field& field, std::string_view default_name) {
     CameraSource camera;
     camera.name = field.json->string_or("name", default_name);
+    camera.entry = field.pointer;
     camera.position = keyed_vector(field.member("position"));
     camera.target = keyed_vector(field.member("target"));
     if (const Field up = field.member("up")) camera.up = keyed_vector(up);

@@ -50,9 +50,7 @@ bool is_dark(const Scene& scene) {
            std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
 }
 
-void read_scene_file(Scene& scene, const LoadOptions& options) {
-    const Json document = read_json(scene.file, scene_schema);
-    add_input(scene, scene.file);
+void read_scene_document(const Json& document, Scene& scene, const LoadOptions& options) {
     const Field root{&document, scene.file.string(), ""};
     read_general(root, scene);
     if (const Field gltf = root.member("gltf")) {
@@ -104,8 +102,20 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
         load_gltf(file, options, scene);
         add_missing_light_and_fog(scene);
     } else {
-        read_scene_file(scene, options);
+        const Json document = read_json(scene.file, scene_schema);
+        add_input(scene, scene.file);
+        read_scene_document(document, scene, options);
     }
+    add_missing_camera(scene);
+    return scene;
+}
+
+Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+    Scene scene;
+    scene.file = file;
+    const Json document = parse_json(text, file.string());
+    check_schema(document, scene_schema, file.string());
+    read_scene_document(document, scene, options);
     add_missing_camera(scene);
     return scene;
 }

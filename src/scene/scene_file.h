@@ -13,6 +13,9 @@ void read_media(const Field& root, Scene& scene);
 void read_background(const Field& root, Scene& scene);
 void read_billboards(const Field& root, Scene& scene); // after the lights: each names one
 
+// Whether the inner cone never exceeds the outer one, at their keys.
+bool cones_fit(const LightSource& light);
+
 // The path a field gives, relative to the scene file. Throws Error (unreadable) when there is no such regular file.
 std::filesystem::path named_file(const Field& field, const Scene& scene);
 

@@ -29,17 +29,6 @@ void check_fields(const Field& field, LightKind kind) {
         refuse(target, "and direction exclude each other");
 }
 
-void check_cones(const LightSource& light, const Field& field) {
-    const auto check = [&](float seconds) {
-        if (light.inner_cone.at(seconds) > light.outer_cone.at(seconds))
-            refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
-                   "outer_cone must not be less than inner_cone, at any moment");
-    };
-    check(0);
-    for (const float seconds : light.inner_cone.times) check(seconds);
-    for (const float seconds : light.outer_cone.times) check(seconds);
-}
-
 // Where the light is and shines: given here, or left with the node of the glTF.
 void read_placement(const Field& field, LightSource& light) {
     const Field position = field.member("position"), target = field.member("target");
@@ -57,7 +46,9 @@ void read_placement(const Field& field, LightSource& light) {
     light.node = -1;
     if (position) light.position = keyed_vector(position);
     if (direction) light.direction = keyed_vector(direction);
-    if (target) light.direction = difference(keyed_vector(target), light.position, target);
+    light.target.reset();
+    if (target) light.target = keyed_vector(target);
+    if (target) light.direction = difference(*light.target, light.position, target);
     for (const vec3 value : light.direction.values)
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
 }
@@ -76,7 +67,9 @@ void read_fields(const Field& field, LightSource& light) {
     number("angle", light.angle, keyed_degrees);
     if (const Field range = field.member("range")) light.range = read_number(range);
     light.shadows = field.json->boolean_or("shadows", light.shadows);
-    if (light.kind == LightKind::spot) check_cones(light, field);
+    if (light.kind == LightKind::spot && !cones_fit(light))
+        refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
+               "outer_cone must not be less than inner_cone, at any moment");
 }
 
 LightSource* find(Scene& scene, const std::string& name) {
@@ -100,6 +93,12 @@ LightSource new_light(const Field& field, const Scene& scene) {
 }
 }
 
+bool cones_fit(const LightSource& light) {
+    const auto fits = [&](float seconds) { return !(light.inner_cone.at(seconds) > light.outer_cone.at(seconds)); };
+    return fits(0) && std::ranges::all_of(light.inner_cone.times, fits) &&
+           std::ranges::all_of(light.outer_cone.times, fits);
+}
+
 void read_lights(const Field& root, Scene& scene) {
     const Field lights = root.member("lights");
     if (!lights) return;
@@ -115,6 +114,7 @@ void read_lights(const Field& root, Scene& scene) {
         LightSource light = known ? *known : new_light(field, scene);
         if (!known && find(scene, light.name)) refuse(field, "the name \"" + light.name + "\" is taken");
         check_fields(field, light.kind);
+        light.entry = field.pointer;
         read_placement(field, light);
         read_fields(field, light);
         if (known)

@@ -21,7 +21,7 @@ PhaseKind phase_named(std::string_view name) {
 
 void read_transform(const Field& field, MediumSource& medium) {
     if (const Field translate = field.member("translate")) medium.translation = keyed_vector(translate);
-    if (const Field rotate = field.member("rotate")) medium.rotation = keyed_rotation(rotate);
+    if (const Field rotate = field.member("rotate")) medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
     const Field scale = field.member("scale");
     if (!scale) return;
     medium.scale = keyed_color(scale); // one number or three, as a colour
@@ -71,6 +71,7 @@ void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
     medium.albedo = medium.recipe->albedo;
     medium.g = medium.recipe->g;
     if (const Field voxel_size = field.member("voxel_size")) medium.voxel_size = read_number(voxel_size);
+    if (const Field wind = field.member("wind")) medium.recipe->wind = read_vector(wind);
 }
 
 // One or three numbers of a metadata text such as "0.9" or "[0.9, 0.8, 0.7]"; empty when there are none.
@@ -129,6 +130,7 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
 
 MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     MediumSource medium;
+    medium.entry = field.pointer;
     medium.kind = kind_named(field.member("type").json->string);
     medium.name = field.json->string_or("name", "medium " + std::to_string(index + 1));
     if (medium.kind == MediumKind::noise) read_noise(field, medium, scene);

@@ -72,8 +72,7 @@ Keyed<float> keyed_degrees(const Field& field) { return keyed<float>(field, read
 Keyed<vec3> keyed_vector(const Field& field) { return keyed<vec3>(field, read_vector); }
 Keyed<vec3> keyed_color(const Field& field) { return keyed<vec3>(field, read_color); }
 
-Keyed<quat> keyed_rotation(const Field& field) {
-    const Keyed<vec3> degrees = keyed_vector(field);
+Keyed<quat> rotation_of(const Keyed<vec3>& degrees) {
     Keyed<quat> result;
     result.loop = degrees.loop;
     result.values.clear();

@@ -31,7 +31,7 @@ Keyed<vec3> keyed_vector(const Field& field);
 Keyed<vec3> keyed_color(const Field& field);
 
 // Degrees about X, then Y, then Z. Turns between keys stay as written, however far: they are cut into small steps.
-Keyed<quat> keyed_rotation(const Field& field);
+Keyed<quat> rotation_of(const Keyed<vec3>& degrees);
 
 // a - b at every moment: exact where both move alike, else in small straight steps.
 // Throws Error when both loop with different periods; `field` is what the message names.

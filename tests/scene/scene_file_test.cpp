@@ -25,6 +25,22 @@ TEST(SceneFile, TheLeastThatIsAScene) {
     EXPECT_EQ(scene.inputs[0], folder / "scene.json");
 }
 
+TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
+    const Folder folder;
+    const std::string text = R"({"tyndall": 1, "lights": [{"name": "a", "type": "sun", "direction": [0, -1, 0],
+        "intensity": 1}], "media": [{"type": "noise", "recipe": "fog/dust.json"}]})";
+    folder.write("fog/dust.json", R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 0.1})");
+    EXPECT_THROW(load_scene_text("{", folder / "no.json"), Error);
+    EXPECT_THROW(load_scene_text(R"({"tyndall": 2})", folder / "no.json"), Error);
+    const Scene scene = load_scene_text(text, folder / "no.json"), other = loaded(folder, text);
+    EXPECT_EQ(scene.file, folder / "no.json");
+    EXPECT_EQ(scene.inputs, std::vector{folder / "fog/dust.json"});
+    EXPECT_EQ(scene.warnings.size(), other.warnings.size());
+    EXPECT_EQ(scene.lights[0].entry, "/lights/0");
+    EXPECT_EQ(scene.media[0].entry, "/media/0");
+    EXPECT_EQ(scene.cameras[0].entry, "") << "made up";
+}
+
 TEST(SceneFile, GeneralFields) {
     const Folder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "frame_rate": 25, "frames": "-4--2", "resolution": [320, 200],
@@ -142,7 +158,7 @@ TEST(SceneFile, Media) {
         {"type": "homogeneous", "extinction": {"keys": [[0, 1], [1, 3]]}, "albedo": 0.5, "bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]},
          "translate": [0, 1, 0], "rotate": [0, 90, 0], "scale": 2, "emission": [0, 1, 0]},
         {"name": "ground", "type": "height", "extinction": 0.1, "falloff": 4, "base": 1, "phase": "rayleigh"},
-        {"type": "noise", "recipe": "dust.json", "voxel_size": 0.05},
+        {"type": "noise", "recipe": "dust.json", "voxel_size": 0.05, "wind": [0, 0, -0.5]},
         {"type": "noise", "recipe": "dust.json", "extinction": 9, "albedo": [1, 1, 0.5], "g": -0.2, "phase": "schlick"}]})");
     ASSERT_EQ(scene.media.size(), 4u);
     const MediumSource& box = scene.media[0];
@@ -159,6 +175,7 @@ TEST(SceneFile, Media) {
     EXPECT_EQ(scene.media[2].albedo.at(0), vec3(0.9f, 0.8f, 0.7f));
     EXPECT_FLOAT_EQ(scene.media[2].g.at(0), 0.4f);
     EXPECT_FLOAT_EQ(scene.media[2].voxel_size, 0.05f);
+    EXPECT_EQ(scene.media[2].recipe->wind, vec3(0, 0, -0.5f)) << "instead of the recipe's";
     EXPECT_EQ(scene.media[3].extinction.at(0), 9) << "from the scene";
     EXPECT_FLOAT_EQ(scene.media[3].g.at(0), -0.2f);
     EXPECT_EQ(scene.inputs.size(), 2u);
