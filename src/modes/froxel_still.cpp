@@ -27,11 +27,18 @@ bool same(const Medium& a, const Medium& b) {
 // Whether the slices of a grid still cover the fog and are hardly wider: froxels that stay where they are lose nothing.
 bool serve(const FroxelGrid& grid, int slices, const FogDepths& depths) {
     constexpr float wider = 1.1f;
-    const float near = grid.faces.front(), far = grid.faces[static_cast<size_t>(slices)];
-    const float end = std::max(depths.far, depths.end);
-    const bool covered = near <= depths.near && depths.far <= far && end <= grid.faces.back();
-    return covered && far - near <= wider * (depths.far - depths.near) &&
-           grid.faces.back() - near <= wider * (end - depths.near);
+    const float near = grid.faces.front(), far = grid.faces[static_cast<size_t>(slices)], end = grid.faces.back();
+    const float needed = std::max(depths.far, depths.end);
+    return near <= depths.near && depths.far <= far && needed <= end &&
+           far - near <= wider * (depths.far - depths.near) && end - near <= wider * (needed - depths.near);
+}
+
+// With room for fog that moves on.
+FogDepths widened(FogDepths depths) {
+    constexpr float room = 1.0f / 32;
+    const float margin = room * (depths.far - depths.near);
+    depths.near = std::max(depths.near - margin, 0.0f), depths.far += margin, depths.end *= 1 + room;
+    return depths;
 }
 
 bool same(const std::vector<Medium>& a, const std::vector<Medium>& b) {
@@ -55,12 +62,13 @@ FroxelStill look_at_scene(const View& view, const Snapshot& snapshot, const Frox
     still.tiles = still.same_view ? before->tiles
                                   : *kept(snapshot, KeptKey().add(snapshot.occluders).add(view).add(settings.tile),
                                           [&] { return make_froxel_tiles(still.grid, snapshot); });
-    const FogDepths depths = fog_depths(still.grid, still.tiles, snapshot);
+    FogDepths depths = fog_depths(still.grid, still.tiles, snapshot);
     if (!(depths.far > depths.near)) return still;
     if (still.same_view && serve(before->grid, settings.depth_slices, depths)) {
-        still.grid = before->grid, still.same_froxels = true;
+        still.same_froxels = true;
         return still;
     }
+    if (still.same_view) depths = widened(depths);
     set_slices(still.grid, depths.near, depths.far, settings.depth_slices, settings.depth_growth, depths.end,
                tail_slices);
     set_trust(still.grid, still.tiles);
