@@ -171,7 +171,7 @@ std::vector<StressCase> stress_fog() {
                    {0.1, -0.1, 1e-3, 1e-6, 0}, all, "", in_the_face),
         StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all, thick,
                    eye_in_fog),
-        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3}, all,
+        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3, 2}, all,
                    "few long slices only|its glow is even|few for its glow", endless),
         StressCase("ground-fog", group, "fog that clings to the ground", "falloff", "m", {10, 1, 0.3, 0.05, 0.005}, all,
                    thick, layer),

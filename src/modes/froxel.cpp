@@ -80,8 +80,14 @@ void set_shadows(FroxelFrame& frame, FroxelStill& still) {
     }
 }
 
+// What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.
+FroxelLight remembered(std::shared_ptr<FroxelMemory> memory, const FroxelStill& still) {
+    if (!still.same_froxels) return recall(*memory, still.grid, still.tiles);
+    return memory.use_count() == 1 ? std::move(memory->light) : memory->light;
+}
+
 // This frame's light with what the history knows of it; the history then knows this frame.
-FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<const FroxelMemory>& memory) {
+FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<FroxelMemory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
     const float view_depth = frame.picture.view_depth;
     FroxelLight light;
@@ -91,21 +97,19 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared
         sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
         clean(still.grid, still.tiles, light);
     } else {
-        FroxelLight found;
-        if (!still.same_fog) found = recall(*memory, still.grid, still.tiles);
-        const FroxelLight& remembered = still.same_fog ? memory->light : found;
+        light = remembered(std::exchange(memory, nullptr), still);
         const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
         const bool settled = still.settled();
-        if (settings.amortise) stale = stale_froxels(still.grid, remembered, lights, frame.frame, settled);
+        if (settings.amortise) stale = stale_froxels(still.grid, light, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
         const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
         const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled};
-        sums = blend_history(still.grid, still.tiles, remembered, now, pass, light);
+        sums = blend_history(still.grid, still.tiles, now, pass, light);
         frame.has_history = true;
     }
-    memory = std::make_shared<const FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
+    memory = std::make_shared<FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
     return sums;
 }
 

@@ -32,9 +32,9 @@ struct Bounds {
 struct Blend {
     const FroxelGrid& grid;
     const FroxelTiles& tiles;
-    const FroxelLight &remembered, &light;
+    const FroxelLight& now;
     const BlendPass& pass;
-    FroxelLight& result;
+    FroxelLight& light; // what is remembered, and then the blend
     FroxelSums& sums;
 
     const uint8_t* stale_at(size_t tile, size_t first) const {
@@ -56,7 +56,7 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     least.resize(padded + 32), most.resize(padded + 32);
     const auto clear = [&](size_t at) HWY_ATTR { store(infinity, &least[at]), store(-infinity, &most[at]); };
     clear(0), clear(padded + 16);
-    const float* light = blend.light.at(blend.grid, tile, 0);
+    const float* light = blend.now.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
@@ -120,18 +120,16 @@ void forget_unknown(float* light, size_t count) {
 }
 
 void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile) {
-    const size_t count = blend.seen(tile), all = 4 * static_cast<size_t>(blend.grid.slices());
-    const bool stands = blend.stands(tile);
-    const float* before = blend.remembered.at(blend.grid, tile, 0);
-    const float* now = stands ? before : blend.light.at(blend.grid, tile, 0);
-    float* result = blend.result.at(blend.grid, tile, 0);
+    const size_t count = blend.seen(tile);
+    float* light = blend.light.at(blend.grid, tile, 0);
+    const float* now = blend.stands(tile) ? light : blend.now.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
         Floats low = infinity, high = -infinity;
         for (const Column& column : columns)
             if (i < column.reach) low = min(low, load(column.low + i)), high = max(high, load(column.high + i));
-        const Floats was = load_some(before + i, here), is = load_some(now + i, here);
+        const Floats was = load_some(light + i, here), is = load_some(now + i, here);
         Floats kept = select(low <= high, max(low, min(was, high)), was);
         if (blend.pass.still) kept = select(is_extinction, was, kept); // nothing to be held to
         Floats mixed = is + (kept - is) * blend.pass.weight;
@@ -141,16 +139,15 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
         }
         mixed = select(extinctions(was) > 0.0f, mixed, is);
         if (here == 16) {
-            store(mixed, result + i);
+            store(mixed, light + i);
         } else {
             alignas(64) float values[16];
-            store(mixed, values), std::copy_n(values, here, result + i);
+            store(mixed, values), std::copy_n(values, here, light + i);
         }
     }
-    std::fill(result + count, result + all, 0.0f);
-    integrate_tile(blend.grid, blend.tiles, blend.result, blend.pass.view_depth, tile,
+    integrate_tile(blend.grid, blend.tiles, blend.light, blend.pass.view_depth, tile,
                    blend.sums.values.data() + 4 * tile * blend.grid.faces.size());
-    forget_unknown(result, count);
+    forget_unknown(light, count);
 }
 
 void blend_block(const Blend& blend, ivec2 corner) {
@@ -190,9 +187,9 @@ void blend_block(const Blend& blend, ivec2 corner) {
     }
 }
 
-void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                  const FroxelLight& light, const BlendPass& pass, FroxelLight& result, FroxelSums& sums) {
-    Blend blend{grid, tiles, remembered, light, pass, result, sums};
+void blend_kernel(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& now, const BlendPass& pass,
+                  FroxelLight& light, FroxelSums& sums) {
+    Blend blend{grid, tiles, now, pass, light, sums};
     blend.slices.resize(grid.tiles());
     parallel_ranges(static_cast<int64_t>(grid.tiles()), 1024, [&](int64_t begin, int64_t end) {
         for (size_t tile = static_cast<size_t>(begin); tile < static_cast<size_t>(end); ++tile)
@@ -209,12 +206,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(blend_kernel);
-FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                         const FroxelLight& light, const BlendPass& pass, FroxelLight& result) {
+FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& now,
+                         const BlendPass& pass, FroxelLight& light) {
     FroxelSums sums;
     sums.values.resize(4 * grid.tiles() * grid.faces.size());
-    result.values.resize(light.values.size());
-    HWY_DYNAMIC_DISPATCH(blend_kernel)(grid, tiles, remembered, light, pass, result, sums);
+    HWY_DYNAMIC_DISPATCH(blend_kernel)(grid, tiles, now, pass, light, sums);
     return sums;
 }
 }

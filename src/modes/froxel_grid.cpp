@@ -23,7 +23,7 @@ FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile) {
 }
 
 void set_slices(FroxelGrid& grid, float near, float far, int count, float growth, float end, int tail) {
-    far = std::max(far, near + 1e-4f * std::max(near, 1.0f));
+    far = std::max(far, near * 1.0001f); // rounding leaves room for the faces
     // Thickness grows by growth^(1/(count-1)) from slice to slice: faces lie at (r^k - 1) / (r^count - 1).
     const double rate = count > 1 ? std::log(static_cast<double>(growth)) / (count - 1) : 0;
     const double whole = std::expm1(rate * count);

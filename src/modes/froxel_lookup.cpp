@@ -20,43 +20,42 @@ struct FaceSums {
     Floats behind; // planar depth of the face behind
 };
 
-FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
-    const FroxelGrid& grid = picture.grid;
-    const SliceLanes slices = slices_around(grid, z);
-    FaceSums result;
-    result.behind = slices.behind;
-    result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
+// Rays between the same tiles that end in the slices least..most: each slice for all of them at once.
+void mix_slices(const Places& places, const float* const* columns, const Ints& slice, int least, int most,
+                FaceSums& result) {
+    const Floats place = to_floats(slice);
+    for (int k = least; k <= most; ++k) {
+        const Mask16 here = place == static_cast<float>(k);
+        for (size_t c = 0; c < 4; ++c) {
+            Floats near = 0.0f, far = 0.0f;
+            for (int t = 0; t < places.count; ++t) {
+                const float* from = columns[t] + 4 * k + c;
+                const Floats weight = load(places.weights[t]);
+                near = fused(weight, from[0], near), far = fused(weight, from[4], far);
+            }
+            result.near[c] = k == least ? near : select(here, near, result.near[c]);
+            result.far[c] = k == least ? far : select(here, far, result.far[c]);
+        }
+    }
+}
 
-    // Both faces of a slice lie side by side in memory: eight floats per tile.
-    alignas(64) int32_t slice[16];
+// Ray by ray. Both faces of a slice lie side by side in memory: eight floats per tile.
+void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& places, const int32_t (&slice)[16],
+              FaceSums& result) {
     alignas(64) float values[2][64]; // [face][4 · lane + channel]
-    store(slices.slice, slice);
     const TapTag tag;
-    const float* columns[16]; // of the tiles around, where those are the same for all rays
-    for (int t = 0; t < places.count && places.together; ++t)
-        columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
-    for (int t = 0; t < places.count && places.together; ++t)
-        for (size_t lane = 0; lane < 16; lane += 3) __builtin_prefetch(columns[t] + 4 * slice[lane]);
     for (size_t lane = 0; lane < 16; ++lane) {
         hn::Vec<TapTag> total[tap_parts];
         for (size_t p = 0; p < tap_parts; ++p) total[p] = hn::Zero(tag);
         for (int t = 0; t < places.count; ++t) {
-            const float* from = places.together
-                                    ? columns[t] + 4 * slice[lane]
-                                    : sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
+            const float* from = sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
             const auto weight = hn::Set(tag, places.weights[t][lane]);
             for (size_t p = 0; p < tap_parts; ++p)
                 total[p] = hn::MulAdd(weight, hn::LoadU(tag, from + p * tap_lanes), total[p]);
         }
-#if HWY_MAX_BYTES >= 32
-        const hn::CappedTag<float, 4> face_tag;
-        hn::Store(hn::LowerHalf(total[0]), face_tag, values[0] + 4 * lane);
-        hn::Store(hn::UpperHalf(face_tag, total[0]), face_tag, values[1] + 4 * lane);
-#else
         alignas(32) float both[8];
         for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, both + p * tap_lanes);
-        std::copy_n(both, 4, values[0] + 4 * lane), std::copy_n(both + 4, 4, values[1] + 4 * lane);
-#endif
+        std::memcpy(values[0] + 4 * lane, both, 16), std::memcpy(values[1] + 4 * lane, both + 4, 16);
     }
     for (size_t i = 0; i < parts; ++i) {
         const auto load_four = [&](const float* from, Floats(&to)[4]) HWY_ATTR {
@@ -65,6 +64,26 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
         };
         load_four(values[0], result.near), load_four(values[1], result.far);
     }
+}
+
+FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
+    constexpr int few = 4;
+    const FroxelGrid& grid = picture.grid;
+    const float* columns[16]; // of the tiles around, where those are the same for all rays
+    for (int t = 0; t < places.count && places.together; ++t)
+        columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
+    const SliceLanes slices = slices_around(grid, z);
+    FaceSums result;
+    result.behind = slices.behind;
+    result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
+    for (int t = 0; t < places.count && places.together; ++t) __builtin_prefetch(columns[t] + 4 * slices.least);
+    if (places.together && slices.most - slices.least < few) {
+        mix_slices(places, columns, slices.slice, slices.least, slices.most, result);
+        return result;
+    }
+    alignas(64) int32_t slice[16];
+    store(slices.slice, slice);
+    mix_rays(grid, sums, places, slice, result);
     return result;
 }
 
@@ -114,7 +133,7 @@ Floats validity_of(const Places& places, const FaceSums& faces, const Reached& e
 }
 
 void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
-                    std::span<const FroxelSums> parts, std::span<vec3> of_parts) {
+                    std::span<const FroxelSums> shares, std::span<vec3> of_shares) {
     Places places;
     find_places(picture, batch, places);
     const bool late = any(places.start > picture.grid.faces.front()); // some ray starts behind the first slice
@@ -128,21 +147,24 @@ void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::sp
     FaceSums faces;
     Reached start{splat(vec3(0)), 0.0f, 0.0f, splat(vec3(0))}, end = start;
     const Vec3s light = light_of(picture.sums, faces, start, end);
-    alignas(64) float rgb[3][16], through[16], seen[16], valid[16];
-    store_light(light, rgb);
-    store(exp(start.depth - max(end.depth, start.depth)), through);
+    const Floats through = exp(start.depth - max(end.depth, start.depth));
+    alignas(64) float rgb[3][16], first[64], seen[16], valid[16];
+    for (size_t i = 0; i < parts; ++i)
+        hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], through.part[i], FloatTag(),
+                              first + 4 * i * lane_step);
     store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end), valid);
     for (size_t i = 0; i < batch.rays.size(); ++i) {
+        const float* f = first + 4 * i;
         if (seen[i] > 0)
-            results[i] = {{rgb[0][i], rgb[1][i], rgb[2][i]}, through[i], valid[i], places.count, vec3(0)};
+            results[i] = {{f[0], f[1], f[2]}, f[3], valid[i], places.count, vec3(0)};
         else
             results[i] = Scatter{.validity = 0};
     }
 
-    for (size_t part = 0; part < parts.size(); ++part) {
-        store_light(light_of(parts[part], faces, start, end), rgb);
+    for (size_t share = 0; share < shares.size(); ++share) {
+        store_light(light_of(shares[share], faces, start, end), rgb);
         for (size_t i = 0; i < batch.rays.size(); ++i)
-            if (seen[i] > 0) of_parts[i * parts.size() + part] = {rgb[0][i], rgb[1][i], rgb[2][i]};
+            if (seen[i] > 0) of_shares[i * shares.size() + share] = {rgb[0][i], rgb[1][i], rgb[2][i]};
     }
 }
 }

@@ -34,8 +34,8 @@ struct BlendPass {
     bool still = false;             // its extinction too; else that is new everywhere
 };
 
-// Blends this frame's light and extinction with what is remembered, after clamping it to what the froxels around show
-// in this frame. What the next frame is to remember goes to `result`.
-FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& remembered,
-                         const FroxelLight& light, const BlendPass& pass, FroxelLight& result);
+// Blends what `light` remembers, after clamping it to what the froxels around show in this frame, with this frame's
+// light and extinction. `light` is then what the next frame is to remember.
+FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& now,
+                         const BlendPass& pass, FroxelLight& light);
 }

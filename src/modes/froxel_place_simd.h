@@ -7,7 +7,7 @@
 #endif
 
 #include "base/random.h"
-#include "base/simd.h"
+#include "base/reduce_simd.h"
 #include "modes/froxel_lookup.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -43,24 +43,23 @@ HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
 struct SliceLanes {
     Ints slice;
     Floats before, behind;
+    int least = 0, most = 0; // of the slices
 };
 HWY_INLINE SliceLanes slices_around(const FroxelGrid& grid, const Floats& z) {
     constexpr int few = 6;
-    auto least = z.part[0];
-    for (size_t i = 1; i < parts; ++i) least = hn::Min(least, z.part[i]);
-    const int first = slice_of(grid, hn::GetLane(hn::MinOfLanes(FloatTag(), least))), last = grid.slices() - 1;
+    const int first = slice_of(grid, least(z)), last = grid.slices() - 1;
     const float* faces = grid.faces.data() + first;
-    SliceLanes found{first, faces[0], faces[1]};
+    SliceLanes found{first, faces[0], faces[1], first, first};
     for (int k = 1; first + k <= last; ++k) {
         const Mask16 more = z >= faces[k];
         if (!any(more)) return found;
         if (k == few) break;
-        found.slice = found.slice + truncate(select(more, 1.0f, 0.0f));
+        found.slice = found.slice + truncate(select(more, 1.0f, 0.0f)), found.most = first + k;
         found.before = select(more, faces[k], found.before), found.behind = select(more, faces[k + 1], found.behind);
     }
     if (first + few > last) return found;
     const Ints slice = slices_of(grid, z);
-    return {slice, gather(grid.faces.data(), slice), gather(grid.faces.data() + 1, slice)};
+    return {slice, gather(grid.faces.data(), slice), gather(grid.faces.data() + 1, slice), first, last};
 }
 
 // First tile and weights along one axis: 2 of a linear look-up, 4 of a cubic B-spline.
@@ -185,13 +184,23 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     }
 }
 
-bool from_the_eye(const Camera& camera, const RayBatch& batch) {
+// Whether all rays begin at the very place of the camera.
+HWY_INLINE bool from_the_eye(const Camera& camera, const RayBatch& batch) {
+    static_assert(offsetof(Ray, direction) == 3 * sizeof(float)); // four floats from the origin on are within the ray
     if (camera.ortho_height > 0) return false;
-    float off = 0;
-    for (const Ray& ray : batch.rays)
-        off += std::abs(ray.origin.x - camera.position.x) + std::abs(ray.origin.y - camera.position.y) +
-               std::abs(ray.origin.z - camera.position.z);
-    return off == 0;
+    using Tag = hn::CappedTag<float, 4>;
+    constexpr size_t lanes = hn::MaxLanes(Tag());
+    alignas(16) const float eye[4] = {camera.position.x, camera.position.y, camera.position.z, 0};
+    alignas(16) const uint32_t counts[4] = {~0u, ~0u, ~0u, 0};
+    for (size_t c = 0; c < 4; c += lanes) {
+        const auto here = hn::Load(Tag(), eye + c);
+        auto off = hn::Zero(Tag());
+        for (const Ray& ray : batch.rays) off = hn::Or(off, hn::Xor(hn::LoadU(Tag(), &ray.origin.x + c), here));
+        const hn::RebindToUnsigned<Tag> bits;
+        const auto counted = hn::And(hn::BitCast(bits, off), hn::Load(bits, counts + c));
+        if (!hn::AllTrue(bits, hn::Eq(counted, hn::Zero(bits)))) return false;
+    }
+    return true;
 }
 
 inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {

@@ -24,6 +24,23 @@ bool same(const Medium& a, const Medium& b) {
            a.height_base == b.height_base && a.height_falloff == b.height_falloff && a.bricks == b.bricks;
 }
 
+// Whether the slices of a grid still cover the fog and are hardly wider: froxels that stay where they are lose nothing.
+bool serve(const FroxelGrid& grid, int slices, const FogDepths& depths) {
+    constexpr float wider = 1.1f;
+    const float near = grid.faces.front(), far = grid.faces[static_cast<size_t>(slices)], end = grid.faces.back();
+    const float needed = std::max(depths.far, depths.end);
+    return near <= depths.near && depths.far <= far && needed <= end &&
+           far - near <= wider * (depths.far - depths.near) && end - near <= wider * (needed - depths.near);
+}
+
+// With room for fog that moves on.
+FogDepths widened(FogDepths depths) {
+    constexpr float room = 1.0f / 32;
+    const float margin = room * (depths.far - depths.near);
+    depths.near = std::max(depths.near - margin, 0.0f), depths.far += margin, depths.end *= 1 + room;
+    return depths;
+}
+
 bool same(const std::vector<Medium>& a, const std::vector<Medium>& b) {
     return std::ranges::equal(a, b, [](const Medium& x, const Medium& y) { return same(x, y); });
 }
@@ -35,18 +52,23 @@ FroxelStill look_at_scene(const View& view, const Snapshot& snapshot, const Frox
     still.media = snapshot.media, still.occluders = snapshot.occluders;
     still.same_view = before && before->grid.picture == view.size && before->grid.tile == settings.tile &&
                       same(before->grid.camera, view.camera) && same(before->occluders, snapshot.occluders);
-    still.same_fog = still.same_view && same(before->media, snapshot.media);
+    still.same_fog = still.same_froxels = still.same_view && same(before->media, snapshot.media);
     if (still.same_fog) {
         still.grid = before->grid, still.tiles = before->tiles, still.extinctions = before->extinctions;
         still.stood = before->stood + 1;
         return still;
     }
-    still.grid = make_froxel_grid(view.camera, view.size, settings.tile);
+    still.grid = still.same_view ? before->grid : make_froxel_grid(view.camera, view.size, settings.tile);
     still.tiles = still.same_view ? before->tiles
                                   : *kept(snapshot, KeptKey().add(snapshot.occluders).add(view).add(settings.tile),
                                           [&] { return make_froxel_tiles(still.grid, snapshot); });
-    const FogDepths depths = fog_depths(still.grid, still.tiles, snapshot);
+    FogDepths depths = fog_depths(still.grid, still.tiles, snapshot);
     if (!(depths.far > depths.near)) return still;
+    if (still.same_view && serve(before->grid, settings.depth_slices, depths)) {
+        still.same_froxels = true;
+        return still;
+    }
+    if (still.same_view) depths = widened(depths);
     set_slices(still.grid, depths.near, depths.far, settings.depth_slices, settings.depth_growth, depths.end,
                tail_slices);
     set_trust(still.grid, still.tiles);

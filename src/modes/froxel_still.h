@@ -9,6 +9,7 @@ struct FroxelStill {
     std::vector<Medium> media;
     std::shared_ptr<const Occluders> occluders;
     bool same_view = false, same_fog = false; // as in the frame before; fog and what is seen of it
+    bool same_froxels = false;                // each where one was in the frame before
     int stood = 0;                            // frames for which that has been so
 
     // Whether what is remembered of the fog is its mean over the rays of each tile.

@@ -5,7 +5,7 @@
 namespace tyndall {
 namespace {
 constexpr int most_layers = 8;  // of BLEND surfaces in a row
-constexpr float horizon = 1e6f; // metres; unbounded fog beyond has no say
+constexpr float horizon = 1e9f; // metres; no ray goes further
 constexpr double opaque_depth = 12;
 
 std::vector<vec2> ray_offsets(int tile) {
@@ -73,9 +73,15 @@ float reach_of(const Medium& medium, Ray ray) {
     };
     const double total = depth_to(horizon), enough = std::min(opaque_depth, total - 1e-6);
     if (!(enough > 0)) return 0;
-    float reach = 1;
-    while (reach < horizon && depth_to(reach) < enough) reach *= 2;
-    return std::min(reach, horizon);
+    float high = 1;
+    while (high < horizon && depth_to(high) < enough) high *= 2;
+    while (depth_to(0.5f * high) >= enough) high *= 0.5f;
+    float low = 0.5f * high;
+    for (int step = 0; step < 3; ++step) {
+        const float middle = 0.5f * (low + high);
+        (depth_to(middle) < enough ? low : high) = middle;
+    }
+    return std::min(high, horizon);
 }
 
 float scene_depth(const FroxelGrid& grid, const Box& bounds) {

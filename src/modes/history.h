@@ -18,7 +18,7 @@ struct History {
     Settings settings;
     const Scene* scene = nullptr;
     std::vector<vec3> lights; // of each: what it shone into the fog, where it was, which way it shone
-    std::shared_ptr<const FroxelMemory> froxels;
+    std::shared_ptr<FroxelMemory> froxels;
     std::shared_ptr<const FogPicture> picture;
 };
 

@@ -10,8 +10,12 @@ bool is_stylised(const Settings& settings);
 // march through it still has to do: style_fade() and view_depth; LightDepth::scale carries light_depth.
 Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style);
 
+// Whether the fog's light fades out with the distance: a range as by default has no end.
+inline bool fades(const StyleSettings& style) { return style.range < StyleSettings().range; }
+
 // Share of the fog's light that style.range leaves at a distance from the eye.
 inline float style_fade(const StyleSettings& style, float distance) {
+    if (!fades(style)) return 1;
     return std::clamp((style.range - distance) / (0.2f * style.range), 0.0f, 1.0f);
 }
 

@@ -13,6 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // style_fade() at points.
 HWY_INLINE Floats style_fade(const StyleSettings& style, const Camera& camera, const Vec3s& point) {
+    if (!fades(style)) return 1.0f;
     const Vec3s offset = point - splat(camera.position);
     const Floats distance = camera.ortho_height > 0 ? dot(offset, splat(camera.forward)) : sqrt(dot(offset, offset));
     return max(min((style.range - distance) * (5 / style.range), 1.0f), 0.0f);

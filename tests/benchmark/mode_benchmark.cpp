@@ -1,10 +1,11 @@
 // Fog of a whole picture, surfaces excluded: preparation and all look-ups of a mode, one ray per pixel, and what a mode
 // adds to the finished picture. First surfaces are traced beforehand, or for each frame of a moving camera, and counted
-// apart. `history` keeps what a mode keeps; its first frame is not counted.
+// apart. `history` keeps what a mode and a sequence of frames keep; its first frame is not counted.
 //
 //     tyndall_benchmark --benchmark_filter=fog_of_picture/froxel
 //     TYNDALL_MODES=froxel,march TYNDALL_SCENE=scenes/pillars.json TYNDALL_SET=froxel.tile=4 tyndall_benchmark ...
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=light,camera tyndall_benchmark ...
+//     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=fog TYNDALL_SET=froxel.amortise=on tyndall_benchmark ...
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
 #include "base/isa.h"
 #include "base/parallel.h"
@@ -45,9 +46,9 @@ vec3 turned(vec3 v, float angle) {
     return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
 }
 
-// Frame by frame suns turn to and fro about the vertical, other lights and the camera sway.
+// Frame by frame suns turn to and fro about the vertical, other lights, the camera and fog from grids sway.
 struct Movement {
-    bool light = false, camera = false;
+    bool light = false, camera = false, fog = false;
 
     static float sway(int frame) { return std::sin(0.1f * static_cast<float>(frame)); }
     void move(int frame, const Snapshot& still, Snapshot& moved) const {
@@ -59,13 +60,26 @@ struct Movement {
     void move(int frame, const Camera& still, Camera& moved) const {
         if (camera) moved.position = still.position + 0.1f * sway(frame) * still.right;
     }
+    // Another grid each time, as frames of a file are.
+    void move_fog(int frame, const Snapshot& still, Snapshot& moved) const {
+        for (size_t i = 0; fog && i < moved.media.size(); ++i) {
+            if (moved.media[i].kind != DensityKind::bricks) continue;
+            auto bricks = std::make_shared<BrickPool>(*still.media[i].bricks);
+            const dmat4 to_volume = glm::translate(dmat4(1), -dvec3(bricks->low));
+            place(*bricks,
+                  glm::translate(dmat4(1), dvec3(0.1 * sway(frame))) * dmat4(bricks->index_to_world) * to_volume);
+            moved.media[i].bounds = moved.media[i].world_bounds = bricks->bounds;
+            moved.media[i].bricks = std::move(bricks);
+        }
+    }
 };
 
 Movement movement_of(const std::string& list) {
     Movement movement;
     for (const std::string& part : parts_of(list, ',')) {
-        movement.light |= part == "light", movement.camera |= part == "camera";
-        if (part != "light" && part != "camera") throw std::invalid_argument("TYNDALL_MOVE: light, camera");
+        movement.light |= part == "light", movement.camera |= part == "camera", movement.fog |= part == "fog";
+        if (part != "light" && part != "camera" && part != "fog")
+            throw std::invalid_argument("TYNDALL_MOVE: light, camera, fog");
     }
     return movement;
 }
@@ -153,7 +167,7 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     for (const std::string& assignment : parts_of(option("TYNDALL_SET", ""), ' ')) apply_setting(settings, assignment);
     const Movement movement = movement_of(option("TYNDALL_MOVE", ""));
     Snapshot still = make_snapshot(scene, moment_of(scene, 1));
-    still.kept = nullptr; // every preparation begins with nothing
+    still.kept = nullptr; // without a history every preparation begins with nothing
     Snapshot snapshot = still;
     View view;
     view.size = size_of(option("TYNDALL_SIZE", "640x360"));
@@ -170,6 +184,8 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     int frame = 0;
     const auto run = [&](Times& times) {
         movement.move(frame, still, snapshot), movement.move(frame, camera, view.camera);
+        movement.move_fog(frame, still, snapshot);
+        if (keep) snapshot.kept_before = std::exchange(snapshot.kept, std::make_shared<Kept>());
         view.frame = frame++;
         if (movement.camera) times.trace.time([&] { picture = picture_rays(view, snapshot); });
         ScatterFunction function;

@@ -77,6 +77,25 @@ TEST_P(FroxelHistory, ANaNIsGoneInTheNextFrame) {
     for (const float value : history.froxels->light.values) ASSERT_TRUE(std::isfinite(value));
 }
 
+TEST_P(FroxelHistory, TwoThatGoOnFromOneSeeTheSame) {
+    // The camera stands and the fog drifts: what is remembered is taken over unless another history needs it too.
+    Stage stage = lit_stage();
+    History history;
+    for (int frame = 0; frame < 3; ++frame) picture(moved_view(0), stage.snapshot, settings(), &history);
+    stage.snapshot.media[0].optics.extinction *= 1.1f;
+    picture(moved_view(0), stage.snapshot, settings(), &history);
+    History other = history;
+    const std::vector<float> before(other.froxels->light.values.begin(), other.froxels->light.values.end());
+    stage.snapshot.media[0].optics.extinction *= 1.1f;
+    const auto first = picture(moved_view(0), stage.snapshot, settings(), &history);
+    EXPECT_TRUE(std::ranges::equal(other.froxels->light.values, before));
+    const auto second = picture(moved_view(0), stage.snapshot, settings(), &other);
+    for (size_t i = 0; i < first.size(); ++i) {
+        ASSERT_EQ(first[i].radiance, second[i].radiance);
+        ASSERT_EQ(first[i].transmittance, second[i].transmittance);
+    }
+}
+
 TEST_P(FroxelHistory, StaysCloseToTheReference) {
     // Samples spread over whole froxels, found between them again and again, blur edges; they lose no energy, and what
     // moved leaves nothing behind. One frame alone is 3 % off here.
