@@ -114,6 +114,19 @@ TEST(View, GlowOfALampHasNextToNoNoise) {
     EXPECT_LT(seen.variance, wanted.variance / 20);
 }
 
+// A beam to the right of 10 degrees to both sides.
+TEST(View, SamplesAtASpotLookForItsBeam) {
+    View plain = view_with(PixelFilter::blackman_harris, 1 << 14), lamp = plain;
+    lamp.lamps.push_back({{9.4f, 4.6f}, 0.0f, {1, 0}, pi / 18});
+    const auto beam = [](vec2 p) {
+        const vec2 off = p - vec2(9.4f, 4.6f);
+        return off.x > glm::length(off) * std::cos(pi / 18) ? 1 / glm::length(off) : 0;
+    };
+    const Spread wanted = spread(plain, beam), seen = spread(lamp, beam);
+    EXPECT_NEAR(seen.mean, wanted.mean, 4 * std::sqrt((wanted.variance + seen.variance) / (1 << 14)));
+    EXPECT_LT(seen.variance, wanted.variance / 100);
+}
+
 TEST(View, OnlyPixelsAtALampAreWeighted) {
     View plain = view_with(PixelFilter::box, 16), lamp = plain;
     lamp.lamps.push_back({{30.0f, 4.4f}, 0.0f});
