@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
     add_globals(app, globals, texts);
     const std::vector<Run> commands{add_bake(app),    add_render(app),  add_info(app),   add_check(app),
                                     add_modes(app),   add_compare(app), add_verify(app), add_plan(app),
-                                    add_explain(app), add_stress(app),  add_chart(app)};
+                                    add_explain(app), add_stress(app),  add_chart(app),  add_view(app)};
     const std::vector<CLI::App*> names = app.get_subcommands({});
     for (CLI::App* command : names) {
         command->fallthrough()->group("Commands");

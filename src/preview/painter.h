@@ -1,0 +1,31 @@
+// Pictures of one request, each better than the one before: a quick small one while things move, then a whole one of
+// the stand-in mode, then rounds of samples of the mode asked for, averaged.
+#pragma once
+#include "preview/pace.h"
+#include "preview/request.h"
+
+#include <map>
+#include <optional>
+
+namespace tyndall {
+// What lasts from picture to picture.
+struct Painter {
+    std::shared_ptr<const Scene> scene; // of the snapshot
+    Snapshot snapshot;
+    History history; // of quick pictures
+    std::map<std::string, Pace> paces;
+    std::shared_ptr<const Prepared> prepared; // of rounds, from the snapshot
+    bool begun = false;
+    Request request; // of the newest picture
+    bool quick = false, stood_in = false;
+    int samples = 0, rounds = 0;
+    double sample_seconds = 0; // of the last round
+    int ticks = 0;             // quick pictures so far
+    Layers layers;             // shown now
+    Picture picture;           // all but its codes
+};
+
+// The next picture for a request; nothing when there is none to come. What the user caused is in Picture::error. When
+// `cancel` is set from outside, the work ends soon and nothing comes of it.
+std::optional<Picture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel);
+}
