@@ -24,9 +24,15 @@ std::string times_text(const InterfaceTimes& times, const PictureCounts& counts)
     std::string text = line("interface", times.interface) + line("gl", times.gl);
     text +=
         formatted("pictures: first after %.2f s, %d in %.2f s", times.first_picture, counts.pictures, times.seconds);
-    if (counts.quick > 0)
+    if (counts.quick > 0) {
+        const StageTimes& sum = counts.quick_stages;
+        const double each = 1e3 / counts.quick;
         text +=
-            formatted(", %d while things moved, %.1f per second", counts.quick, counts.quick / counts.quick_seconds);
+            formatted(", %d while things moved, %.1f per second\neach of these: scene %.1f ms, preparation %.1f ms, "
+                      "rays %.1f ms, display %.1f ms",
+                      counts.quick, counts.quick / counts.quick_seconds, each * sum.load, each * sum.prepare,
+                      each * sum.render, each * sum.tone);
+    }
     return text + "\n";
 }
 }

@@ -25,9 +25,10 @@ void measured(Pace& pace, double seconds, double fixed) {
         const double time = std::max(pace.wanted - fixed, least_share * pace.wanted);
         int lower = level;
         while (lower < last && pixels * area(lower) / area(level) > time) ++lower;
-        if (lower == level) return;
-        pace.level = lower, pace.barred = level, pace.pictures_barred = pictures_to_bar;
-        return;
+        if (lower != level) {
+            pace.level = lower, pace.barred = level, pace.pictures_barred = pictures_to_bar;
+            return;
+        }
     }
     if (level == 0 || (pace.pictures_barred > 0 && level - 1 <= pace.barred)) return;
     const double time = std::max(in_time * pace.wanted - fixed, in_time * least_share * pace.wanted);

@@ -11,6 +11,14 @@ namespace tyndall {
 namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+void count_quick(const Picture& picture, double seconds, PictureCounts& counts) {
+    StageTimes& sum = counts.quick_stages;
+    const StageTimes& times = picture.times;
+    ++counts.quick, counts.quick_seconds += seconds;
+    sum.load += times.load, sum.prepare += times.prepare, sum.fog += times.fog;
+    sum.render += times.render, sum.tone += times.tone;
+}
 }
 
 RenderThread::RenderThread(std::function<void()> news) : news_(std::move(news)), thread_([this] { run(); }) {}
@@ -113,7 +121,7 @@ void RenderThread::run() {
             unfinished_ = !picture ? false : !picture->finished;
             if (picture) {
                 ++counts_.pictures;
-                if (picture->quick) ++counts_.quick, counts_.quick_seconds += seconds_since(start);
+                if (picture->quick) count_quick(*picture, seconds_since(start), counts_);
                 picture_ = std::make_shared<const Picture>(std::move(*picture));
             }
         }

@@ -12,7 +12,8 @@ namespace tyndall {
 // Pictures made so far.
 struct PictureCounts {
     int pictures = 0, quick = 0;
-    double quick_seconds = 0; // spent on the quick ones
+    double quick_seconds = 0; // spent on the quick ones,
+    StageTimes quick_stages;  // by stage
 };
 
 class RenderThread {
