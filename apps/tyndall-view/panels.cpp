@@ -48,6 +48,14 @@ void draw_modes(const ViewState& state, const Act& act) {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         ImGui::TextDisabled("%s", promise.c_str());
     }
+    labelled("beside it");
+    if (ImGui::BeginCombo("##beside", state.beside.empty() ? "nothing" : state.beside.c_str())) {
+        if (ImGui::Selectable("nothing", state.beside.empty())) act({Verb::beside, {}, {}, {}});
+        for (const Mode& mode : modes())
+            if (ImGui::Selectable(std::string(mode.name).c_str(), mode.name == state.beside))
+                act({Verb::beside, {std::string(mode.name)}, {}, {}});
+        ImGui::EndCombo();
+    }
     labelled("quality");
     if (ImGui::BeginCombo("##quality", std::string(name_of(state.quality)).c_str())) {
         for (const Quality quality : {Quality::draft, Quality::preview, Quality::final, Quality::reference})

@@ -64,6 +64,24 @@ void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
     }
 }
 
+// The line between two techniques, which the mouse can take along, and their names.
+void draw_wipe(const Place& place, const ViewState& state, const Picture& picture, const Act& act) {
+    const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
+    const float x = place.low.x + state.shown.wipe * width;
+    ImGui::SetCursorScreenPos({x - 0.5f * type, place.low.y});
+    ImGui::InvisibleButton("wipe", {type, place.height()});
+    const bool held = ImGui::IsItemActive();
+    if (held && ImGui::GetIO().MouseDelta.x != 0)
+        act({Verb::wipe, {}, {(ImGui::GetIO().MousePos.x - place.low.x) / width}, {}});
+    if (held || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    const ImU32 color = ImGui::GetColorU32(held ? accent : ImVec4(0.85f, 0.85f, 0.87f, 0.8f));
+    ImGui::GetWindowDrawList()->AddLine({x, place.low.y}, {x, place.high.y}, color, 1.5f);
+    const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
+    const float left = ImGui::CalcTextSize(picture.mode.c_str()).x + 1.5f * type;
+    draw_band({x - left, place.low.y + 0.5f * type}, {{picture.mode, text}}, width);
+    draw_band({x + 0.7f * type, place.low.y + 0.5f * type}, {{picture.beside, text}}, width);
+}
+
 ImVec4 severity_color(const std::vector<Limit>& limits) {
     if (limits.empty() || limits[0].severity == Severity::info) return good;
     return limits[0].severity == Severity::degraded ? caution : trouble;
@@ -95,10 +113,13 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
     if (!shelf.picture || space.x < 8 || space.y < 8) {
-        if (state.message.empty()) ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
+        if (state.message.empty() && state.file_error.empty())
+            ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
         const Place place = fitted(corner, space, shelf.picture->wanted);
         ImGui::GetWindowDrawList()->AddImage(shelf.texture, place.low, place.high);
+        if (!shelf.picture->beside.empty()) draw_wipe(place, state, *shelf.picture, act);
+        ImGui::SetCursorScreenPos(corner);
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
@@ -113,6 +134,8 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
     const ImVec2 above{corner.x + 0.5f * type, corner.y + 0.5f * type};
     if (shelf.saving >= 0)
         draw_band(above, {{formatted("writing, %.0f %%", 100 * shelf.saving), accent}}, space.x - 2 * type);
+    else if (!state.file_error.empty())
+        draw_band(above, {{state.file_error, trouble}}, space.x - 2 * type);
     else if (!state.message.empty())
         draw_band(above, {{state.message, state.message_is_error ? trouble : text_color}}, space.x - 2 * type);
 }

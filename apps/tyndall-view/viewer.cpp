@@ -1,116 +1,14 @@
-#include "viewer.h"
-
+// The frames of the interface.
 #include "../tyndall/common.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "interface_times.h"
-#include "panels.h"
 #include "render/png.h"
-#include "window.h"
-
-#include <imgui.h>
-
-#include <chrono>
+#include "viewer_parts.h"
 
 namespace tyndall {
 namespace {
-constexpr double settle = 0.15; // seconds after a motion until pictures count as still
-constexpr double active_wait = 1.0 / 60, resting_wait = 0.25, active_time = 0.5;
-constexpr double watch_interval = 0.5; // between looks at the scene's files
-constexpr int drag_frames = 12;
-
-double seconds_now() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
-}
-
-// A drag of a script, point by point.
-struct Drag {
-    vec2 from{0}, to{0};
-    int frame = -1; // negative: there is none
-};
-
-struct Viewer {
-    const ViewerOptions& options;
-    Window window;
-    ViewState state;
-    SceneLoader loader;
-    FileTimes watched;
-    double watched_at = 0, started = 0, moved_at = -1e9, input_at = -1e9, now = 0, frame_seconds = 0;
-    int loads_begun = 0;
-    uint64_t motions_seen = 0, posted = 0, posted_shown = 0;
-    bool posted_moving = false;
-    Shelf shelf;
-    uint64_t picture_revision = 0; // of the newest answer, with or without a picture
-    bool new_picture = false;
-    PanelMemory memory;
-    ScriptPlayer script;
-    ScriptedInput scripted;
-    Drag drag;
-    std::string script_place; // of the action being done
-    std::string screenshot;   // to take after this frame
-    std::string file_place;   // of the snapshot being written for a script
-    int files_to_come = 0;
-    bool quit = false;
-    InterfaceTimes times;
-    RenderThread thread; // ends before all else
-
-    explicit Viewer(const ViewerOptions& given)
-        : options(given), window("Tyndall", given.window), state(given.state), thread(Window::wake) {}
-};
-
-void tell(Viewer& viewer, const std::string& message, bool is_error) {
-    viewer.state.message = message, viewer.state.message_is_error = is_error;
-}
-
-void save(Viewer& viewer, const std::string& file) {
-    if (!viewer.state.scene) fail(ExitCode::usage, file, "no scene is loaded yet");
-    SaveJob job;
-    job.file = file;
-    job.request = request_of(viewer.state, false);
-    job.camera = viewer.state.free ? "view" : viewer.state.camera;
-    job.quality = viewer.state.quality, job.isa = viewer.options.isa;
-    job.light_units = viewer.options.load.light_units;
-    viewer.thread.save(std::move(job));
-    ++viewer.files_to_come;
-}
-
-// Does an action of any kind. Throws Error.
-void perform(Viewer& viewer, const Action& action) {
-    if (apply(viewer.state, action)) return;
-    const auto& numbers = action.numbers;
-    switch (action.verb) {
-    case Verb::key:
-        if (!key_codes().contains(action.words[0]))
-            fail(ExitCode::usage, "key", "no key '" + printable(action.words[0], 40) + "'");
-        viewer.scripted.key = action.words[0];
-        break;
-    case Verb::drag:
-        viewer.drag = {vec2(numbers[0], numbers[1]), vec2(numbers[2], numbers[3]), 0};
-        break;
-    case Verb::snapshot:
-        save(viewer, action.words[0]);
-        break;
-    case Verb::screenshot:
-        viewer.screenshot = action.words[0];
-        break;
-    case Verb::quit:
-        viewer.quit = true;
-        break;
-    default:
-        break;
-    }
-}
-
-// Of hands: what goes wrong is said in the window.
-void act(Viewer& viewer, const Action& action) {
-    try {
-        if (action.verb != Verb::brighten) viewer.state.message.clear();
-        perform(viewer, action);
-    } catch (const Error& error) {
-        tell(viewer, error.what(), true);
-    }
-}
+constexpr double active_wait = 1.0 / 60, resting_wait = 0.25; // seconds between interface frames
+constexpr double active_time = 0.5;                           // after the last input
+constexpr double watch_interval = 0.5;                        // between looks at the scene's files
 
 void take_loaded(Viewer& viewer) {
     ViewState& state = viewer.state;
@@ -122,15 +20,15 @@ void take_loaded(Viewer& viewer) {
     if (!loaded) return;
     state.loading = false;
     if (loaded->scene) {
-        viewer.watched = times_of(loaded->scene->inputs);
+        viewer.watched = std::move(loaded->times);
         viewer.window.set_title(state.scene_file.filename().string() + " - Tyndall");
-        if (state.message_is_error) state.message.clear();
+        state.file_error.clear();
         take_scene(state, loaded->scene);
         return;
     }
     // The last good picture stays, unless there is none or a script asked for this scene.
     if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
-    tell(viewer, loaded->error, true);
+    state.file_error = loaded->error;
 }
 
 // Reads the scene again when one of its files has changed.
@@ -170,72 +68,6 @@ void take_pictures(Viewer& viewer) {
     viewer.shelf.saving = viewer.thread.saving();
 }
 
-bool is_moving(const Viewer& viewer) { return viewer.now < viewer.moved_at + settle || viewer.state.playing; }
-
-// What a script may go by.
-ScriptFacts facts_of(const Viewer& viewer) {
-    ScriptFacts facts;
-    facts.now = viewer.now;
-    const bool asked = viewer.posted == viewer.state.revision && viewer.posted_shown == viewer.state.shown_revision;
-    facts.idle = asked && !viewer.posted_moving && !viewer.new_picture && viewer.thread.idle() &&
-                 viewer.picture_revision == viewer.state.revision;
-    const auto& picture = viewer.shelf.picture;
-    if (picture && picture->revision == viewer.state.revision && picture->mode == viewer.state.mode && !picture->quick)
-        facts.samples = picture->samples;
-    facts.busy = viewer.drag.frame >= 0 || !viewer.scripted.key.empty() || viewer.files_to_come > 0 ||
-                 !viewer.screenshot.empty();
-    return facts;
-}
-
-// Does the script's next actions, until one takes time.
-void follow_script(Viewer& viewer) {
-    while (!viewer.quit) {
-        const std::optional<Action> action = next_action(viewer.script, viewer.state, facts_of(viewer));
-        if (!action) return;
-        viewer.script_place = viewer.file_place = action->place;
-        try {
-            perform(viewer, *action);
-        } catch (const Error& error) {
-            fail(error.code, action->place, error.what());
-        }
-    }
-}
-
-// The mouse of a script's drag: there, down, along, up.
-void move_scripted_mouse(Viewer& viewer) {
-    ScriptedInput& input = viewer.scripted;
-    input.active = !viewer.options.script.empty() && (!viewer.script.finished() || viewer.drag.frame >= 0);
-    Drag& drag = viewer.drag;
-    if (drag.frame < 0) {
-        input.down = false, input.mouse = vec2(-1e6f);
-        return;
-    }
-    const float share = std::clamp((static_cast<float>(drag.frame) - 2) / drag_frames, 0.0f, 1.0f);
-    input.mouse = glm::mix(drag.from, drag.to, share);
-    input.down = drag.frame > 0 && drag.frame <= drag_frames + 2;
-    if (++drag.frame > drag_frames + 4) drag.frame = -1;
-}
-
-// Keys that are pressed now; those that fly go on while they are held.
-void read_keys(Viewer& viewer) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
-    for (const auto& [name, code] : key_codes()) {
-        if (!ImGui::IsKeyDown(code) || io.KeyCtrl || io.KeyAlt) continue;
-        const bool flies = name.size() == 1 && std::string_view("wasdqe").find(name[0]) != std::string_view::npos;
-        const bool repeats = name == "left" || name == "right" || name == "[" || name == "]";
-        std::optional<Action> action = action_of_key(viewer.state, name);
-        if (!action) continue;
-        if (ImGui::IsKeyPressed(code, repeats)) {
-            act(viewer, *action);
-        } else if (flies) {
-            for (double& metres : action->numbers) metres *= 25 * viewer.frame_seconds;
-            act(viewer, *action);
-        }
-    }
-    viewer.scripted.key.clear();
-}
-
 void post_request(Viewer& viewer) {
     ViewState& state = viewer.state;
     if (!state.scene) return;
@@ -252,17 +84,20 @@ void post_request(Viewer& viewer) {
     }
 }
 
-void note_input(Viewer& viewer) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const bool keys = std::any_of(std::begin(io.KeysDown), std::end(io.KeysDown), [](bool down) { return down; });
-    const bool mouse = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || io.MouseWheel != 0 || ImGui::IsAnyMouseDown();
-    if (keys || mouse) viewer.input_at = viewer.now;
-}
-
 double wait_of(const Viewer& viewer) {
     const bool active = is_moving(viewer) || viewer.now < viewer.input_at + active_time || !viewer.script.finished() ||
                         viewer.files_to_come > 0 || viewer.state.loading;
     return active ? active_wait : resting_wait;
+}
+
+void take_screenshot(Viewer& viewer) {
+    const std::string file = std::exchange(viewer.screenshot, {});
+    if (file.empty()) return;
+    try {
+        write_png(file, viewer.window.pixels());
+    } catch (const Error& error) {
+        fail(error.code, viewer.script_place, error.what());
+    }
 }
 
 // One frame of the interface. Everything up to GL is its own time.
@@ -278,8 +113,7 @@ void run_frame(Viewer& viewer) {
     follow_script(viewer);
     move_scripted_mouse(viewer);
     viewer.window.begin_frame(viewer.scripted);
-    note_input(viewer);
-    read_keys(viewer);
+    read_input(viewer);
     viewer.shelf.texture = viewer.window.picture();
     draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
     post_request(viewer);
@@ -291,8 +125,7 @@ void run_frame(Viewer& viewer) {
     viewer.window.draw();
     const double done = seconds_now();
     viewer.times.interface.push_back(drawn - start), viewer.times.gl.push_back(done - drawn);
-    if (!viewer.screenshot.empty()) write_png(viewer.screenshot, viewer.window.pixels());
-    viewer.screenshot.clear();
+    take_screenshot(viewer);
     viewer.window.swap();
 }
 }

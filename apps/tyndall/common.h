@@ -37,6 +37,9 @@ Run add_stress(CLI::App& app);
 Run add_chart(CLI::App& app);
 Run add_view(CLI::App& app);
 
+// Becomes the viewer, which reads its own command line. Throws Error when it is not there.
+int start_viewer(std::vector<std::string> arguments);
+
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.

@@ -144,6 +144,7 @@ void refuse_empty_values(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "view") return start_viewer({argv + 2, argv + argc});
     CLI::App app{"Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.", "tyndall"};
     app.get_formatter()->column_width(28);
     app.get_formatter()->label("Positionals", "What");

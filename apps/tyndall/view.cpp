@@ -10,8 +10,9 @@
 namespace tyndall {
 namespace {
 constexpr const char* program = "tyndall-view";
+}
 
-int run_view(std::vector<std::string> arguments) {
+int start_viewer(std::vector<std::string> arguments) {
     std::error_code ignored;
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", ignored);
     const std::string viewer = (own.parent_path() / program).string();
@@ -24,12 +25,10 @@ int run_view(std::vector<std::string> arguments) {
     execv(viewer.c_str(), pointers.data());
     fail(ExitCode::unreadable, viewer, std::strerror(errno));
 }
-}
 
 Run add_view(CLI::App& app) {
     CLI::App* command = app.add_subcommand("view", "look at a scene while it is lit: the viewer");
-    command->set_help_flag("");
     command->prefix_command();
-    return [command](const Globals&) { return run_view(command->remaining()); };
+    return [command](const Globals&) { return start_viewer(command->remaining()); };
 }
 }

@@ -14,6 +14,8 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::set, "set", "NAME VALUE", "change a setting, as --set does"},
         {Verb::reset, "reset", "NAME", "a setting back to its usual value; all: every one"},
         {Verb::mode, "mode", "NAME", "render with another technique"},
+        {Verb::beside, "beside", "[NAME]", "another technique in the right part of the picture; without a name: none"},
+        {Verb::wipe, "wipe", "x", "where that part begins, as a share of the width"},
         {Verb::quality, "quality", "NAME", "all settings as draft, preview, final or reference have them"},
         {Verb::orders, "orders", "NAME", "how many times light scatters: a number, or all"},
         {Verb::show, "show", "NAME", "picture, fog, transmittance, depth or validity"},

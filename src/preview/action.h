@@ -13,6 +13,8 @@ enum class Verb {
     set,
     reset,
     mode,
+    beside,
+    wipe,
     quality,
     orders,
     show,

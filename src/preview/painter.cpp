@@ -40,7 +40,7 @@ constexpr int most_round_samples = 8;
 // The scene at the request's moment. What stands still is shared with the picture before.
 void load(Painter& painter, const Request& request) {
     const auto start = Clock::now();
-    painter.prepared = nullptr;
+    for (Rounds& rounds : painter.rounds) rounds.prepared = nullptr;
     const bool same_scene = painter.scene == request.scene;
     if (same_scene && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
         painter.snapshot.kept_before = std::exchange(painter.snapshot.kept, std::make_shared<Kept>());
@@ -55,10 +55,18 @@ void load(Painter& painter, const Request& request) {
     painter.picture.notes = painter.snapshot.notes;
 }
 
+// Codes of both modes, side by side.
 Picture shown(Painter& painter, const Request& request) {
     const auto start = Clock::now();
     Picture picture = painter.picture;
-    picture.codes = toned(painter.layers, request.shown);
+    picture.codes = toned(painter.rounds[0].layers, request.shown);
+    if (!picture.beside.empty()) {
+        const Image<glm::u8vec4> right = toned(painter.rounds[1].layers, request.shown);
+        const float width = static_cast<float>(right.size.x);
+        const int split = static_cast<int>(std::round(std::clamp(request.shown.wipe, 0.0f, 1.0f) * width));
+        for (int y = 0; y < right.size.y; ++y)
+            for (int x = split; x < right.size.x; ++x) picture.codes.at(x, y) = right.at(x, y);
+    }
     picture.times.tone = painter.picture.times.tone = seconds_since(start);
     return picture;
 }
@@ -88,7 +96,7 @@ Layers render_quick(Painter& painter, const Request& request, float share, std::
 Picture paint_quick(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     Pace& pace = painter.paces[quick_mode(request)];
     pace.wanted = request.wanted_seconds;
-    painter.layers = render_quick(painter, request, pace.share(), cancel);
+    painter.rounds[0].layers = render_quick(painter, request, pace.share(), cancel);
     painter.quick = true, painter.stood_in = pace.level == 0;
     painter.picture.quick = true, painter.picture.finished = false;
     Picture picture = shown(painter, request);
@@ -98,7 +106,7 @@ Picture paint_quick(Painter& painter, const Request& request, std::atomic<bool>&
 }
 
 Picture paint_stand_in(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
-    painter.layers = render_quick(painter, request, 1, cancel);
+    painter.rounds[0].layers = render_quick(painter, request, 1, cancel);
     painter.stood_in = true;
     painter.picture.quick = painter.picture.finished = false;
     return shown(painter, request);
@@ -107,12 +115,12 @@ Picture paint_stand_in(Painter& painter, const Request& request, std::atomic<boo
 // Samples of the next round: first one for a look, then as many as the settings say, which makes the picture that
 // tyndall render makes, then about as many as there are. Rounds are over soon, but for the first two; one sample alone
 // would always lie in the middle of its pixel.
-int round_samples(const Painter& painter, const Request& request) {
-    if (painter.rounds == 0) return 1;
-    const int left = request.most_samples - painter.samples;
-    if (painter.samples == 0) return std::min(request.settings.pixel.samples, left);
-    const double in_time = std::max(longest_round / std::max(painter.sample_seconds, 1e-6), 2.0);
-    const int samples = std::min(std::clamp(painter.samples, 4, most_round_samples), static_cast<int>(in_time));
+int round_samples(const Rounds& rounds, const Request& request) {
+    if (rounds.rounds == 0) return 1;
+    const int left = request.most_samples - rounds.samples;
+    if (rounds.samples == 0) return std::min(request.settings.pixel.samples, left);
+    const double in_time = std::max(longest_round / std::max(rounds.sample_seconds, 1e-6), 2.0);
+    const int samples = std::min(std::clamp(rounds.samples, 4, most_round_samples), static_cast<int>(in_time));
     return left - samples < 2 ? left : samples;
 }
 
@@ -124,51 +132,62 @@ std::vector<Limit> limits_of(const Painter& painter, const Request& request) {
 }
 
 // What a mode prepares serves all rounds, unless it is a part of the picture's noise.
-void prepare(Painter& painter, const Request& request, const Mode& mode, const View& view, FrameOptions& options,
+void prepare(const Painter& painter, const Mode& mode, const View& view, Rounds& rounds, FrameOptions& options,
              FrameStats& stats) {
     if (mode.remembers) return;
-    if (!painter.prepared) {
+    if (!rounds.prepared) {
         const auto start = Clock::now();
-        painter.prepared =
-            std::make_shared<const Prepared>(prepare_frame(mode, view, painter.snapshot, request.settings, nullptr));
-        stats.prepare_seconds = seconds_since(start), stats.fog_seconds = painter.prepared->mode_seconds;
+        rounds.prepared = std::make_shared<const Prepared>(
+            prepare_frame(mode, view, painter.snapshot, painter.request.settings, nullptr));
+        stats.prepare_seconds = seconds_since(start), stats.fog_seconds = rounds.prepared->mode_seconds;
     }
-    options.prepared = painter.prepared;
+    options.prepared = rounds.prepared;
 }
 
 // A round into the mean of all; what was shown for a first look is replaced.
-void add_round(Painter& painter, Layers layers, const FrameStats& stats) {
-    if (painter.samples == 0) {
-        painter.layers = std::move(layers), painter.picture.non_finite = 0;
+void add_round(Layers layers, const FrameStats& stats, const Request& request, Rounds& rounds) {
+    if (rounds.samples == 0) {
+        rounds.layers = std::move(layers);
     } else {
-        const float all = static_cast<float>(painter.samples + stats.samples);
-        blend_layers(painter.layers, layers, static_cast<float>(stats.samples) / all);
+        const float all = static_cast<float>(rounds.samples + stats.samples);
+        blend_layers(rounds.layers, layers, static_cast<float>(stats.samples) / all);
     }
-    painter.picture.non_finite += stats.non_finite;
-    if (painter.rounds > 0 || painter.request.most_samples == 1) painter.samples += stats.samples;
+    if (rounds.rounds > 0 || request.most_samples == 1) rounds.samples += stats.samples;
+    ++rounds.rounds;
 }
 
+// One round of the mode asked for or of the one beside, whichever has had fewer.
 Picture paint_round(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
-    const Mode& mode = find_mode(request.mode);
+    const bool two = !request.beside.empty();
+    const bool right = two && painter.rounds[1].rounds < painter.rounds[0].rounds;
+    Rounds& rounds = painter.rounds[right];
+    const Mode& mode = find_mode(right ? request.beside : request.mode);
     View view = view_of(request);
-    view.pixel_samples = round_samples(painter, request);
-    if (painter.samples > 0) view.seed = hash(view.seed, static_cast<uint32_t>(painter.rounds));
+    view.pixel_samples = round_samples(rounds, request);
+    if (rounds.samples > 0) view.seed = hash(view.seed, static_cast<uint32_t>(rounds.rounds));
     FrameStats preparing, stats;
     FrameOptions options;
     options.cancel = &cancel;
-    prepare(painter, request, mode, view, options, preparing);
+    prepare(painter, mode, view, rounds, options, preparing);
     Layers layers = render_frame(mode, view, painter.snapshot, request.settings, options, stats);
-    painter.sample_seconds = stats.render_seconds / stats.samples;
+    rounds.sample_seconds = stats.render_seconds / stats.samples;
     stats.prepare_seconds += preparing.prepare_seconds, stats.fog_seconds += preparing.fog_seconds;
     note_times(painter, stats);
 
     Picture& picture = painter.picture;
-    if (painter.rounds == 0) picture.limits = limits_of(painter, request);
-    add_round(painter, std::move(layers), stats);
-    ++painter.rounds;
-    picture.mode = mode.name, picture.quick = false, picture.samples = std::max(painter.samples, 1);
-    picture.finished = painter.samples >= request.most_samples;
+    if (!right && rounds.rounds == 0) picture.limits = limits_of(painter, request), picture.non_finite = 0;
+    add_round(std::move(layers), stats, request, rounds);
+    picture.non_finite += stats.non_finite;
+    picture.mode = request.mode, picture.quick = false;
+    picture.beside = painter.rounds[1].rounds > 0 ? request.beside : "";
+    const int samples = two ? std::min(painter.rounds[0].samples, painter.rounds[1].samples) : rounds.samples;
+    picture.samples = std::max(samples, 1), picture.finished = samples >= request.most_samples;
     return shown(painter, request);
+}
+
+bool is_finished(const Painter& painter, const Request& request) {
+    const bool two = !request.beside.empty();
+    return std::min(painter.rounds[0].samples, painter.rounds[two].samples) >= request.most_samples;
 }
 
 // Forgets the picture before.
@@ -178,7 +197,8 @@ void begin(Painter& painter, const Request& request) {
     painter.picture.revision = request.revision, painter.picture.frame = request.frame;
     painter.picture.wanted = request.size;
     painter.quick = painter.stood_in = false;
-    painter.samples = painter.rounds = 0, painter.sample_seconds = 0;
+    // The layers stay until others are there.
+    for (Rounds& rounds : painter.rounds) rounds = {nullptr, std::move(rounds.layers), 0, 0, 0};
     load(painter, request);
     painter.begun = true;
 }
@@ -188,13 +208,13 @@ std::optional<Picture> next_picture(Painter& painter, const Request& request, st
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
     painter.request = request;
     if (!same) begin(painter, request);
-    if (shown_anew && !painter.layers.color.empty()) return shown(painter, request);
+    if (shown_anew && !painter.rounds[0].layers.color.empty()) return shown(painter, request);
     if (request.moving && !painter.quick) return paint_quick(painter, request, cancel);
     if (request.moving) return {};
-    if (painter.samples == 0 && !painter.stood_in && quick_mode(request) != request.mode)
+    if (painter.rounds[0].rounds == 0 && !painter.stood_in && quick_mode(request) != request.mode)
         return paint_stand_in(painter, request, cancel);
-    if (painter.samples < request.most_samples) return paint_round(painter, request, cancel);
-    return {};
+    if (is_finished(painter, request)) return {};
+    return paint_round(painter, request, cancel);
 }
 
 Picture failed(const Request& request, const std::string& why, ExitCode code) {

@@ -8,21 +8,26 @@
 #include <optional>
 
 namespace tyndall {
+// What the rounds of a mode have come to.
+struct Rounds {
+    std::shared_ptr<const Prepared> prepared; // from the snapshot
+    Layers layers;
+    int samples = 0, rounds = 0;
+    double sample_seconds = 0; // of the last round
+};
+
 // What lasts from picture to picture.
 struct Painter {
     std::shared_ptr<const Scene> scene; // of the snapshot
     Snapshot snapshot;
     History history; // of quick pictures
     std::map<std::string, Pace> paces;
-    std::shared_ptr<const Prepared> prepared; // of rounds, from the snapshot
+    int ticks = 0; // quick pictures and stand-ins so far
     bool begun = false;
     Request request; // of the newest picture
     bool quick = false, stood_in = false;
-    int samples = 0, rounds = 0;
-    double sample_seconds = 0; // of the last round
-    int ticks = 0;             // quick pictures so far
-    Layers layers;             // shown now
-    Picture picture;           // all but its codes
+    Rounds rounds[2]; // of the mode, whose layers may be those of a quick picture, and of the mode beside
+    Picture picture;  // all but its codes
 };
 
 // The next picture for a request; nothing when there is none to come. What the user caused is in Picture::error. When

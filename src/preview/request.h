@@ -17,6 +17,7 @@ struct Request {
     ivec2 size{640, 360};
     std::string mode = "march";
     std::string stand_in = "froxel"; // mode of quick pictures when `mode` is march or path; empty = the same
+    std::string beside;              // mode of the right part of still pictures; empty = none
     Settings settings;
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
@@ -40,9 +41,10 @@ struct Picture {
     Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays
     ivec2 wanted{0};          // size of the whole picture
     std::string mode;         // that made it, perhaps a stand-in
+    std::string beside;       // that made its right part; empty = it is all of one mode
     bool quick = false;       // made while things moved
     bool finished = false;    // will not get better
-    int samples = 0;          // per pixel so far
+    int samples = 0;          // per pixel so far; of two modes, the fewer
     StageTimes times;         // of its last round of samples
     uint64_t non_finite = 0;
     std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures

@@ -10,11 +10,16 @@ namespace {
 LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) {
     flush_denormals();
     try {
-        return {file, std::make_shared<const Scene>(load_scene(file, options)), {}, ExitCode::ok};
+        const auto begun = std::filesystem::file_time_type::clock::now();
+        auto scene = std::make_shared<const Scene>(load_scene(file, options));
+        FileTimes times = times_of(scene->inputs);
+        for (auto& [input, time] : times)
+            if (time > begun) time = std::filesystem::file_time_type::min();
+        return {file, std::move(scene), std::move(times), {}, ExitCode::ok};
     } catch (const Error& error) {
-        return {file, nullptr, error.what(), error.code};
+        return {file, nullptr, {}, error.what(), error.code};
     } catch (const std::bad_alloc&) {
-        return {file, nullptr, file.string() + ": out of memory", ExitCode::out_of_memory};
+        return {file, nullptr, {}, file.string() + ": out of memory", ExitCode::out_of_memory};
     }
 }
 }

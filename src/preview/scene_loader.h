@@ -10,9 +10,13 @@
 #include <optional>
 
 namespace tyndall {
+// When each file was written last; of one that is missing, never.
+using FileTimes = std::map<std::filesystem::path, std::filesystem::file_time_type>;
+FileTimes times_of(const std::vector<std::filesystem::path>& files);
 struct LoadedScene {
     std::filesystem::path file;
     std::shared_ptr<const Scene> scene; // null when it could not be read
+    FileTimes times;                    // of its files; never, of one that was written meanwhile
     std::string error;
     ExitCode code = ExitCode::ok;
 };
@@ -29,7 +33,4 @@ private:
     std::vector<std::future<LoadedScene>> forgotten_; // not yet done
 };
 
-// When each file was written last; of one that is missing, never.
-using FileTimes = std::map<std::filesystem::path, std::filesystem::file_time_type>;
-FileTimes times_of(const std::vector<std::filesystem::path>& files);
 }

@@ -12,6 +12,7 @@ const std::vector<std::string>& shown_layer_names();
 struct Shown {
     ShownLayer layer = ShownLayer::picture;
     float exposure = 0; // stops; of picture and fog
+    float wipe = 0.5f;  // share of the width where a mode beside begins
 };
 
 // Picture and fog look as their PNGs do: the same curve and dither, rounded by less than a hundredth of a code.

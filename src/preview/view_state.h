@@ -13,7 +13,7 @@ struct ViewState {
     bool loading = false;
     std::shared_ptr<const Scene> scene; // null until the first is there
 
-    std::string mode = "march", stand_in = "froxel";
+    std::string mode = "march", stand_in = "froxel", beside;
     Quality quality = Quality::preview;
     Settings settings = settings_for(Quality::preview);
     uint32_t seed = 0;
@@ -33,7 +33,8 @@ struct ViewState {
     double next_frame_at = 0; // seconds of the clock, while playing
 
     bool panels = true, help = false;
-    std::string message; // the last thing that went wrong, or was done
+    std::string file_error; // why the scene's files, as they are now, cannot be read
+    std::string message;    // the last thing that went wrong, or was done
     bool message_is_error = false;
 
     uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow
@@ -42,7 +43,11 @@ struct ViewState {
 // Does an action; false when it is one for the window (key, drag, wait, snapshot, screenshot, quit). Throws Error.
 bool apply(ViewState& state, const Action& action);
 
-// A scene has been loaded: camera and time stay when it is the same file.
+// Throws Error (usage) before the first one.
+const Scene& loaded_scene(const ViewState& state);
+
+// A scene has been loaded: camera and time stay when it is the same file. Throws Error (usage) when the first one lacks
+// the camera.
 void take_scene(ViewState& state, std::shared_ptr<const Scene> scene);
 
 // The camera pictures are made with, and the point before it.

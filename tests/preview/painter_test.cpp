@@ -70,6 +70,30 @@ TEST(Painter, TheRoundOfTheSettingsSamplesIsThePictureOfRender) {
     }
 }
 
+TEST(Painter, TwoModesShareThePictureAtTheWipe) {
+    Painter painter;
+    Request request = request_for(small_scene());
+    request.most_samples = request.settings.pixel.samples;
+    request.beside = "cone", request.shown.wipe = 0.25f;
+    const Picture both = paint_all(painter, request).back();
+    EXPECT_EQ(both.beside, "cone");
+    EXPECT_EQ(both.samples, request.most_samples);
+    Request other = request;
+    other.mode = "cone";
+    const auto left = rendered(request, request.most_samples), right = rendered(other, request.most_samples);
+    ASSERT_NE(left.pixels, right.pixels);
+    const auto is_composed = [&](const Image<glm::u8vec4>& codes, int split) {
+        for (int y = 0; y < codes.size.y; ++y)
+            for (int x = 0; x < codes.size.x; ++x)
+                if (codes.at(x, y) != (x < split ? left : right).at(x, y)) return false;
+        return true;
+    };
+    EXPECT_TRUE(is_composed(both.codes, request.size.x / 4));
+    ++request.shown_revision, request.shown.wipe = 0.75f;
+    EXPECT_TRUE(is_composed(paint(painter, request, never)->codes, 3 * request.size.x / 4));
+    EXPECT_FALSE(paint(painter, request, never));
+}
+
 TEST(Painter, MovingPicturesAreQuickAndOneForEachRequest) {
     flush_denormals();
     Painter painter;
