@@ -39,6 +39,7 @@ void apply_theme(float scale) {
     colors[ImGuiCol_ChildBg] = grey(0.125f, 0);
     colors[ImGuiCol_PopupBg] = grey(0.16f, 0.98f);
     colors[ImGuiCol_Border] = grey(0.28f);
+    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = grey(0.19f);
     colors[ImGuiCol_FrameBg] = grey(0.19f);
     colors[ImGuiCol_FrameBgHovered] = grey(0.24f);
     colors[ImGuiCol_FrameBgActive] = grey(0.28f);

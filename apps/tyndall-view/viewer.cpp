@@ -122,9 +122,11 @@ void run_frame(Viewer& viewer) {
     const double drawn = seconds_now();
     if (viewer.new_picture) viewer.window.set_picture(viewer.shelf.picture->codes);
     viewer.new_picture = false;
-    viewer.window.draw();
+    const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
     const double done = seconds_now();
-    viewer.times.interface.push_back(drawn - start), viewer.times.gl.push_back(done - drawn);
+    viewer.times.interface.push_back(drawn - start);
+    if (!is_new) return;
+    viewer.times.gl.push_back(done - drawn);
     take_screenshot(viewer);
     viewer.window.swap();
 }

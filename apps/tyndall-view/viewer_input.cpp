@@ -46,7 +46,7 @@ void perform(Viewer& viewer, const Action& action) {
     case Verb::key:
         if (!key_codes().contains(action.words[0]))
             fail(ExitCode::usage, "key", "no key '" + printable(action.words[0], 40) + "'");
-        viewer.scripted.key = action.words[0];
+        viewer.scripted.key = action.words[0], viewer.key_frames = 2;
         break;
     case Verb::drag:
         viewer.drag = {vec2(numbers[0], numbers[1]), vec2(numbers[2], numbers[3]), 0};
@@ -87,8 +87,8 @@ ScriptFacts facts_of(const Viewer& viewer) {
     const auto& picture = viewer.shelf.picture;
     if (picture && picture->revision == viewer.state.revision && picture->mode == viewer.state.mode && !picture->quick)
         facts.samples = picture->samples;
-    facts.busy = viewer.drag.frame >= 0 || !viewer.scripted.key.empty() || viewer.files_to_come > 0 ||
-                 !viewer.screenshot.empty();
+    facts.busy =
+        viewer.drag.frame >= 0 || viewer.key_frames > 0 || viewer.files_to_come > 0 || !viewer.screenshot.empty();
     return facts;
 }
 
@@ -139,7 +139,6 @@ void read_keys(Viewer& viewer) {
             act(viewer, *action);
         }
     }
-    viewer.scripted.key.clear();
 }
 
 }
@@ -150,5 +149,7 @@ void read_input(Viewer& viewer) {
     const bool mouse = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || io.MouseWheel != 0 || ImGui::IsAnyMouseDown();
     if (keys || mouse) viewer.input_at = viewer.now;
     read_keys(viewer);
+    viewer.scripted.key.clear();
+    viewer.key_frames = std::max(viewer.key_frames - 1, 0);
 }
 }

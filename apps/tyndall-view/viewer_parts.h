@@ -28,6 +28,7 @@ struct Viewer {
     PanelMemory memory;
     ScriptPlayer script;
     ScriptedInput scripted;
+    int key_frames = 0; // until a script's key is up again
     Drag drag;
     std::string script_place; // of the action being done
     std::string screenshot;   // to take after this frame

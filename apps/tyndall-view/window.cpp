@@ -9,12 +9,29 @@
 #include <imgui.h>
 
 #include <cstdint>
+#include <functional>
+#include <string_view>
 
 namespace tyndall {
 namespace {
 std::string& last_problem() {
     static std::string text;
     return text;
+}
+
+// Of all triangles and of what they are drawn with.
+size_t hash_of(const ImDrawData& data) {
+    size_t sum = std::hash<float>()(data.DisplaySize.x) * 31 + std::hash<float>()(data.DisplaySize.y);
+    const auto add = [&](const void* bytes, size_t count) {
+        sum = sum * 1000003 + std::hash<std::string_view>()({static_cast<const char*>(bytes), count});
+    };
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        add(list.VtxBuffer.Data, static_cast<size_t>(list.VtxBuffer.size_in_bytes()));
+        add(list.IdxBuffer.Data, static_cast<size_t>(list.IdxBuffer.size_in_bytes()));
+        for (const ImDrawCmd& command : list.CmdBuffer) add(&command.ClipRect, sizeof command.ClipRect);
+    }
+    return sum;
 }
 
 [[noreturn]] void fail_display() {
@@ -47,6 +64,9 @@ Window::Window(const std::string& title, ivec2 size) {
         glfwTerminate();
         fail_display();
     }
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetWindowRefreshCallback(
+        window_, [](GLFWwindow* window) { static_cast<Window*>(glfwGetWindowUserPointer(window))->stale_ = true; });
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
 
@@ -101,7 +121,10 @@ void Window::begin_frame(const ScriptedInput& input) {
 
 void Window::end_frame() { ImGui::Render(); }
 
-void Window::draw() {
+bool Window::draw(bool anyway) {
+    const size_t wanted = hash_of(*ImGui::GetDrawData());
+    if (wanted == drawn_ && !stale_ && !anyway) return false;
+    drawn_ = wanted, stale_ = false;
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
     glViewport(0, 0, width, height);
@@ -109,6 +132,7 @@ void Window::draw() {
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     glFinish();
+    return true;
 }
 
 void Window::swap() { glfwSwapBuffers(window_); }
@@ -122,7 +146,7 @@ void Window::set_picture(const Image<glm::u8vec4>& codes) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
     else
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
-    texture_size_ = size;
+    texture_size_ = size, stale_ = true;
 }
 
 void* Window::picture() const { return reinterpret_cast<void*>(static_cast<intptr_t>(texture_)); }

@@ -30,7 +30,8 @@ public:
     static void wake(); // from any thread: ends wait()
     void begin_frame(const ScriptedInput& input);
     void end_frame(); // the frame's drawing is complete, but not on the screen
-    void draw();      // by GL
+    // By GL; does nothing and says so when all of it is on the screen already, unless it is to be drawn anyway.
+    bool draw(bool anyway);
     void swap();
     void set_title(const std::string& title);
 
@@ -41,6 +42,8 @@ public:
 private:
     GLFWwindow* window_ = nullptr;
     unsigned texture_ = 0;
+    size_t drawn_ = 0;  // hash of what was drawn last
+    bool stale_ = true; // the picture is another one, or the window was uncovered
     ivec2 texture_size_{0};
 };
 

@@ -66,7 +66,7 @@ class ViewerTest(ProgramTest):
 class Scenes(ViewerTest):
     def test_the_first_picture_of_every_scene_comes_soon(self):
         for name in SCENES:
-            told = self.view(SOURCE / f"scenes/{name}.json", [f"wait samples 1"])
+            told = self.view(SOURCE / f"scenes/{name}.json", ["wait samples 1"])
             seconds = float(re.search(r"first after ([\d.]+) s", told).group(1))
             self.assertLess(seconds, 15 if SANITIZED else 1.5, name)
 
@@ -134,6 +134,13 @@ class Pictures(ViewerTest):
         self.assertFalse(self.same("a.exr", "--frames", 1))
         self.assertTrue(self.same("b.exr", "--frames", 1))
         self.assertTrue(any(self.same("c.exr", "--frames", frame) for frame in range(2, 9)))
+
+    def test_sliders_change_settings(self):
+        drags = [f"drag 1173,{y} 1215,{y}" for y in range(500, 780, 30)]
+        self.view(self.film, ["wait idle", *drags, f"snapshot {self.path('a.exr')}", "reset all",
+                              f"snapshot {self.path('b.exr')}"], "--samples", 1)
+        self.assertIn(" --set ", self.attributes("a.exr"))
+        self.assertTrue(self.same("b.exr", "--frames", 1))
 
     def test_time_goes_on_by_keys_and_by_playing(self):
         self.view(self.film, ["key right", "key right", f"snapshot {self.path('a.exr')}", "key left", "play 3",
