@@ -20,7 +20,7 @@ void take_loaded(Viewer& viewer) {
     if (!loaded) return;
     state.loading = false;
     if (loaded->scene) {
-        viewer.watched = std::move(loaded->times);
+        viewer.watched = std::move(loaded->inputs);
         viewer.window.set_title(state.scene_file.filename().string() + " - Tyndall");
         state.file_error.clear();
         take_scene(state, loaded->scene);
@@ -36,9 +36,8 @@ void watch_files(Viewer& viewer) {
     ViewState& state = viewer.state;
     if (!state.scene || state.loading || viewer.now < viewer.watched_at + watch_interval) return;
     viewer.watched_at = viewer.now;
-    FileTimes times = times_of(state.scene->inputs);
-    if (times == viewer.watched) return;
-    viewer.watched = std::move(times);
+    if (changed_inputs(viewer.watched).empty()) return;
+    viewer.watched = input_times(*state.scene); // of a broken file too: the next change counts
     state.scene_file = state.scene->file, state.loading = true;
     viewer.script_place.clear();
     ++state.loads;

@@ -10,12 +10,13 @@ namespace {
 LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) {
     flush_denormals();
     try {
-        const auto begun = std::filesystem::file_time_type::clock::now();
+        using FileClock = std::filesystem::file_time_type::clock;
+        const auto begun = FileClock::now();
         auto scene = std::make_shared<const Scene>(load_scene(file, options));
-        FileTimes times = times_of(scene->inputs);
-        for (auto& [input, time] : times)
-            if (time > begun) time = std::filesystem::file_time_type::min();
-        return {file, std::move(scene), std::move(times), {}, ExitCode::ok};
+        std::vector<InputTime> inputs = input_times(*scene);
+        for (InputTime& input : inputs)
+            if (input.written >= begun && input.written <= FileClock::now()) input.written = {};
+        return {file, std::move(scene), std::move(inputs), {}, ExitCode::ok};
     } catch (const Error& error) {
         return {file, nullptr, {}, error.what(), error.code};
     } catch (const std::bad_alloc&) {
@@ -40,15 +41,5 @@ void SceneLoader::start(const std::filesystem::path& file, const LoadOptions& op
 std::optional<LoadedScene> SceneLoader::take() {
     if (!result_.valid() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
     return result_.get();
-}
-
-FileTimes times_of(const std::vector<std::filesystem::path>& files) {
-    FileTimes times;
-    for (const std::filesystem::path& file : files) {
-        std::error_code missing;
-        const auto time = std::filesystem::last_write_time(file, missing);
-        times[file] = missing ? std::filesystem::file_time_type::min() : time;
-    }
-    return times;
 }
 }

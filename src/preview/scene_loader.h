@@ -1,22 +1,18 @@
 // Scene files read beside everything else, and read again when one of their files has changed.
 #pragma once
 #include "base/error.h"
-#include "scene/scene.h"
+#include "preview/input_times.h"
 
 #include <functional>
 #include <future>
-#include <map>
 #include <memory>
 #include <optional>
 
 namespace tyndall {
-// When each file was written last; of one that is missing, never.
-using FileTimes = std::map<std::filesystem::path, std::filesystem::file_time_type>;
-FileTimes times_of(const std::vector<std::filesystem::path>& files);
 struct LoadedScene {
     std::filesystem::path file;
     std::shared_ptr<const Scene> scene; // null when it could not be read
-    FileTimes times;                    // of its files; never, of one that was written meanwhile
+    std::vector<InputTime> inputs;      // its files; one that was written meanwhile counts as changed
     std::string error;
     ExitCode code = ExitCode::ok;
 };
