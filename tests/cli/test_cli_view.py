@@ -45,7 +45,12 @@ def read_png(path):
 @unittest.skipUnless(VIEWER.exists(), "tyndall-view was not built")
 class ViewerTest(ProgramTest):
     def command(self, *arguments):
-        return ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", VIEWER, *map(str, arguments)]
+        # The exit code goes into a file: xvfb-run has one of its own when it fails to tidy up.
+        return ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", "sh", "-c", '"$@"; echo $? > "$0"',
+                self.path("exit_code"), VIEWER, *map(str, arguments)]
+
+    def exit_code(self):
+        return int(self.path("exit_code").read_text())
 
     def environment(self):
         return {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # of the graphics driver
@@ -55,7 +60,7 @@ class ViewerTest(ProgramTest):
         script = self.write("script.txt", "\n".join([*lines, "quit"]))
         result = subprocess.run(self.command(film, "--script", script, "--stats", *more), text=True, timeout=timeout,
                                 capture_output=True, env=self.environment())
-        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertEqual(self.exit_code(), code, result.stderr)
         return result.stdout if code == 0 else result.stderr
 
     def attributes(self, name):
@@ -169,7 +174,7 @@ class Pictures(ViewerTest):
         time.sleep(1)
         self.write("scene.json", scene(gltf="triangle.gltf", background={"color": [0, 0.5, 0]}))
         errors = process.communicate(timeout=120)[1]
-        self.assertEqual(process.returncode, 0, errors)
+        self.assertEqual(self.exit_code(), 0, errors)
         self.assertTrue(self.same("b.exr", "--frames", 1))
         self.assertNotEqual(self.path("a.exr").read_bytes(), self.path("b.exr").read_bytes())
 
