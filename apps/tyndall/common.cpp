@@ -1,7 +1,9 @@
 #include "common.h"
 
 #include "base/error.h"
+#include "base/isa.h"
 #include "base/text.h"
+#include "trace/occluders.h"
 
 #include <cerrno>
 #include <charconv>
@@ -58,6 +60,12 @@ size_t choice_option(std::string_view option, std::string_view text, const std::
     for (size_t i = 0; i < choices.size(); ++i)
         if (choices[i] == text) return i;
     fail(ExitCode::usage, option, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
+}
+
+std::string chosen_isa(const std::string& text) {
+    const std::string_view kernels = set_isa(text);
+    set_embree_isa(text);
+    return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
 }
 
 std::vector<std::string> comma_list(std::string_view text) {

@@ -35,6 +35,10 @@ Run add_plan(CLI::App& app);
 Run add_explain(CLI::App& app);
 Run add_stress(CLI::App& app);
 Run add_chart(CLI::App& app);
+Run add_view(CLI::App& app);
+
+// Becomes the viewer, which reads its own command line. Throws Error when it is not there.
+int start_viewer(std::vector<std::string> arguments);
 
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
@@ -54,6 +58,9 @@ inline constexpr int largest_side = 16384; // what EXR readers take
 ivec2 resolution_option(std::string_view option, std::string_view text);
 // The position of an option's value among its choices. Throws Error (usage) listing them.
 size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices);
+// Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
+// the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
+std::string chosen_isa(const std::string& text);
 // The pieces between commas.
 std::vector<std::string> comma_list(std::string_view text);
 

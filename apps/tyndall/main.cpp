@@ -144,6 +144,7 @@ void refuse_empty_values(const CLI::App& app) {
 }
 
 int run(int argc, char** argv) {
+    if (argc > 1 && std::string_view(argv[1]) == "view") return start_viewer({argv + 2, argv + argc});
     CLI::App app{"Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.", "tyndall"};
     app.get_formatter()->column_width(28);
     app.get_formatter()->label("Positionals", "What");
@@ -156,7 +157,7 @@ int run(int argc, char** argv) {
     add_globals(app, globals, texts);
     const std::vector<Run> commands{add_bake(app),    add_render(app),  add_info(app),   add_check(app),
                                     add_modes(app),   add_compare(app), add_verify(app), add_plan(app),
-                                    add_explain(app), add_stress(app),  add_chart(app)};
+                                    add_explain(app), add_stress(app),  add_chart(app),  add_view(app)};
     const std::vector<CLI::App*> names = app.get_subcommands({});
     for (CLI::App* command : names) {
         command->fallthrough()->group("Commands");

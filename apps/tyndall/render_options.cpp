@@ -4,7 +4,6 @@
 #include "automatic.h"
 #include "base/error.h"
 #include "base/frames.h"
-#include "base/isa.h"
 #include "output.h"
 #include "render/to_target.h"
 
@@ -29,14 +28,6 @@ std::vector<std::string> parsed_layers(const std::string& text) {
     std::vector<std::string> layers;
     for (const std::string& name : comma_list(text)) layers.push_back(known[choice_option("--aov", name, known)]);
     return layers;
-}
-
-// Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
-// the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
-std::string chosen_isa(const std::string& text) {
-    const std::string_view kernels = set_isa(text);
-    set_embree_isa(text);
-    return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
 }
 
 // A mode whose only error is noise gets so many times the quality's samples.

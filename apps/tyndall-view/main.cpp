@@ -1,0 +1,131 @@
+// The program `tyndall-view`: reads the command line, opens the viewer, turns every outcome into an exit code.
+#include "../tyndall/common.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "viewer.h"
+
+#include <cstdio>
+#include <new>
+
+namespace tyndall {
+namespace {
+struct Texts {
+    std::string scene, mode = "march", stand_in = "froxel", quality = "preview", camera, resolution, samples, script,
+                       window;
+    std::string rate, threads, seed, units = "spec", missing = "error", exposure;
+    std::vector<std::string> settings;
+    bool stats = false;
+};
+
+void add_options(CLI::App& app, Texts& texts) {
+    app.set_help_flag("-h,--help", "explain the options");
+    app.set_version_flag("--version", "tyndall-view " TYNDALL_VERSION, "print the version");
+    const auto option = [&](const char* name, std::string& text, const char* type, const char* help) {
+        return app.add_option(name, text, help)->type_name(type);
+    };
+    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf/.glb by itself")->required();
+    option("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
+    option("--stand-in", texts.stand_in, "NAME",
+           "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
+    option("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
+    app.add_option("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated")
+        ->type_name("ROW=VALUE")
+        ->allow_extra_args(false);
+    option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
+    option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
+    option("--exposure", texts.exposure, "EV", "brighten (+) or darken (-) the picture, in stops");
+    option("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
+    option("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
+    option("--light-units", texts.units, "UNITS",
+           "what a glTF's light intensities mean: spec (default), unitless, raw");
+    option("--missing", texts.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
+    option("--fps", texts.rate, "N", "pictures per second wanted while things move (default: 30)");
+    option("--window", texts.window, "WxH", "size of the window (default: 1280x800)");
+    option("--threads", texts.threads, "N", "threads to use, 1 to 1024 (default: every core)");
+    option("--script", texts.script, "FILE",
+           "actions to do, one a line; the window stays open unless the last is quit");
+    app.add_flag("--stats", texts.stats, "at the end, times of interface and pictures on stdout");
+}
+
+std::string footer() {
+    std::string text = "Actions of a script:\n";
+    for (const VerbInfo& info : verbs())
+        text += formatted("  %-24s %.*s\n", (std::string(info.name) + " " + std::string(info.parameters)).c_str(),
+                          static_cast<int>(info.doc.size()), info.doc.data());
+    return text + "\nExit codes: those of tyndall (tyndall --help), 69 when there is no display.";
+}
+
+ViewerOptions read_options(const Texts& texts) {
+    ViewerOptions options;
+    ViewState& state = options.state;
+    state.mode = find_mode(texts.mode).name;
+    state.stand_in = texts.stand_in == "none" ? "" : std::string(find_mode(texts.stand_in).name);
+    state.quality = quality_named(texts.quality);
+    state.settings = settings_for(state.quality);
+    for (const std::string& assignment : texts.settings) apply_setting(state.settings, assignment);
+    state.camera = texts.camera;
+    if (!texts.resolution.empty()) state.size = resolution_option("--res", texts.resolution);
+    if (!texts.window.empty()) options.window = resolution_option("--window", texts.window);
+    if (!texts.exposure.empty())
+        state.shown.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
+    if (!texts.samples.empty())
+        state.most_samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 1 << 20));
+    if (!texts.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    if (!texts.rate.empty()) state.wanted_rate = number_option("--fps", texts.rate, 1, 1000);
+    constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
+    options.load.light_units = units[choice_option("--light-units", texts.units, {"spec", "unitless", "raw"})];
+    constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
+    state.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
+    options.stats = texts.stats;
+    set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
+    options.isa = chosen_isa("auto");
+
+    check_readable(texts.scene);
+    if (!texts.script.empty()) options.script = parse_script(read_file(texts.script), texts.script);
+    apply(state, {Verb::open, {texts.scene}, {}, {}});
+    return options;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app{"Looks at a scene's fog while it is lit: every technique, every setting, at once.", "tyndall view"};
+    app.get_formatter()->column_width(28);
+    Texts texts;
+    add_options(app, texts);
+    app.footer(footer());
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::CallForHelp&) {
+        print_report(app.help());
+        return 0;
+    } catch (const CLI::CallForVersion& version) {
+        print_report(std::string(version.what()) + "\n");
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        fail(ExitCode::usage, "", printable(error.what(), 300) + " (tyndall view --help)");
+    }
+    run_viewer(read_options(texts));
+    return 0;
+}
+
+int report_error(std::string_view text, ExitCode code) {
+    say("error: " + printable(text, 480));
+    return static_cast<int>(code);
+}
+}
+}
+
+int main(int argc, char** argv) {
+    using namespace tyndall;
+    flush_denormals();
+    try {
+        return run(argc, argv);
+    } catch (const Error& error) {
+        return report_error(error.what(), error.code);
+    } catch (const std::bad_alloc&) {
+        return report_error("out of memory", ExitCode::out_of_memory);
+    } catch (const std::exception& error) {
+        return report_error("internal: " + std::string(error.what()), ExitCode::internal);
+    }
+}

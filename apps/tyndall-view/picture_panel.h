@@ -1,0 +1,7 @@
+// The picture with its line of status.
+#pragma once
+#include "panels.h"
+
+namespace tyndall {
+void draw_picture(ViewState& state, const Shelf& shelf, const Act& act);
+}

@@ -1,0 +1,63 @@
+#include "theme.h"
+
+#include <filesystem>
+
+namespace tyndall {
+namespace {
+constexpr const char* typeface = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr float type_size = 15;
+
+void load_type(float scale) {
+    ImGuiIO& io = ImGui::GetIO();
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(typeface, ignored) &&
+        io.Fonts->AddFontFromFileTTF(typeface, type_size * scale))
+        return;
+    io.Fonts->AddFontDefault();
+    io.FontGlobalScale = 1.2f * scale;
+}
+
+ImVec4 grey(float value, float alpha = 1) { return {value, value, value * 1.04f, alpha}; }
+
+ImVec4 tinted(float strength) { return {accent.x, accent.y, accent.z, strength}; }
+}
+
+void apply_theme(float scale) {
+    load_type(scale);
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowPadding = {14, 12}, style.FramePadding = {8, 4}, style.ItemSpacing = {8, 7};
+    style.ItemInnerSpacing = {8, 4}, style.ScrollbarSize = 12, style.GrabMinSize = 10;
+    style.WindowRounding = 0, style.FrameRounding = style.GrabRounding = style.PopupRounding = 3;
+    style.WindowBorderSize = 0, style.FrameBorderSize = 0, style.PopupBorderSize = 1;
+    style.ScaleAllSizes(scale);
+
+    ImVec4* colors = style.Colors;
+    colors[ImGuiCol_Text] = grey(0.87f);
+    colors[ImGuiCol_TextDisabled] = quiet;
+    colors[ImGuiCol_WindowBg] = grey(0.125f);
+    colors[ImGuiCol_ChildBg] = grey(0.125f, 0);
+    colors[ImGuiCol_PopupBg] = grey(0.16f, 0.98f);
+    colors[ImGuiCol_Border] = grey(0.28f);
+    colors[ImGuiCol_TitleBg] = colors[ImGuiCol_TitleBgActive] = grey(0.19f);
+    colors[ImGuiCol_FrameBg] = grey(0.19f);
+    colors[ImGuiCol_FrameBgHovered] = grey(0.24f);
+    colors[ImGuiCol_FrameBgActive] = grey(0.28f);
+    colors[ImGuiCol_SliderGrab] = grey(0.55f);
+    colors[ImGuiCol_SliderGrabActive] = accent;
+    colors[ImGuiCol_CheckMark] = accent;
+    colors[ImGuiCol_Button] = grey(0.22f);
+    colors[ImGuiCol_ButtonHovered] = grey(0.29f);
+    colors[ImGuiCol_ButtonActive] = tinted(0.45f);
+    colors[ImGuiCol_Header] = tinted(0.22f);
+    colors[ImGuiCol_HeaderHovered] = grey(0.25f);
+    colors[ImGuiCol_HeaderActive] = tinted(0.35f);
+    colors[ImGuiCol_Separator] = grey(0.22f);
+    colors[ImGuiCol_ScrollbarBg] = grey(0.125f, 0);
+    colors[ImGuiCol_ScrollbarGrab] = grey(0.27f);
+    colors[ImGuiCol_ScrollbarGrabHovered] = grey(0.35f);
+    colors[ImGuiCol_ScrollbarGrabActive] = grey(0.42f);
+    colors[ImGuiCol_TextSelectedBg] = tinted(0.35f);
+    colors[ImGuiCol_NavHighlight] = tinted(0.6f);
+}
+}

@@ -1,0 +1,142 @@
+// The frames of the interface.
+#include "../tyndall/common.h"
+#include "base/error.h"
+#include "render/png.h"
+#include "viewer_parts.h"
+
+namespace tyndall {
+namespace {
+constexpr double active_wait = 1.0 / 60, resting_wait = 0.25; // seconds between interface frames
+constexpr double active_time = 0.5;                           // after the last input
+constexpr double watch_interval = 0.5;                        // between looks at the scene's files
+
+void take_loaded(Viewer& viewer) {
+    ViewState& state = viewer.state;
+    if (viewer.loads_begun != state.loads) {
+        viewer.loads_begun = state.loads;
+        viewer.loader.start(state.scene_file, viewer.options.load, Window::wake);
+    }
+    std::optional<LoadedScene> loaded = viewer.loader.take();
+    if (!loaded) return;
+    state.loading = false;
+    if (loaded->scene) {
+        viewer.watched = std::move(loaded->inputs);
+        viewer.window.set_title(state.scene_file.filename().string() + " - Tyndall");
+        state.file_error.clear();
+        take_scene(state, loaded->scene);
+        return;
+    }
+    // The last good picture stays, unless there is none or a script asked for this scene.
+    if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
+    state.file_error = loaded->error;
+}
+
+// Reads the scene again when one of its files has changed.
+void watch_files(Viewer& viewer) {
+    ViewState& state = viewer.state;
+    if (!state.scene || state.loading || viewer.now < viewer.watched_at + watch_interval) return;
+    viewer.watched_at = viewer.now;
+    if (changed_inputs(viewer.watched).empty()) return;
+    viewer.watched = input_times(*state.scene); // of a broken file too: the next change counts
+    state.scene_file = state.scene->file, state.loading = true;
+    viewer.script_place.clear();
+    ++state.loads;
+}
+
+void take_pictures(Viewer& viewer) {
+    if (std::shared_ptr<const Picture> picture = viewer.thread.take_picture()) {
+        viewer.picture_revision = picture->revision;
+        if (!picture->error.empty()) {
+            if (!viewer.script.finished()) fail(picture->code, viewer.script_place, picture->error);
+            tell(viewer, picture->error, true);
+        } else {
+            if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
+            if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
+            viewer.shelf.picture = std::move(picture);
+            viewer.new_picture = true;
+        }
+    }
+    while (const std::optional<Saved> saved = viewer.thread.take_saved()) {
+        --viewer.files_to_come;
+        if (!saved->error.empty() && !viewer.script.finished()) fail(saved->code, viewer.file_place, saved->error);
+        if (saved->error.empty())
+            tell(viewer, formatted("wrote %s in %.2f s", saved->file.c_str(), saved->seconds), false);
+        else
+            tell(viewer, saved->error, true);
+    }
+    viewer.shelf.saving = viewer.thread.saving();
+}
+
+void post_request(Viewer& viewer) {
+    ViewState& state = viewer.state;
+    if (!state.scene) return;
+    if (state.motions != viewer.motions_seen) viewer.motions_seen = state.motions, viewer.moved_at = viewer.now;
+    const bool moving = is_moving(viewer);
+    if (viewer.posted == state.revision && viewer.posted_shown == state.shown_revision &&
+        viewer.posted_moving == moving)
+        return;
+    viewer.posted = state.revision, viewer.posted_shown = state.shown_revision, viewer.posted_moving = moving;
+    try {
+        viewer.thread.post(request_of(state, moving));
+    } catch (const Error& error) {
+        tell(viewer, error.what(), true);
+    }
+}
+
+double wait_of(const Viewer& viewer) {
+    const bool active = is_moving(viewer) || viewer.now < viewer.input_at + active_time || !viewer.script.finished() ||
+                        viewer.files_to_come > 0 || viewer.state.loading;
+    return active ? active_wait : resting_wait;
+}
+
+void take_screenshot(Viewer& viewer) {
+    const std::string file = std::exchange(viewer.screenshot, {});
+    if (file.empty()) return;
+    try {
+        write_png(file, viewer.window.pixels());
+    } catch (const Error& error) {
+        fail(error.code, viewer.script_place, error.what());
+    }
+}
+
+// One frame of the interface. Everything up to GL is its own time.
+void run_frame(Viewer& viewer) {
+    viewer.window.wait(wait_of(viewer));
+    const double start = seconds_now();
+    viewer.frame_seconds = std::min(start - viewer.now, 0.1);
+    viewer.now = start;
+    take_loaded(viewer);
+    watch_files(viewer);
+    take_pictures(viewer);
+    advance(viewer.state, viewer.now, viewer.picture_revision);
+    follow_script(viewer);
+    move_scripted_mouse(viewer);
+    viewer.window.begin_frame(viewer.scripted);
+    read_input(viewer);
+    viewer.shelf.texture = viewer.window.picture();
+    draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
+    post_request(viewer);
+    viewer.window.end_frame();
+
+    const double drawn = seconds_now();
+    if (viewer.new_picture) viewer.window.set_picture(viewer.shelf.picture->codes);
+    viewer.new_picture = false;
+    const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
+    const double done = seconds_now();
+    viewer.times.interface.push_back(drawn - start);
+    if (!is_new) return;
+    viewer.times.gl.push_back(done - drawn);
+    take_screenshot(viewer);
+    viewer.window.swap();
+}
+}
+
+void run_viewer(const ViewerOptions& options) {
+    Viewer viewer(options);
+    viewer.script.actions = options.script;
+    viewer.started = viewer.now = seconds_now();
+    while (!viewer.quit && !viewer.window.closed()) run_frame(viewer);
+    viewer.times.seconds = seconds_now() - viewer.started;
+    if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
+}
+}

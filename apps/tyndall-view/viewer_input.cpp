@@ -1,0 +1,155 @@
+// What hands and scripts do.
+#include "base/error.h"
+#include "base/text.h"
+#include "viewer_parts.h"
+
+#include <imgui.h>
+
+#include <chrono>
+
+namespace tyndall {
+namespace {
+constexpr double settle = 0.15; // seconds after a motion until pictures count as still
+constexpr int drag_frames = 12;
+constexpr double flying = 25; // key presses a second that holding a key counts as
+}
+
+double seconds_now() {
+    using namespace std::chrono;
+    return duration<double>(steady_clock::now().time_since_epoch()).count();
+}
+
+void tell(Viewer& viewer, const std::string& message, bool is_error) {
+    viewer.state.message = message, viewer.state.message_is_error = is_error;
+}
+
+bool is_moving(const Viewer& viewer) { return viewer.now < viewer.moved_at + settle || viewer.state.playing; }
+
+namespace {
+void save(Viewer& viewer, const std::string& file) {
+    if (!viewer.state.scene) fail(ExitCode::usage, file, "no scene is loaded yet");
+    SaveJob job;
+    job.file = file;
+    job.request = request_of(viewer.state, false);
+    job.camera = viewer.state.free ? "view" : viewer.state.camera;
+    job.quality = viewer.state.quality, job.isa = viewer.options.isa;
+    job.light_units = viewer.options.load.light_units;
+    viewer.thread.save(std::move(job));
+    ++viewer.files_to_come;
+}
+
+// Does an action of any kind. Throws Error.
+void perform(Viewer& viewer, const Action& action) {
+    if (apply(viewer.state, action)) return;
+    const auto& numbers = action.numbers;
+    switch (action.verb) {
+    case Verb::key:
+        if (!key_codes().contains(action.words[0]))
+            fail(ExitCode::usage, "key", "no key '" + printable(action.words[0], 40) + "'");
+        viewer.scripted.key = action.words[0], viewer.key_frames = 2;
+        break;
+    case Verb::drag:
+        viewer.drag = {vec2(numbers[0], numbers[1]), vec2(numbers[2], numbers[3]), 0};
+        break;
+    case Verb::snapshot:
+        save(viewer, action.words[0]);
+        break;
+    case Verb::screenshot:
+        viewer.screenshot = action.words[0];
+        break;
+    case Verb::quit:
+        viewer.quit = true;
+        break;
+    default:
+        break;
+    }
+}
+
+}
+
+void act(Viewer& viewer, const Action& action) {
+    try {
+        if (action.verb != Verb::brighten) viewer.state.message.clear();
+        perform(viewer, action);
+    } catch (const Error& error) {
+        tell(viewer, error.what(), true);
+    }
+}
+
+namespace {
+// What a script may go by.
+ScriptFacts facts_of(const Viewer& viewer) {
+    ScriptFacts facts;
+    facts.now = viewer.now;
+    const bool asked = viewer.posted == viewer.state.revision && viewer.posted_shown == viewer.state.shown_revision;
+    facts.idle = asked && !viewer.posted_moving && !viewer.new_picture && viewer.thread.idle() &&
+                 viewer.picture_revision == viewer.state.revision;
+    const auto& picture = viewer.shelf.picture;
+    if (picture && picture->revision == viewer.state.revision && picture->mode == viewer.state.mode && !picture->quick)
+        facts.samples = picture->samples;
+    facts.busy =
+        viewer.drag.frame >= 0 || viewer.key_frames > 0 || viewer.files_to_come > 0 || !viewer.screenshot.empty();
+    return facts;
+}
+
+}
+
+void follow_script(Viewer& viewer) {
+    while (!viewer.quit) {
+        const std::optional<Action> action = next_action(viewer.script, viewer.state, facts_of(viewer));
+        if (!action) return;
+        viewer.script_place = viewer.file_place = action->place;
+        try {
+            perform(viewer, *action);
+        } catch (const Error& error) {
+            fail(error.code, action->place, error.what());
+        }
+    }
+}
+
+void move_scripted_mouse(Viewer& viewer) {
+    ScriptedInput& input = viewer.scripted;
+    input.active = !viewer.options.script.empty() && (!viewer.script.finished() || viewer.drag.frame >= 0);
+    Drag& drag = viewer.drag;
+    if (drag.frame < 0) {
+        input.down = false, input.mouse = vec2(-1e6f);
+        return;
+    }
+    const float share = std::clamp((static_cast<float>(drag.frame) - 2) / drag_frames, 0.0f, 1.0f);
+    input.mouse = glm::mix(drag.from, drag.to, share);
+    input.down = drag.frame > 0 && drag.frame <= drag_frames + 2;
+    if (++drag.frame > drag_frames + 4) drag.frame = -1;
+}
+
+namespace {
+// Keys that are pressed now; those that fly go on while they are held.
+void read_keys(Viewer& viewer) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput) return;
+    for (const auto& [name, code] : key_codes()) {
+        if (!ImGui::IsKeyDown(code) || io.KeyCtrl || io.KeyAlt) continue;
+        const bool flies = name.size() == 1 && std::string_view("wasdqe").find(name[0]) != std::string_view::npos;
+        const bool repeats = name == "left" || name == "right" || name == "[" || name == "]";
+        std::optional<Action> action = action_of_key(viewer.state, name);
+        if (!action) continue;
+        if (ImGui::IsKeyPressed(code, repeats)) {
+            act(viewer, *action);
+        } else if (flies) {
+            for (double& metres : action->numbers) metres *= flying * viewer.frame_seconds;
+            act(viewer, *action);
+        }
+    }
+}
+
+}
+
+void read_input(Viewer& viewer) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const bool keys = std::any_of(std::begin(io.KeysDown), std::end(io.KeysDown), [](bool down) { return down; });
+    const bool mouse = io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || io.MouseWheel != 0 || ImGui::IsAnyMouseDown();
+    if (keys || mouse) viewer.input_at = viewer.now;
+    read_keys(viewer);
+    viewer.scripted.key.clear();
+    viewer.key_frames = std::max(viewer.key_frames - 1, 0);
+}
+}

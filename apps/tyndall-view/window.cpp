@@ -1,0 +1,164 @@
+#include "window.h"
+
+#include "base/error.h"
+#include "theme.h"
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace tyndall {
+namespace {
+std::string& last_problem() {
+    static std::string text;
+    return text;
+}
+
+// Of all triangles and of what they are drawn with.
+size_t hash_of(const ImDrawData& data) {
+    size_t sum = std::hash<float>()(data.DisplaySize.x) * 31 + std::hash<float>()(data.DisplaySize.y);
+    const auto add = [&](const void* bytes, size_t count) {
+        sum = sum * 1000003 + std::hash<std::string_view>()({static_cast<const char*>(bytes), count});
+    };
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        add(list.VtxBuffer.Data, static_cast<size_t>(list.VtxBuffer.size_in_bytes()));
+        add(list.IdxBuffer.Data, static_cast<size_t>(list.IdxBuffer.size_in_bytes()));
+        for (const ImDrawCmd& command : list.CmdBuffer) add(&command.ClipRect, sizeof command.ClipRect);
+    }
+    return sum;
+}
+
+[[noreturn]] void fail_display() {
+    const std::string why = last_problem().empty() ? "a window cannot be opened" : printable(last_problem(), 120);
+    fail(ExitCode::no_display, "no display",
+         why + "; on a machine without one: xvfb-run -a tyndall view SCENE --script FILE");
+}
+}
+
+const std::map<std::string, int>& key_codes() {
+    static const std::map<std::string, int> codes = [] {
+        std::map<std::string, int> all{{"space", GLFW_KEY_SPACE},    {"left", GLFW_KEY_LEFT},
+                                       {"right", GLFW_KEY_RIGHT},    {"home", GLFW_KEY_HOME},
+                                       {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
+                                       {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
+        for (char c = 'a'; c <= 'z'; ++c) all[std::string(1, c)] = GLFW_KEY_A + (c - 'a');
+        for (char c = '0'; c <= '9'; ++c) all[std::string(1, c)] = GLFW_KEY_0 + (c - '0');
+        return all;
+    }();
+    return codes;
+}
+
+Window::Window(const std::string& title, ivec2 size) {
+    glfwSetErrorCallback([](int, const char* text) { last_problem() = text; });
+    if (!glfwInit()) fail_display();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
+    window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+    if (!window_) {
+        glfwTerminate();
+        fail_display();
+    }
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetWindowRefreshCallback(
+        window_, [](GLFWwindow* window) { static_cast<Window*>(glfwGetWindowUserPointer(window))->stale_ = true; });
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    float scale = 1, ignored = 1;
+    glfwGetWindowContentScale(window_, &scale, &ignored);
+    apply_theme(scale);
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplOpenGL3_Init("#version 130");
+
+    glGenTextures(1, &texture_);
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+Window::~Window() {
+    glDeleteTextures(1, &texture_);
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+bool Window::closed() const { return glfwWindowShouldClose(window_); }
+
+void Window::wait(double seconds) {
+    if (seconds > 0)
+        glfwWaitEventsTimeout(seconds);
+    else
+        glfwPollEvents();
+}
+
+void Window::wake() { glfwPostEmptyEvent(); }
+
+void Window::begin_frame(const ScriptedInput& input) {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    if (input.active) {
+        ImGuiIO& io = ImGui::GetIO();
+        io.MousePos = {input.mouse.x, input.mouse.y};
+        io.MouseDown[0] = input.down;
+        for (const auto& [name, code] : key_codes()) io.KeysDown[code] = name == input.key;
+    }
+    ImGui::NewFrame();
+}
+
+void Window::end_frame() { ImGui::Render(); }
+
+bool Window::draw(bool anyway) {
+    const size_t wanted = hash_of(*ImGui::GetDrawData());
+    if (wanted == drawn_ && !stale_ && !anyway) return false;
+    drawn_ = wanted, stale_ = false;
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    glViewport(0, 0, width, height);
+    glClearColor(0.06f, 0.06f, 0.065f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    glFinish();
+    return true;
+}
+
+void Window::swap() { glfwSwapBuffers(window_); }
+
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
+void Window::set_picture(const Image<glm::u8vec4>& codes) {
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    const ivec2 size = codes.size;
+    if (size == texture_size_)
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
+    else
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
+    texture_size_ = size, stale_ = true;
+}
+
+void* Window::picture() const { return reinterpret_cast<void*>(static_cast<intptr_t>(texture_)); }
+
+Image<glm::u8vec3> Window::pixels() const {
+    ivec2 size{0};
+    glfwGetFramebufferSize(window_, &size.x, &size.y);
+    Image<glm::u8vec3> upside_down(size), image(size);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RGB, GL_UNSIGNED_BYTE, upside_down.pixels.data());
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) image.at(x, y) = upside_down.at(x, size.y - 1 - y);
+    return image;
+}
+}

@@ -1,0 +1,52 @@
+// A window with Dear ImGui in it, and one texture for the picture.
+#pragma once
+#include "base/image.h"
+
+#include <map>
+#include <string>
+
+struct GLFWwindow;
+
+namespace tyndall {
+// Mouse and keys as a script holds them, instead of the real ones.
+struct ScriptedInput {
+    bool active = false;
+    vec2 mouse{-1e6f}; // of the window, pixels
+    bool down = false;
+    std::string key; // pressed in this frame; empty = none
+};
+
+class Window {
+public:
+    // Throws Error (no_display).
+    Window(const std::string& title, ivec2 size);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    bool closed() const;
+    // Sleeps until there is something to do, or for so long.
+    void wait(double seconds);
+    static void wake(); // from any thread: ends wait()
+    void begin_frame(const ScriptedInput& input);
+    void end_frame(); // the frame's drawing is complete, but not on the screen
+    // By GL; does nothing and says so when all of it is on the screen already, unless it is to be drawn anyway.
+    bool draw(bool anyway);
+    void swap();
+    void set_title(const std::string& title);
+
+    void set_picture(const Image<glm::u8vec4>& codes); // call between end_frame() and draw()
+    void* picture() const;                             // texture for ImGui::Image
+    Image<glm::u8vec3> pixels() const;                 // of what was drawn
+
+private:
+    GLFWwindow* window_ = nullptr;
+    unsigned texture_ = 0;
+    size_t drawn_ = 0;  // hash of what was drawn last
+    bool stale_ = true; // the picture is another one, or the window was uncovered
+    ivec2 texture_size_{0};
+};
+
+// Names of keys as actions know them, with GLFW's numbers.
+const std::map<std::string, int>& key_codes();
+}

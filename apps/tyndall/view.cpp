@@ -1,0 +1,34 @@
+// tyndall view: starts the viewer, a program of its own that lies beside this one.
+#include "base/error.h"
+#include "common.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <unistd.h>
+
+namespace tyndall {
+namespace {
+constexpr const char* program = "tyndall-view";
+}
+
+int start_viewer(std::vector<std::string> arguments) {
+    std::error_code ignored;
+    const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", ignored);
+    const std::string viewer = (own.parent_path() / program).string();
+    if (!std::filesystem::exists(viewer, ignored))
+        fail(ExitCode::unreadable, viewer, "the viewer is not there; it is built where GLFW and Dear ImGui are");
+    arguments.insert(arguments.begin(), program);
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    execv(viewer.c_str(), pointers.data());
+    fail(ExitCode::unreadable, viewer, std::strerror(errno));
+}
+
+Run add_view(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("view", "look at a scene while it is lit: the viewer");
+    command->prefix_command();
+    return [command](const Globals&) { return start_viewer(command->remaining()); };
+}
+}

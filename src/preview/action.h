@@ -1,0 +1,64 @@
+// What can be done in the viewer, as lines of text: keys, panels and scripts all become these.
+#pragma once
+#include "base/math.h"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+enum class Verb {
+    open,
+    set,
+    reset,
+    mode,
+    beside,
+    wipe,
+    quality,
+    orders,
+    show,
+    exposure,
+    brighten,
+    camera,
+    orbit,
+    turn,
+    pan,
+    dolly,
+    fly,
+    size,
+    frame,
+    step,
+    play,
+    stop,
+    loop,
+    panels,
+    help,
+    key,
+    drag,
+    wait,
+    snapshot,
+    screenshot,
+    quit
+};
+
+struct Action {
+    Verb verb = Verb::quit;
+    std::vector<std::string> words; // parameters that are names
+    std::vector<double> numbers;    // and those that are numbers, in order
+    std::string place;              // "script.txt:3"; empty outside of scripts
+};
+
+struct VerbInfo {
+    Verb verb;
+    std::string_view name, parameters, doc;
+};
+const std::vector<VerbInfo>& verbs();
+
+// "orbit 30 -5". Words with blanks stand in double quotes. Throws Error (refused) naming `place`.
+Action parse_action(std::string_view line, const std::string& place = {});
+
+// One action a line; what follows a # at a line's beginning or after a blank is a remark. Throws Error (refused) naming
+// file and line.
+std::vector<Action> parse_script(std::string_view text, const std::string& file);
+}

@@ -1,0 +1,62 @@
+// What the interface asks for, and the pictures it gets.
+#pragma once
+#include "base/error.h"
+#include "preview/tone.h"
+#include "render/sequence.h"
+
+#include <memory>
+
+namespace tyndall {
+struct Request {
+    std::shared_ptr<const Scene> scene;
+    uint64_t revision = 0;       // another number: the picture is another one
+    uint64_t shown_revision = 0; // another number: the same picture is shown in another way
+    bool moving = false;         // the next change is near: quick pictures only
+    int frame = 1;
+    Camera camera;
+    ivec2 size{640, 360};
+    std::string mode = "march";
+    std::string stand_in = "froxel"; // mode of quick pictures when `mode` is march or path; empty = the same
+    std::string beside;              // mode of the right part of still pictures; empty = none
+    Settings settings;
+    uint32_t seed = 0;
+    MissingFrame missing = MissingFrame::error;
+    Shown shown;
+    int most_samples = 64;            // per pixel, after which a picture is finished
+    double wanted_seconds = 1.0 / 30; // of quick pictures
+};
+
+struct StageTimes {
+    double load = 0;    // scene at its moment: animation, fog, ray tracing structures
+    double prepare = 0; // what the mode makes before its first ray
+    double fog = 0;     // the mode's share of prepare and render
+    double render = 0;
+    double tone = 0;
+    double total() const { return load + prepare + render + tone; }
+};
+
+struct Picture {
+    uint64_t revision = 0;
+    int frame = 1;
+    Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays
+    ivec2 wanted{0};          // size of the whole picture
+    std::string mode;         // that made it, perhaps a stand-in
+    std::string beside;       // that made its right part; empty = it is all of one mode
+    bool quick = false;       // made while things moved
+    bool finished = false;    // will not get better
+    int samples = 0;          // per pixel so far; of two modes, the fewer
+    StageTimes times;         // of its last round of samples
+    uint64_t non_finite = 0;
+    std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures
+    std::vector<std::string> notes;
+    std::string error; // why there is no picture
+    ExitCode code = ExitCode::ok;
+};
+
+// The mode of quick pictures.
+const std::string& quick_mode(const Request& request);
+
+// What tyndall render would be told to make the finished picture.
+RenderJob job_of(const Request& request);
+View view_of(const Request& request);
+}

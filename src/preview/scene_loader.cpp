@@ -1,0 +1,45 @@
+#include "preview/scene_loader.h"
+
+#include "base/parallel.h"
+
+#include <chrono>
+#include <new>
+
+namespace tyndall {
+namespace {
+LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) {
+    flush_denormals();
+    try {
+        using FileClock = std::filesystem::file_time_type::clock;
+        const auto begun = FileClock::now();
+        auto scene = std::make_shared<const Scene>(load_scene(file, options));
+        std::vector<InputTime> inputs = input_times(*scene);
+        for (InputTime& input : inputs)
+            if (input.written >= begun && input.written <= FileClock::now()) input.written = {};
+        return {file, std::move(scene), std::move(inputs), {}, ExitCode::ok};
+    } catch (const Error& error) {
+        return {file, nullptr, {}, error.what(), error.code};
+    } catch (const std::bad_alloc&) {
+        return {file, nullptr, {}, file.string() + ": out of memory", ExitCode::out_of_memory};
+    }
+}
+}
+
+void SceneLoader::start(const std::filesystem::path& file, const LoadOptions& options, std::function<void()> done) {
+    const auto is_done = [](const std::future<LoadedScene>& result) {
+        return result.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    };
+    if (result_.valid()) forgotten_.push_back(std::move(result_));
+    std::erase_if(forgotten_, is_done);
+    result_ = std::async(std::launch::async, [file, options, done = std::move(done)] {
+        LoadedScene loaded = read(file, options);
+        if (done) done();
+        return loaded;
+    });
+}
+
+std::optional<LoadedScene> SceneLoader::take() {
+    if (!result_.valid() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return {};
+    return result_.get();
+}
+}

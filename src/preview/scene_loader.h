@@ -1,0 +1,32 @@
+// Scene files read beside everything else, and read again when one of their files has changed.
+#pragma once
+#include "base/error.h"
+#include "preview/input_times.h"
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+
+namespace tyndall {
+struct LoadedScene {
+    std::filesystem::path file;
+    std::shared_ptr<const Scene> scene; // null when it could not be read
+    std::vector<InputTime> inputs;      // its files; one that was written meanwhile counts as changed
+    std::string error;
+    ExitCode code = ExitCode::ok;
+};
+
+class SceneLoader {
+public:
+    // Begins to read a file; what is being read at that time is forgotten. `done` is called from another thread.
+    void start(const std::filesystem::path& file, const LoadOptions& options, std::function<void()> done = {});
+    bool loading() const { return result_.valid(); }
+    std::optional<LoadedScene> take(); // what was read, once
+
+private:
+    std::future<LoadedScene> result_;
+    std::vector<std::future<LoadedScene>> forgotten_; // not yet done
+};
+
+}

@@ -1,0 +1,85 @@
+#include "preview/view_state.h"
+
+#include "base/error.h"
+#include "base/frames.h"
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+double seconds_of(const ViewState& state) { return moment_of(*state.scene, state.frame).seconds; }
+
+void go_to(ViewState& state, int frame) { apply(state, {Verb::frame, {}, {static_cast<double>(frame)}, {}}); }
+}
+
+const Scene& loaded_scene(const ViewState& state) {
+    if (!state.scene) fail(ExitCode::usage, "viewer", "no scene is loaded yet");
+    return *state.scene;
+}
+
+void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
+    const auto has_name = [&](const CameraSource& camera) { return camera.name == state.camera; };
+    if (!state.scene)
+        find_camera(*scene, state.camera);
+    else if (!std::ranges::any_of(scene->cameras, has_name))
+        state.camera.clear();
+    const bool same_file = state.scene && state.scene->file == scene->file;
+    state.scene = std::move(scene);
+    ++state.revision;
+    if (same_file) return;
+    state.free = false, state.playing = false;
+    state.frame = state.scene->first_frame;
+}
+
+Viewpoint viewpoint(const ViewState& state) {
+    if (state.free) return state.view;
+    const Scene& scene = loaded_scene(state);
+    return viewpoint_of(scene, find_camera(scene, state.camera), seconds_of(state));
+}
+
+std::string camera_json(const Viewpoint& view) {
+    const Camera& camera = view.camera;
+    const auto vector = [](vec3 v) { return formatted("[%.5g, %.5g, %.5g]", v.x, v.y, v.z); };
+    return "{\"name\": \"view\", \"position\": " + vector(camera.position) + ", \"target\": " + vector(view.target()) +
+           formatted(", \"vertical_fov\": %.4g}", glm::degrees(camera.vertical_fov));
+}
+
+void advance(ViewState& state, double now, uint64_t shown_revision) {
+    if (!state.playing || !state.scene || shown_revision != state.revision || now < state.next_frame_at) return;
+    const Scene& scene = *state.scene;
+    const double period = 1 / scene.frame_rate;
+    const bool on_time = state.next_frame_at > now - period;
+    state.next_frame_at = (on_time ? state.next_frame_at : now) + period;
+    if (state.frames_to_play > 0 && --state.frames_to_play == 0) {
+        state.playing = false;
+    } else if (state.frame < scene.last_frame) {
+        go_to(state, state.frame + 1);
+    } else if (state.loop && scene.last_frame > scene.first_frame) {
+        go_to(state, scene.first_frame);
+    } else if (!state.loop || state.frames_to_play == 0) {
+        state.playing = false;
+    }
+}
+
+Request request_of(const ViewState& state, bool moving) {
+    Request request;
+    request.scene = state.scene;
+    request.revision = state.revision, request.shown_revision = state.shown_revision;
+    request.moving = moving || state.playing;
+    request.frame = state.frame;
+    request.camera = viewpoint(state).camera;
+    request.size = state.size.x > 0 ? state.size : state.scene->resolution;
+    request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;
+    request.settings = state.settings, request.seed = state.seed, request.missing = state.missing;
+    request.shown = state.shown;
+    request.shown.exposure += state.scene->exposure.at(seconds_of(state));
+    request.most_samples = state.most_samples;
+    request.wanted_seconds = 1 / state.wanted_rate;
+    return request;
+}
+
+std::string usual_file_name(const ViewState& state) {
+    return state.scene_file.stem().string() + "." + state.mode + frame_name(".####", state.frame) + ".exr";
+}
+}

@@ -1,0 +1,75 @@
+// All that the viewer shows and edits, and how actions change it. The window only draws this and passes actions on.
+#pragma once
+#include "preview/action.h"
+#include "preview/camera_control.h"
+#include "preview/request.h"
+
+#include <optional>
+
+namespace tyndall {
+struct ViewState {
+    std::filesystem::path scene_file; // asked for last
+    int loads = 0;                    // times a scene was asked for
+    bool loading = false;
+    std::shared_ptr<const Scene> scene; // null until the first is there
+
+    std::string mode = "march", stand_in = "froxel", beside;
+    Quality quality = Quality::preview;
+    Settings settings = settings_for(Quality::preview);
+    uint32_t seed = 0;
+    MissingFrame missing = MissingFrame::error;
+    ivec2 size{0}; // 0 = the scene's
+    int most_samples = 64;
+    double wanted_rate = 30; // quick pictures per second
+    Shown shown;             // exposure on top of the scene's
+
+    std::string camera; // of the scene; empty = its own choice
+    bool free = false;  // the camera was moved by hand: `view` holds
+    Viewpoint view;
+
+    int frame = 1;
+    bool playing = false, loop = true;
+    int frames_to_play = 0;   // then it stops; 0 = on and on
+    double next_frame_at = 0; // seconds of the clock, while playing
+
+    bool panels = true, help = false;
+    std::string file_error; // why the scene's files, as they are now, cannot be read
+    std::string message;    // the last thing that went wrong, or was done
+    bool message_is_error = false;
+
+    uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow
+};
+
+// Does an action; false when it is one for the window (key, drag, wait, snapshot, screenshot, quit). Throws Error.
+bool apply(ViewState& state, const Action& action);
+
+// Throws Error (usage) before the first one.
+const Scene& loaded_scene(const ViewState& state);
+
+// A scene has been loaded: camera and time stay when it is the same file. Throws Error (usage) when the first one lacks
+// the camera.
+void take_scene(ViewState& state, std::shared_ptr<const Scene> scene);
+
+// The camera pictures are made with, and the point before it.
+Viewpoint viewpoint(const ViewState& state);
+
+// Where the camera is when it was moved by hand: what a scene file says of such a camera.
+std::string camera_json(const Viewpoint& view);
+
+// While playing: on to the next frame when the picture of this one is there and its time is over.
+void advance(ViewState& state, double now, uint64_t shown_revision);
+
+// What to render. Needs a scene.
+Request request_of(const ViewState& state, bool moving);
+
+// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, [ and ].
+std::optional<Action> action_of_key(const ViewState& state, std::string_view key);
+
+struct KeyInfo {
+    std::string_view keys, doc;
+};
+const std::vector<KeyInfo>& key_list();
+
+// scene.march.0001.exr
+std::string usual_file_name(const ViewState& state);
+}

@@ -1,0 +1,239 @@
+"""The viewer in a window nobody sees: scenes, techniques, time, mouse and keys, and files equal to those of render."""
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import time
+import unittest
+import zlib
+
+from program import SANITIZED, SOURCE, TRIANGLE, TYNDALL, ProgramTest, gltf, run, scene
+
+VIEWER = pathlib.Path(TYNDALL).parent / "tyndall-view"
+XVFB = shutil.which("xvfb-run")
+SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
+MODES = ("march", "froxel", "shadow-map", "shadow-volume", "cone", "billboard", "radial-blur", "path")
+WINDOW = (1280, 800)
+
+
+def read_png(path):
+    """Width, height and rows of an 8-bit RGB picture."""
+    data, at, packed = path.read_bytes(), 8, b""
+    width, height = struct.unpack(">II", data[16:24])
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        if kind == b"IDAT":
+            packed += data[at + 8:at + 8 + length]
+        at += 12 + length
+    raw, rows, stride = zlib.decompress(packed), [], 3 * width
+    before = bytearray(stride)
+    for y in range(height):
+        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            left, up = line[i - 3] if i >= 3 else 0, before[i]
+            corner = before[i - 3] if i >= 3 else 0
+            guess = left + up - corner
+            nearest = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
+            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) & 255
+        rows.append(bytes(line))
+        before = line
+    return width, height, rows
+
+
+@unittest.skipUnless(VIEWER.exists(), "tyndall-view was not built")
+class ViewerTest(ProgramTest):
+    def command(self, *arguments):
+        # The exit code goes into a file: xvfb-run has one of its own when it fails to tidy up.
+        return ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", "sh", "-c", '"$@"; echo $? > "$0"',
+                self.path("exit_code"), VIEWER, *map(str, arguments)]
+
+    def exit_code(self):
+        return int(self.path("exit_code").read_text())
+
+    def environment(self):
+        return {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # of the graphics driver
+
+    def view(self, film, lines, *more, code=0, timeout=240):
+        """Opens a scene, does what the lines say and quits; what it printed."""
+        script = self.write("script.txt", "\n".join([*lines, "quit"]))
+        result = subprocess.run(self.command(film, "--script", script, "--stats", *more), text=True, timeout=timeout,
+                                capture_output=True, env=self.environment())
+        self.assertEqual(self.exit_code(), code, result.stderr)
+        return result.stdout if code == 0 else result.stderr
+
+    def attributes(self, name):
+        return self.succeed("info", "--json", self.path(name)).stdout
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Scenes(ViewerTest):
+    def test_the_first_picture_of_every_scene_comes_soon(self):
+        for name in SCENES:
+            most, seconds = 15 if SANITIZED else 1.5, []
+            while len(seconds) < 3 and (not seconds or min(seconds) >= most):  # the machine may be busy
+                told = self.view(SOURCE / f"scenes/{name}.json", ["wait samples 1"])
+                seconds.append(float(re.search(r"first after ([\d.]+) s", told).group(1)))
+            self.assertLess(min(seconds), most, name)
+
+    def test_every_scene_plays_and_the_interface_does_not_wait(self):
+        for name in SCENES:
+            told = self.view(SOURCE / f"scenes/{name}.json", ["wait samples 1", "play 24"], "--res", "160x90")
+            if name != "cloud":  # a single frame
+                self.assertGreaterEqual(int(re.search(r"(\d+) while things moved", told).group(1)), 23, told)
+            half = float(re.search(r"interface: .*half below ([\d.]+) ms", told).group(1))
+            self.assertLess(half, 330 if SANITIZED else 33, told)
+
+    def test_the_window_shows_picture_and_panels(self):
+        self.view(SOURCE / "scenes/window.json",
+                  ["wait samples 4", f"screenshot {self.path('a.png')}", "panels off", "wait 0.1",
+                   f"screenshot {self.path('b.png')}"], "--samples", "4")
+        width, height, rows = read_png(self.path("a.png"))
+        self.assertEqual((width, height), WINDOW)
+        picture = {row[3 * x:3 * x + 3] for row in rows[150:600:5] for x in range(0, 900, 5)}
+        panel = {row[3 * x:3 * x + 3] for row in rows[::5] for x in range(1000, 1280, 5)}
+        self.assertGreater(len(picture), 100)
+        self.assertGreater(len(panel), 5)
+        self.assertNotEqual(rows, read_png(self.path("b.png"))[2])
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Pictures(ViewerTest):
+    """A scene that renders in a moment."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("triangle.bin", TRIANGLE)
+        self.write("triangle.gltf", gltf())
+        self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-8"))
+
+    def same(self, name, *options):
+        """Whether the file is the one that render writes."""
+        self.succeed("render", self.film, "-o", self.path("r.exr"), "-q", "--png", *options)
+        return self.path(name).read_bytes() == self.path("r" + pathlib.Path(name).suffix).read_bytes()
+
+    def test_written_pictures_are_those_of_render(self):
+        self.view(self.film, ["wait samples 2", f"snapshot {self.path('a.exr')}", f"snapshot {self.path('a.png')}",
+                              "frame 3", "set march.nodes 7", "exposure 1", f"snapshot {self.path('b.exr')}",
+                              f"snapshot {self.path('b.png')}", "quality draft", "size 80 50",
+                              f"snapshot {self.path('c.exr')}"], "--seed", "5")
+        self.assertTrue(self.same("a.exr", "--frames", 1, "--seed", 5))
+        self.assertTrue(self.same("a.png", "--frames", 1, "--seed", 5))
+        changed = ("--frames", 3, "--seed", 5, "--set", "march.nodes=7", "--exposure", 1)
+        self.assertTrue(self.same("b.exr", *changed))
+        self.assertTrue(self.same("b.png", *changed))
+        self.assertTrue(self.same("c.exr", "--frames", 3, "--seed", 5, "--quality", "draft", "--res", "80x50"))
+
+    def test_every_mode_has_a_key_and_its_pictures_are_those_of_render(self):
+        lines = ["set pixel.samples 4"]
+        for number, mode in enumerate(MODES, 1):
+            lines += [f"key {number}", "wait idle", f"snapshot {self.path(mode + '.exr')}"]
+        self.view(self.film, lines, "--samples", 2)
+        for mode in MODES:
+            self.assertTrue(self.same(f"{mode}.exr", "--frames", 1, "--mode", mode, "--samples", 4), mode)
+
+    def test_the_mouse_turns_the_camera_and_drags_time(self):
+        self.view(self.film, ["wait idle", "drag 450,400 600,420", "wait idle", f"snapshot {self.path('a.exr')}",
+                              "camera", f"snapshot {self.path('b.exr')}", "drag 260,776 700,776",
+                              f"snapshot {self.path('c.exr')}"], "--samples", 2)
+        self.assertIn('--camera \\"view\\"', self.attributes("a.exr"))
+        self.assertFalse(self.same("a.exr", "--frames", 1))
+        self.assertTrue(self.same("b.exr", "--frames", 1))
+        self.assertTrue(any(self.same("c.exr", "--frames", frame) for frame in range(2, 9)))
+
+    def test_sliders_change_settings(self):
+        drags = [f"drag 1173,{y} 1215,{y}" for y in range(500, 780, 30)]
+        self.view(self.film, ["wait idle", *drags, f"snapshot {self.path('a.exr')}", "reset all",
+                              f"snapshot {self.path('b.exr')}"], "--samples", 1)
+        self.assertIn(" --set ", self.attributes("a.exr"))
+        self.assertTrue(self.same("b.exr", "--frames", 1))
+
+    def test_time_goes_on_by_keys_and_by_playing(self):
+        self.view(self.film, ["key right", "key right", f"snapshot {self.path('a.exr')}", "key left", "play 3",
+                              f"snapshot {self.path('b.exr')}"], "--samples", 2)
+        self.assertTrue(self.same("a.exr", "--frames", 3))
+        self.assertTrue(self.same("b.exr", "--frames", 4))
+
+    def test_another_scene_is_opened(self):
+        other = self.write("other.json", scene(background={"color": [0.5, 0, 0]}))
+        self.view(self.film, ["wait samples 1", f"open {other}", f"snapshot {self.path('a.exr')}"], "--samples", 2)
+        self.film = other
+        self.assertTrue(self.same("a.exr", "--frames", 1))
+
+    def test_a_file_that_changes_is_read_again_and_a_broken_one_is_not_the_end(self):
+        lines = [f"snapshot {self.path('a.exr')}", "wait 4", f"snapshot {self.path('b.exr')}", "quit"]
+        script = self.write("script.txt", "\n".join(lines))
+        process = subprocess.Popen(self.command(self.film, "--script", script, "--samples", 2), text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment())
+        for _ in range(600):
+            if self.path("a.exr").exists():
+                break
+            time.sleep(0.1)
+        self.write("scene.json", "{ broken")
+        time.sleep(1)
+        self.write("scene.json", scene(gltf="triangle.gltf", background={"color": [0, 0.5, 0]}))
+        errors = process.communicate(timeout=120)[1]
+        self.assertEqual(self.exit_code(), 0, errors)
+        self.assertTrue(self.same("b.exr", "--frames", 1))
+        self.assertNotEqual(self.path("a.exr").read_bytes(), self.path("b.exr").read_bytes())
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Mistakes(ViewerTest):
+    def setUp(self):
+        super().setUp()
+        self.film = self.write("scene.json", scene())
+
+    def check(self, lines, code, *words):
+        told = self.view(self.film, lines, code=code)
+        errors = [line for line in told.splitlines() if line.startswith("tyndall: error: ")]
+        self.assertEqual(len(errors), 1, told)
+        for word in words:
+            self.assertIn(word, errors[0])
+
+    def test_scripts_end_where_they_are_wrong(self):
+        self.check(["wait idle", "spin 3"], 3, "script.txt:2", "spin")
+        self.check(["", "mode marsh"], 2, "script.txt:2", "marsh")
+        self.check(["set march.nods 4"], 2, "script.txt:1", "march.nodes")
+        self.check(["key nothing"], 2, "script.txt:1")
+        self.check(["open missing.json"], 4, "script.txt:1", "missing.json")
+        self.check([f"open {self.write('bad.json', '{')}"], 3, "script.txt:1", "bad.json")
+        self.check([f"snapshot {self.path('a.jpg')}"], 2, "script.txt:1", "a.jpg")
+        self.check([f"snapshot {self.film}/a.exr"], 5, "script.txt:1")
+
+    def test_a_first_scene_that_cannot_be_read_is_said_at_once(self):
+        self.film = self.write("bad.json", "{}")
+        self.check(["wait idle"], 3, "bad.json")
+
+
+class CommandLine(ViewerTest):
+    def plain(self, *arguments):
+        """Without any display."""
+        environment = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
+        return subprocess.run([VIEWER, *map(str, arguments)], text=True, capture_output=True, timeout=60,
+                              env=environment)
+
+    def test_without_a_display_it_says_so(self):
+        self.check_refusal(self.plain(self.write("a.json", scene())), 69, "display", "xvfb-run")
+
+    def test_mistakes_come_before_the_window(self):
+        film = self.write("a.json", scene())
+        self.check_refusal(self.plain("missing.json"), 4, "missing.json")
+        self.check_refusal(self.plain(film, "--mode", "marsh"), 2, "marsh")
+        self.check_refusal(self.plain(film, "--set", "march.nodes=x"), 2, "march.nodes")
+        self.check_refusal(self.plain(film, "--fps", "0"), 2, "--fps")
+        self.check_refusal(self.plain(film, "--colour"), 2, "--colour")
+        self.check_refusal(self.plain(), 2, "SCENE")
+        self.check_refusal(self.plain(film, "--script", "missing.txt"), 4, "missing.txt")
+        self.check_refusal(self.plain(film, "--script", self.write("s.txt", "jump")), 3, "s.txt:1", "jump")
+
+    def test_tyndall_view_starts_it(self):
+        self.assertIn("screenshot FILE", run("view", "--help").stdout)
+        self.check_refusal(run("view", "missing.json", "--res", "64x36"), 4, "missing.json")
+        self.check_refusal(run("view", "missing.json", "--res", "64"), 2, "--res")
+        self.assertIn("view", run("--help").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
