@@ -1,4 +1,5 @@
-"""Fails when a file includes a layer above its own, or a library outside the layer that owns it."""
+"""Fails when a file includes a layer above its own, or a library outside the layer that owns it, or when two headers give
+one name to different types: those link without a word and crash."""
 import pathlib
 import re
 import sys
@@ -27,5 +28,13 @@ for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.
         for prefix, allowed in OWNERS.items():
             if included.startswith(prefix) and not any(relative.startswith(place) for place in allowed):
                 problems.append(f"{relative}:{number}: {included} belongs in {', '.join(allowed)} only")
+named = {}
+for path in sorted([*root.glob("src/**/*.h"), *root.glob("apps/**/*.h")]):
+    relative = path.relative_to(root).as_posix()
+    kernel = path.name.endswith("_simd.h")  # has a namespace for each instruction set
+    for number, line in enumerate(path.read_text().splitlines(), 1):
+        match = re.match(r"(?:template<[^>]*> )?(?:struct|class|enum class) (\w+)\b(?!::)[^;()]*\{", line)
+        if match and not kernel and named.setdefault(match.group(1), relative) != relative:
+            problems.append(f"{relative}:{number}: {match.group(1)} is also in {named[match.group(1)]}")
 print("\n".join(problems) or "layers: ok")
 sys.exit(1 if problems else 0)

@@ -8,9 +8,9 @@
 namespace tyndall {
 // What the panels show besides the state.
 struct Shelf {
-    std::shared_ptr<const Picture> picture; // newest with codes; null before the first
-    std::vector<Limit> limits;              // of the mode, as far as they are known
-    double saving = -1;                     // share of a file that is being written
+    std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
+    std::vector<Limit> limits;                   // of the mode, as far as they are known
+    double saving = -1;                          // share of a file that is being written
     void* texture = nullptr;
     double seconds = 0; // since the last interface frame
 };
@@ -30,5 +30,5 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
 void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);
 
 // Mode, size, samples, time and what the mode gets wrong, as one line.
-std::string status_line(const ViewState& state, const Picture& picture);
+std::string status_line(const ViewState& state, const ShownPicture& picture);
 }

@@ -65,7 +65,7 @@ void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
 }
 
 // The line between two techniques, which the mouse can take along, and their names.
-void draw_wipe(const Place& place, const ViewState& state, const Picture& picture, const Act& act) {
+void draw_wipe(const Place& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
     const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
     const float x = place.low.x + state.shown.wipe * width;
     ImGui::SetCursorScreenPos({x - 0.5f * type, place.low.y});
@@ -97,7 +97,7 @@ std::string wrongs(const std::vector<Limit>& limits) {
 }
 }
 
-std::string status_line(const ViewState& state, const Picture& picture) {
+std::string status_line(const ViewState& state, const ShownPicture& picture) {
     const Mode& mode = find_mode(picture.mode);
     std::string text = picture.mode;
     if (picture.mode != state.mode) text += " for " + state.mode;

@@ -44,7 +44,7 @@ void watch_files(Viewer& viewer) {
 }
 
 void take_pictures(Viewer& viewer) {
-    if (std::shared_ptr<const Picture> picture = viewer.thread.take_picture()) {
+    if (std::shared_ptr<const ShownPicture> picture = viewer.thread.take_picture()) {
         viewer.picture_revision = picture->revision;
         if (!picture->error.empty()) {
             if (!viewer.script.finished()) fail(picture->code, viewer.script_place, picture->error);

@@ -26,11 +26,12 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
     if (blur.lights.empty()) return addition;
 
     const bool highlights = blur.settings.source == BlurSource::highlights;
-    const Glow bright = highlights ? highlights_glow(picture.color, blur.settings.threshold, size) : Glow({}, 1);
+    const BlurGlow bright =
+        highlights ? highlights_glow(picture.color, blur.settings.threshold, size) : BlurGlow({}, 1);
     for (const BlurLight& light : blur.lights) {
         const vec2 center = light.position * vec2(size) / vec2(view.size);
         const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
-        const Glow smeared =
+        const BlurGlow smeared =
             highlights ? blurred(bright, blur.line, center, infinity, view)
                        : blurred(unoccluded_glow(view, blur.snapshot, light, size), blur.line, center, radius, view);
         const vec3 color = (highlights ? vec3(light.share) : light.color) * light.fade;

@@ -31,8 +31,8 @@ void see_through(const Snapshot& snapshot, const Occluders::ShadowRays& rays, fl
 }
 }
 
-Glow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
-    Glow glow(size, 1);
+BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
+    BlurGlow glow(size, 1);
     const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
     const vec2 center = light.position * vec2(size) / vec2(view.size);
     parallel_for(size.y, [&](int64_t row) {
@@ -57,9 +57,9 @@ Glow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight
     return glow;
 }
 
-Glow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size) {
+BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size) {
     const Image<vec3> bright = shrunk(color, size, [&](vec3 pixel) { return pixel * share_above(pixel, threshold); });
-    Glow glow(size, 3);
+    BlurGlow glow(size, 3);
     for (int channel = 0; channel < 3; ++channel)
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) glow.row(static_cast<size_t>(channel), y)[x] = bright.at(x, y)[channel];

@@ -5,20 +5,20 @@
 namespace tyndall {
 // One plane of brightness, or three of colour, in a black frame two pixels wide, so that bilinear look-ups up to a
 // pixel outside need no care.
-struct Glow {
+struct BlurGlow {
     static constexpr int frame = 2;
     ivec2 size{0}; // within the frame
     std::vector<Image<float>> planes;
 
-    Glow(ivec2 size_, size_t count) : size(size_), planes(count, Image<float>(size_ + 2 * frame)) {}
+    BlurGlow(ivec2 size_, size_t count) : size(size_), planes(count, Image<float>(size_ + 2 * frame)) {}
     float* row(size_t plane, int y) { return &planes[plane].at(frame, y + frame); }
 };
 
 // Bright sky around the light where nothing stands before it; BLEND surfaces let their share through.
-Glow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size);
+BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size);
 
 // What is brighter than the threshold, less the threshold.
-Glow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size);
+BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size);
 
 // Samples along `density` of the line from a pixel to the light, and their weights.
 struct BlurLine {
@@ -29,8 +29,8 @@ BlurLine make_line(const RadialBlurSettings& settings);
 
 // Sums along the lines to `center`, their samples jittered as the view asks. `radius`: how far from the centre the
 // source is not black.
-Glow blurred(const Glow& source, const BlurLine& line, vec2 center, float radius, const View& view);
+BlurGlow blurred(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view);
 
 // Spreads a glow over the full picture, in a colour, and adds it to `sum` and, unless null, to `part`.
-void add_glow(const Glow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part);
+void add_glow(const BlurGlow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part);
 }

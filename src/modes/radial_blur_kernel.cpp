@@ -28,7 +28,7 @@ struct Taps {
     Floats u, v;
 
     HWY_INLINE Taps(const Floats& x, const Floats& y, int stride) {
-        const Floats px = x + (Glow::frame - 0.5f), py = y + (Glow::frame - 0.5f);
+        const Floats px = x + (BlurGlow::frame - 0.5f), py = y + (BlurGlow::frame - 0.5f);
         const Ints column = truncate(px), row = truncate(py);
         u = px - to_floats(column), v = py - to_floats(row);
         index = row * stride + column;
@@ -79,7 +79,7 @@ HWY_INLINE Lines lines_to(vec2 center, float radius, const BlurLine& line, ivec2
 
 // Sums of `planes` planes at once.
 template<size_t planes>
-HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const Glow& source, Floats* sums) {
+HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const BlurGlow& source, Floats* sums) {
     const float right = static_cast<float>(source.size.x) + 1, bottom = static_cast<float>(source.size.y) + 1;
     const int stride = source.planes[0].size.x;
     for (int i = lines.low; i <= lines.high; ++i) {
@@ -92,8 +92,8 @@ HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const Glow& 
     }
 }
 
-void blur_row_kernel(const Glow& source, const BlurLine& line, vec2 center, float radius, const View& view, int y,
-                     Glow& result) {
+void blur_row_kernel(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view, int y,
+                     BlurGlow& result) {
     for (int x0 = 0; x0 < source.size.x; x0 += 16) {
         alignas(64) float shift[16], pixels[16];
         for (int i = 0; i < 16; ++i) shift[i] = to_unit(jitter_bits(view.jitter, {x0 + i, y}, view.frame, view.seed));
@@ -108,7 +108,7 @@ void blur_row_kernel(const Glow& source, const BlurLine& line, vec2 center, floa
     }
 }
 
-void add_row_kernel(const Glow& glow, vec3 color, int y, Image<vec3>& sum, Image<vec3>* part) {
+void add_row_kernel(const BlurGlow& glow, vec3 color, int y, Image<vec3>& sum, Image<vec3>* part) {
     const vec2 scale = vec2(glow.size) / vec2(sum.size), last = vec2(glow.size) - 0.5f;
     const float down = std::clamp((static_cast<float>(y) + 0.5f) * scale.y, 0.5f, last.y);
     const size_t planes = glow.planes.size();
@@ -135,8 +135,8 @@ namespace tyndall {
 HWY_EXPORT(blur_row_kernel);
 HWY_EXPORT(add_row_kernel);
 
-Glow blurred(const Glow& source, const BlurLine& line, vec2 center, float radius, const View& view) {
-    Glow result(source.size, source.planes.size());
+BlurGlow blurred(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view) {
+    BlurGlow result(source.size, source.planes.size());
     parallel_for(source.size.y, [&](int64_t y) {
         HWY_DYNAMIC_DISPATCH(blur_row_kernel)
         (source, line, center, radius, view, static_cast<int>(y), result);
@@ -144,7 +144,7 @@ Glow blurred(const Glow& source, const BlurLine& line, vec2 center, float radius
     return result;
 }
 
-void add_glow(const Glow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part) {
+void add_glow(const BlurGlow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part) {
     parallel_for(sum.size.y, [&](int64_t y) {
         HWY_DYNAMIC_DISPATCH(add_row_kernel)(glow, color, static_cast<int>(y), sum, part);
     });

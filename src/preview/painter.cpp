@@ -56,9 +56,9 @@ void load(Painter& painter, const Request& request) {
 }
 
 // Codes of both modes, side by side.
-Picture shown(Painter& painter, const Request& request) {
+ShownPicture shown(Painter& painter, const Request& request) {
     const auto start = Clock::now();
-    Picture picture = painter.picture;
+    ShownPicture picture = painter.picture;
     picture.codes = toned(painter.rounds[0].layers, request.shown);
     if (!picture.beside.empty()) {
         const Image<glm::u8vec4> right = toned(painter.rounds[1].layers, request.shown);
@@ -93,19 +93,19 @@ Layers render_quick(Painter& painter, const Request& request, float share, std::
     return layers;
 }
 
-Picture paint_quick(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
+ShownPicture paint_quick(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     Pace& pace = painter.paces[quick_mode(request)];
     pace.wanted = request.wanted_seconds;
     painter.rounds[0].layers = render_quick(painter, request, pace.share(), cancel);
     painter.quick = true, painter.stood_in = pace.level == 0;
     painter.picture.quick = true, painter.picture.finished = false;
-    Picture picture = shown(painter, request);
+    ShownPicture picture = shown(painter, request);
     const StageTimes& times = picture.times;
     measured(pace, times.total(), times.load + times.prepare);
     return picture;
 }
 
-Picture paint_stand_in(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
+ShownPicture paint_stand_in(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     painter.rounds[0].layers = render_quick(painter, request, 1, cancel);
     painter.stood_in = true;
     painter.picture.quick = painter.picture.finished = false;
@@ -157,7 +157,7 @@ void add_round(Layers layers, const FrameStats& stats, const Request& request, R
 }
 
 // One round of the mode asked for or of the one beside, whichever has had fewer.
-Picture paint_round(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
+ShownPicture paint_round(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     const bool two = !request.beside.empty();
     const bool right = two && painter.rounds[1].rounds < painter.rounds[0].rounds;
     Rounds& rounds = painter.rounds[right];
@@ -174,7 +174,7 @@ Picture paint_round(Painter& painter, const Request& request, std::atomic<bool>&
     stats.prepare_seconds += preparing.prepare_seconds, stats.fog_seconds += preparing.fog_seconds;
     note_times(painter, stats);
 
-    Picture& picture = painter.picture;
+    ShownPicture& picture = painter.picture;
     if (!right && rounds.rounds == 0) picture.limits = limits_of(painter, request), picture.non_finite = 0;
     add_round(std::move(layers), stats, request, rounds);
     picture.non_finite += stats.non_finite;
@@ -203,7 +203,7 @@ void begin(Painter& painter, const Request& request) {
     painter.begun = true;
 }
 
-std::optional<Picture> next_picture(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
+std::optional<ShownPicture> next_picture(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     const bool same = painter.begun && painter.request.revision == request.revision;
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
     painter.request = request;
@@ -217,15 +217,15 @@ std::optional<Picture> next_picture(Painter& painter, const Request& request, st
     return paint_round(painter, request, cancel);
 }
 
-Picture failed(const Request& request, const std::string& why, ExitCode code) {
-    Picture picture;
+ShownPicture failed(const Request& request, const std::string& why, ExitCode code) {
+    ShownPicture picture;
     picture.revision = request.revision, picture.frame = request.frame, picture.wanted = request.size;
     picture.finished = true, picture.error = why, picture.code = code;
     return picture;
 }
 }
 
-std::optional<Picture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
+std::optional<ShownPicture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     try {
         return next_picture(painter, request, cancel);
     } catch (const Error& error) {

@@ -26,11 +26,11 @@ struct Painter {
     bool begun = false;
     Request request; // of the newest picture
     bool quick = false, stood_in = false;
-    Rounds rounds[2]; // of the mode, whose layers may be those of a quick picture, and of the mode beside
-    Picture picture;  // all but its codes
+    Rounds rounds[2];     // of the mode, whose layers may be those of a quick picture, and of the mode beside
+    ShownPicture picture; // all but its codes
 };
 
-// The next picture for a request; nothing when there is none to come. What the user caused is in Picture::error. When
-// `cancel` is set from outside, the work ends soon and nothing comes of it.
-std::optional<Picture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel);
+// The next picture for a request; nothing when there is none to come. What the user caused is in ShownPicture::error.
+// When `cancel` is set from outside, the work ends soon and nothing comes of it.
+std::optional<ShownPicture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel);
 }

@@ -12,7 +12,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-void count_quick(const Picture& picture, double seconds, PictureCounts& counts) {
+void count_quick(const ShownPicture& picture, double seconds, PictureCounts& counts) {
     StageTimes& sum = counts.quick_stages;
     const StageTimes& times = picture.times;
     ++counts.quick, counts.quick_seconds += seconds;
@@ -50,7 +50,7 @@ void RenderThread::save(SaveJob job) {
     wake_.notify_one();
 }
 
-std::shared_ptr<const Picture> RenderThread::take_picture() {
+std::shared_ptr<const ShownPicture> RenderThread::take_picture() {
     const std::scoped_lock lock(mutex_);
     return std::exchange(picture_, nullptr);
 }
@@ -116,13 +116,13 @@ void RenderThread::run() {
             make_file(std::move(*save));
         } else {
             const auto start = Clock::now();
-            std::optional<Picture> picture = paint(painter_, *current, cancel_);
+            std::optional<ShownPicture> picture = paint(painter_, *current, cancel_);
             const std::scoped_lock lock(mutex_);
             unfinished_ = !picture ? false : !picture->finished;
             if (picture) {
                 ++counts_.pictures;
                 if (picture->quick) count_quick(*picture, seconds_since(start), counts_);
-                picture_ = std::make_shared<const Picture>(std::move(*picture));
+                picture_ = std::make_shared<const ShownPicture>(std::move(*picture));
             }
         }
         if (news_) news_();

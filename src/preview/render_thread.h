@@ -31,7 +31,7 @@ public:
     void save(SaveJob job);
 
     // The newest picture that was not taken yet; null when there is none.
-    std::shared_ptr<const Picture> take_picture();
+    std::shared_ptr<const ShownPicture> take_picture();
     std::optional<Saved> take_saved();
 
     bool idle() const;     // nothing is being made or will be
@@ -47,7 +47,7 @@ private:
     std::condition_variable wake_;
     std::optional<Request> pending_;
     std::deque<SaveJob> saves_;
-    std::shared_ptr<const Picture> picture_;
+    std::shared_ptr<const ShownPicture> picture_;
     std::deque<Saved> saved_;
     PictureCounts counts_;
     bool stop_ = false, unfinished_ = false, working_ = false, painting_quick_ = false;

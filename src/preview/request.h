@@ -35,7 +35,7 @@ struct StageTimes {
     double total() const { return load + prepare + render + tone; }
 };
 
-struct Picture {
+struct ShownPicture {
     uint64_t revision = 0;
     int frame = 1;
     Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays

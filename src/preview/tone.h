@@ -15,7 +15,7 @@ struct Shown {
     float wipe = 0.5f;  // share of the width where a mode beside begins
 };
 
-// Picture and fog look as their PNGs do: the same curve and dither, rounded by less than a hundredth of a code.
+// ShownPicture and fog look as their PNGs do: the same curve and dither, rounded by less than a hundredth of a code.
 // Transmittance is grey, nearly white at 1. Depth is bright where it is near, black without a surface. Where validity
 // is lower, the picture's grey turns red. Alpha is 255.
 Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown);

@@ -12,8 +12,8 @@ namespace {
 std::atomic<bool> never{false};
 
 // All pictures until there is none to come.
-std::vector<Picture> paint_all(Painter& painter, const Request& request) {
-    std::vector<Picture> pictures;
+std::vector<ShownPicture> paint_all(Painter& painter, const Request& request) {
+    std::vector<ShownPicture> pictures;
     while (auto picture = paint(painter, request, never)) {
         EXPECT_EQ(picture->error, "");
         pictures.push_back(std::move(*picture));
@@ -44,7 +44,7 @@ TEST(Painter, StillPicturesBecomeBetterUntilTheyAreFinished) {
     flush_denormals();
     Painter painter;
     const Request request = request_for(small_scene());
-    const std::vector<Picture> pictures = paint_all(painter, request);
+    const std::vector<ShownPicture> pictures = paint_all(painter, request);
     ASSERT_GE(pictures.size(), 4u);
     EXPECT_EQ(pictures[0].mode, "froxel"); // the stand-in, whole
     EXPECT_EQ(pictures[0].codes.size, request.size);
@@ -65,7 +65,7 @@ TEST(Painter, TheRoundOfTheSettingsSamplesIsThePictureOfRender) {
     for (const char* mode : {"march", "froxel", "path", "radial-blur", "cone"}) {
         ++request.revision;
         request.mode = mode;
-        const std::vector<Picture> pictures = paint_all(painter, request);
+        const std::vector<ShownPicture> pictures = paint_all(painter, request);
         EXPECT_EQ(pictures.back().codes.pixels, rendered(request, request.settings.pixel.samples).pixels) << mode;
     }
 }
@@ -75,7 +75,7 @@ TEST(Painter, TwoModesShareThePictureAtTheWipe) {
     Request request = request_for(small_scene());
     request.most_samples = request.settings.pixel.samples;
     request.beside = "cone", request.shown.wipe = 0.25f;
-    const Picture both = paint_all(painter, request).back();
+    const ShownPicture both = paint_all(painter, request).back();
     EXPECT_EQ(both.beside, "cone");
     EXPECT_EQ(both.samples, request.most_samples);
     Request other = request;
@@ -114,7 +114,7 @@ TEST(Painter, ExposureShowsTheSameSamplesAnew) {
     flush_denormals();
     Painter painter;
     Request request = request_for(small_scene());
-    const Picture before = paint_all(painter, request).back();
+    const ShownPicture before = paint_all(painter, request).back();
     ++request.shown_revision, request.shown.exposure = 2;
     const auto after = paint(painter, request, never);
     ASSERT_TRUE(after);
@@ -136,7 +136,7 @@ TEST(Painter, WhatWasPaintedBeforeLeavesNoTrace) {
     paint(used, other, never);
     other.revision = 3, other.mode = "path", other.moving = false;
     paint(used, other, never);
-    const std::vector<Picture> a = paint_all(fresh, last), b = paint_all(used, last);
+    const std::vector<ShownPicture> a = paint_all(fresh, last), b = paint_all(used, last);
     // Rounds depend on the time they take but for the first ones.
     EXPECT_EQ(a[1].codes.pixels, b[1].codes.pixels);
     EXPECT_EQ(a[2].codes.pixels, b[2].codes.pixels);

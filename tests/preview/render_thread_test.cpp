@@ -18,8 +18,8 @@ template<class Condition> bool comes(const Condition& condition) {
 }
 
 // Pictures until one is finished.
-std::shared_ptr<const Picture> finished(RenderThread& thread, uint64_t revision) {
-    std::shared_ptr<const Picture> picture;
+std::shared_ptr<const ShownPicture> finished(RenderThread& thread, uint64_t revision) {
+    std::shared_ptr<const ShownPicture> picture;
     comes([&] {
         if (auto newer = thread.take_picture()) picture = newer;
         return picture && picture->finished && picture->revision == revision;

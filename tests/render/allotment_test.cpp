@@ -109,7 +109,7 @@ TEST(Allotment, NoiseInACornerCostsRaysThereOnly) {
     for (uint32_t seed = 0; seed < pictures; ++seed) {
         const Result result = to_target(target, seed);
         EXPECT_LE(result.stats.noise->bound, target);
-        EXPECT_LT(static_cast<double>(result.stats.camera_rays), 0.2 * alike * 4096);
+        EXPECT_LT(static_cast<double>(result.stats.camera_rays), 0.25 * alike * 4096);
         double square = 0, corner = 0;
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {
@@ -126,7 +126,7 @@ TEST(Allotment, NoiseInACornerCostsRaysThereOnly) {
 
 TEST(Allotment, SaysHowManySamplesThereAreOnTheAverage) {
     const Result result = to_target(0.002, 3);
-    EXPECT_LT(result.stats.samples, 200);
+    EXPECT_LT(result.stats.samples, 300); // of 1302 if all pixels were alike
     EXPECT_GE(result.stats.camera_rays, 4096u * static_cast<uint64_t>(result.stats.samples));
 }
 }

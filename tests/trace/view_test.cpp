@@ -124,7 +124,7 @@ TEST(View, SamplesAtASpotLookForItsBeam) {
     };
     const Spread wanted = spread(plain, beam), seen = spread(lamp, beam);
     EXPECT_NEAR(seen.mean, wanted.mean, 4 * std::sqrt((wanted.variance + seen.variance) / (1 << 14)));
-    EXPECT_LT(seen.variance, wanted.variance / 100);
+    EXPECT_LT(seen.variance, wanted.variance / 30);
 }
 
 TEST(View, OnlyPixelsAtALampAreWeighted) {
