@@ -29,7 +29,8 @@ for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.
             if included.startswith(prefix) and not any(relative.startswith(place) for place in allowed):
                 problems.append(f"{relative}:{number}: {included} belongs in {', '.join(allowed)} only")
 named = {}
-for path in sorted([*root.glob("src/**/*.h"), *root.glob("apps/**/*.h")]):
+shared_tests = [path for path in root.glob("tests/**/*.h") if "namespace tyndall::test" not in path.read_text()]
+for path in sorted([*root.glob("src/**/*.h"), *root.glob("apps/**/*.h"), *shared_tests]):
     relative = path.relative_to(root).as_posix()
     kernel = path.name.endswith("_simd.h")  # has a namespace for each instruction set
     for number, line in enumerate(path.read_text().splitlines(), 1):

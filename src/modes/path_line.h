@@ -80,7 +80,7 @@ struct FogPoint {
 };
 
 // What a thread uses again from batch to batch.
-struct Scratch {
+struct PathScratch {
     std::vector<Line> lines;
     std::vector<Walker> walkers;
     std::vector<Connection> connections;
@@ -94,7 +94,7 @@ struct Walk {
     const Snapshot& snapshot;
     const RayBatch& batch;
     std::span<Scatter> results;
-    Scratch& scratch;
+    PathScratch& scratch;
     int order = 0;
     bool turns = true; // whether paths may scatter at the end of the current lines
 };

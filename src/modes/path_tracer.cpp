@@ -180,7 +180,7 @@ void meet_surface(const Walk& walk, Line& line, const SurfacePoint& surface, int
 }
 
 void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scatter> results) {
-    static thread_local Scratch scratch;
+    static thread_local PathScratch scratch;
     scratch.walkers.clear(), scratch.connections.clear();
     std::fill(results.begin(), results.end(), Scatter{});
     for (size_t lane = 0; lane < batch.rays.size(); ++lane) {

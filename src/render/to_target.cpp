@@ -36,9 +36,8 @@ struct Rounds {
     double left() const { return goal.seconds - (goal.clock() - start); }
     int most_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
-    int unit() const {
-        return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2;
-    } // samples that are allotted at once
+    // Samples that are allotted at once.
+    int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
 
     // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than it.

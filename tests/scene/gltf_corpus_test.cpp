@@ -57,7 +57,7 @@ TEST_F(GltfCorpus, RealFilesLoad) {
         if (!fs::is_directory(corpus / source)) continue;
         for (const fs::path& file : gltf_files(corpus / source)) {
             SCOPED_TRACE(file.string());
-            const Answer answer = load(file);
+            const LoadAnswer answer = load(file);
             if (file.string().find("Draco") != std::string::npos) {
                 expect_refusal(answer, "KHR_draco_mesh_compression");
                 continue;
@@ -74,7 +74,7 @@ TEST_F(GltfCorpus, MalformedFilesDoNoHarm) {
     int right = 0, wrong = 0;
     for (const fs::path& file : gltf_files(corpus / "malformed")) {
         SCOPED_TRACE(file.string());
-        const Answer answer = load(file);
+        const LoadAnswer answer = load(file);
         if (answer.loaded)
             expect_sound(answer.scene);
         else
@@ -97,9 +97,9 @@ TEST_F(GltfCorpus, MalformedFilesDoNoHarm) {
 TEST_F(GltfCorpus, TwoWaysToStoreOneModelAgree) {
     for (const char* model : {"Box", "BoxAnimated", "BoxVertexColors", "OrientationTest", "RiggedSimple"}) {
         const fs::path folder = corpus / "khronos" / model;
-        const Answer text = load(folder / "glTF" / (std::string(model) + ".gltf"));
-        const Answer binary = load(folder / "glTF-Binary" / (std::string(model) + ".glb"));
-        const Answer embedded = load(folder / "glTF-Embedded" / (std::string(model) + ".gltf"));
+        const LoadAnswer text = load(folder / "glTF" / (std::string(model) + ".gltf"));
+        const LoadAnswer binary = load(folder / "glTF-Binary" / (std::string(model) + ".glb"));
+        const LoadAnswer embedded = load(folder / "glTF-Embedded" / (std::string(model) + ".gltf"));
         ASSERT_TRUE(text.loaded && binary.loaded && embedded.loaded) << model;
         for (const Scene* other : {&binary.scene, &embedded.scene}) {
             ASSERT_EQ(text.scene.meshes.size(), other->meshes.size());

@@ -9,8 +9,8 @@
 namespace tyndall {
 namespace {
 // The triangle with one member's text replaced.
-Answer with(const std::string& member, const std::string& value, const Folder& folder,
-            GltfBuilder gltf = triangle_gltf()) {
+LoadAnswer with(const std::string& member, const std::string& value, const Folder& folder,
+                GltfBuilder gltf = triangle_gltf()) {
     gltf.members[member] = value;
     return load(folder.write("bad.gltf", gltf.json()));
 }
@@ -45,7 +45,7 @@ TEST(GltfErrors, EveryFieldOutOfRange) {
         for (const char* value : values) {
             SCOPED_TRACE(std::string(field) + " becomes " + value);
             const std::string name(field, std::string_view(field).find(':') + 1);
-            const Answer answer = load(folder.write("bad.gltf", replaced(good.json(), field, name + value)));
+            const LoadAnswer answer = load(folder.write("bad.gltf", replaced(good.json(), field, name + value)));
             expect_refusal(answer, "bad.gltf: /");
         }
 }
@@ -153,7 +153,7 @@ TEST(GltfErrors, PlacesThatAreNoPlaces) {
              {R"({"mesh":0,"scale":[1,0,1]})", "scaled to nothing"},
              {R"({"mesh":0,"matrix":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]})", "scaled to nothing"},
              {R"({"mesh":0,"matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]})", "perspective"}}) {
-        const Answer answer = with("nodes", "[" + node + "]", folder);
+        const LoadAnswer answer = with("nodes", "[" + node + "]", folder);
         EXPECT_TRUE(answer.loaded) << answer.message;
         EXPECT_TRUE(has_warning(answer.scene, warning)) << node;
         EXPECT_TRUE(std::isfinite(node_matrix(answer.scene, 0, 0)[3].x));
@@ -236,7 +236,7 @@ TEST(GltfErrors, ImagesCannotHurt) {
     for (const std::string& bytes :
          {std::string("GIF89a\1\0\1\0"), std::string("#?RADIANCE\n"), good.substr(0, 30), good.substr(0, 60),
           png_of({20000, 20000}, {}), png_of({16777217, 1}, {}), std::string("\xff\xd8\xff\xe0 cut"), std::string()}) {
-        const Answer answer = image(data(bytes));
+        const LoadAnswer answer = image(data(bytes));
         EXPECT_TRUE(answer.loaded) << answer.message;
         EXPECT_TRUE(has_warning(answer.scene, "/images/0")) << bytes.substr(0, 8);
         EXPECT_TRUE(answer.scene.textures.empty());
@@ -259,7 +259,7 @@ TEST(GltfErrors, ExtensionsThatAreNeeded) {
     for (const char* fine :
          {"KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_unlit", "KHR_lights_punctual"})
         EXPECT_TRUE(with("extensionsRequired", "[\"" + std::string(fine) + "\"]", folder).loaded) << fine;
-    const Answer optional = with("extensionsUsed", R"(["ACME_wormhole"])", folder);
+    const LoadAnswer optional = with("extensionsUsed", R"(["ACME_wormhole"])", folder);
     EXPECT_TRUE(has_warning(optional.scene, "ACME_wormhole"));
 }
 
@@ -276,7 +276,7 @@ TEST(GltfErrors, AnimationsThatDoNotFit) {
                         R"(,"output":)" + std::to_string(output) + more + "}]}]",
                     folder, gltf);
     };
-    const Answer stuck = played(times, moves, "");
+    const LoadAnswer stuck = played(times, moves, "");
     EXPECT_EQ(stuck.scene.nodes.at(0).translation.times.size(), 2u);
     EXPECT_TRUE(has_warning(stuck.scene, "forward in time"));
     expect_refusal(played(times, few, ""), "/animations/0/samplers/0/output");
@@ -294,11 +294,11 @@ TEST(GltfErrors, GlbCutAnywhere) {
     const std::string whole = glb_of(gltf.json(false), gltf.binary);
     // Every place near the start and the end, one in seven between: chunks begin at multiples of four.
     for (size_t size = 0; size < whole.size(); size += size < 64 || size + 64 > whole.size() ? 1 : 7) {
-        const Answer answer = load(folder.write("cut.glb", whole.substr(0, size)));
+        const LoadAnswer answer = load(folder.write("cut.glb", whole.substr(0, size)));
         expect_refusal(answer, "cut.glb");
     }
     EXPECT_TRUE(load(folder.write("cut.glb", whole)).loaded);
-    const Answer longer = load(folder.write("cut.glb", whole + "more"));
+    const LoadAnswer longer = load(folder.write("cut.glb", whole + "more"));
     EXPECT_TRUE(longer.loaded && has_warning(longer.scene, "4 bytes after the end"));
 }
 
@@ -337,7 +337,7 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
                                      built(text + text),
                                      built(text + data + "abc"),
                                      built(text + data + "abcd")}) {
-        const Answer answer = load(folder.write("bad.glb", bytes));
+        const LoadAnswer answer = load(folder.write("bad.glb", bytes));
         if (answer.loaded)
             EXPECT_TRUE(has_warning(answer.scene, "no data")) << "a missing chunk leaves the mesh out";
         else
@@ -378,7 +378,7 @@ int refused_mutants(uint32_t first, uint32_t last) {
             const uint32_t value = hash(round, i, 2u);
             bytes[place] = value & 1 ? digits[(value >> 8) % digits.size()] : static_cast<char>(value >> 8);
         }
-        const Answer answer = load(folder.write("mutant.glb", bytes));
+        const LoadAnswer answer = load(folder.write("mutant.glb", bytes));
         if (answer.loaded) continue;
         expect_one_line(answer.message);
         ++refused;

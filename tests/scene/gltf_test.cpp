@@ -7,9 +7,9 @@ namespace tyndall {
 namespace {
 Scene loaded(const GltfBuilder& gltf, const LoadOptions& options = {}) {
     const Folder folder;
-    const Answer answer = load(folder.write("scene.gltf", gltf.json()), options);
+    const LoadAnswer answer = load(folder.write("scene.gltf", gltf.json()), options);
     EXPECT_TRUE(answer.loaded) << answer.message;
-    const Answer same = load(folder.write("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
+    const LoadAnswer same = load(folder.write("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
     EXPECT_TRUE(same.loaded) << same.message;
     EXPECT_EQ(same.scene.meshes.size(), answer.scene.meshes.size());
     EXPECT_EQ(same.scene.nodes.size(), answer.scene.nodes.size());
@@ -308,7 +308,7 @@ TEST(Gltf, NamesInUris) {
          {"parts/b%C3%A4%20r%20100%25.bin", "parts/b\xc3\xa4 r 100%.bin", "./parts/../x", "100%25.bin"}) {
         gltf.members["buffers"] =
             R"([{"byteLength":)" + std::to_string(gltf.binary.size()) + R"(,"uri":")" + uri + "\"}]";
-        const Answer answer = load(folder.write("scene.gltf", gltf.json()));
+        const LoadAnswer answer = load(folder.write("scene.gltf", gltf.json()));
         if (std::string_view(uri).find("..") != std::string_view::npos) {
             expect_refusal(answer, "/buffers/0/uri");
             continue;

@@ -107,7 +107,8 @@ TEST(SceneFileErrors, NameFileFieldAndReason) {
     const Folder folder;
     for (const Mistake& mistake : mistakes) {
         SCOPED_TRACE(mistake.fields);
-        const Answer answer = load(folder.write("bad.json", R"({"tyndall": 1, )" + std::string(mistake.fields) + "}"));
+        const LoadAnswer answer =
+            load(folder.write("bad.json", R"({"tyndall": 1, )" + std::string(mistake.fields) + "}"));
         expect_refusal(answer, "bad.json: " + std::string(mistake.pointer));
         // The pointer ends there, or goes on to a part of the field.
         const std::string behind =
@@ -146,7 +147,7 @@ TEST(SceneFileErrors, MissingFilesAreUnreadable) {
              {R"("media": [{"type": "vdb", "file": "none.####.vdb"}])", "/media/0/file"},
              {R"("background": {"image": "none.png"})", "/background/image"}}) {
         SCOPED_TRACE(fields);
-        const Answer answer = load(folder.write("scene.json", R"({"tyndall": 1, )" + fields + "}"));
+        const LoadAnswer answer = load(folder.write("scene.json", R"({"tyndall": 1, )" + fields + "}"));
         expect_refusal(answer, "scene.json: " + pointer, ExitCode::unreadable);
         EXPECT_NE(
             answer.message.find(pointer == "/gltf" && fields.find("none") == std::string::npos ? "directory" : "none"),

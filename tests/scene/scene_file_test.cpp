@@ -6,7 +6,7 @@
 namespace tyndall {
 namespace {
 Scene loaded(const Folder& folder, const std::string& text) {
-    const Answer answer = load(folder.write("scene.json", text));
+    const LoadAnswer answer = load(folder.write("scene.json", text));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }
@@ -254,7 +254,7 @@ TEST(SceneFile, ScenesOfTheRepositoryLoad) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
-        const Answer answer = load(entry.path());
+        const LoadAnswer answer = load(entry.path());
         // Some read volumes that a bake has yet to make.
         if (answer.code == ExitCode::unreadable) continue;
         EXPECT_TRUE(answer.loaded) << answer.message;

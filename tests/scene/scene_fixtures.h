@@ -22,15 +22,15 @@ struct Folder : Scratch {
 };
 
 // What loading a file answers: the scene, or one line of refusal.
-struct Answer {
+struct LoadAnswer {
     Scene scene;
     bool loaded = false;
     ExitCode code = ExitCode::ok;
     std::string message;
 };
 
-inline Answer load(const std::filesystem::path& file, const LoadOptions& options = {}) {
-    Answer answer;
+inline LoadAnswer load(const std::filesystem::path& file, const LoadOptions& options = {}) {
+    LoadAnswer answer;
     try {
         answer.scene = load_scene(file, options);
         answer.loaded = true;
@@ -48,7 +48,7 @@ inline void expect_one_line(const std::string& message) {
     for (const unsigned char c : message) EXPECT_TRUE(c >= 0x20 && c != 0x7f) << message;
 }
 
-inline void expect_refusal(const Answer& answer, std::string_view part, ExitCode code = ExitCode::refused) {
+inline void expect_refusal(const LoadAnswer& answer, std::string_view part, ExitCode code = ExitCode::refused) {
     EXPECT_FALSE(answer.loaded) << "loaded, but should name " << part;
     EXPECT_EQ(static_cast<int>(answer.code), static_cast<int>(code)) << answer.message;
     EXPECT_NE(answer.message.find(part), std::string::npos) << answer.message;
