@@ -85,7 +85,7 @@ template<class T, class Change> void all_or_nothing(T& thing, const Change& chan
     T before = thing;
     try {
         change();
-    } catch (...) {
+    } catch (const Error&) {
         thing = std::move(before);
         throw;
     }
