@@ -20,6 +20,11 @@ int samples_needed(const Noise& noise, int samples, double target, int batches) 
     return std::max(whole, samples + batches);
 }
 
+double pixel_count(const View& view) {
+    const ivec2 size = view.crop_low == view.crop_high ? view.size : view.crop_high - view.crop_low;
+    return static_cast<double>(size.x) * size.y;
+}
+
 // The rounds of one picture. First all pixels take equally many samples; where that shows that some need many more than
 // others, it is begun anew with as many as each needs. Work is counted in samples of all pixels; then in allotments.
 struct Rounds {
@@ -94,7 +99,7 @@ int first_round(Rounds& rounds) {
 bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     if (rounds.allotment || rounds.freedom == 0 || !(stats.noise->error > 0) || !std::isfinite(stats.noise->bound))
         return false;
-    const double pixels = static_cast<double>(layers.size.x) * layers.size.y;
+    const double pixels = pixel_count(rounds.view);
     const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
     const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
     Enough enough{0, most_target_samples * pixels};
@@ -163,11 +168,6 @@ bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     const double target = rounds.goal.error;
     const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
     return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
-}
-
-double pixel_count(const View& view) {
-    const ivec2 size = view.crop_low == view.crop_high ? view.size : view.crop_high - view.crop_low;
-    return static_cast<double>(size.x) * size.y;
 }
 }
 
