@@ -114,8 +114,7 @@ void forget_unknown(float* light, size_t count) {
         const Floats values = load_some(light + i, here);
         const Mask16 known = (extinctions(values) > 0.0f) & (finite_sums(values) <= 0.0f);
         if (!any(!known)) continue;
-        alignas(64) float kept[16];
-        store(zero_unless(known, values), kept), std::copy_n(kept, here, light + i);
+        store_some(zero_unless(known, values), here, light + i);
     }
 }
 
@@ -138,12 +137,7 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
             mixed = select(blend.pass.still ? stale : stale & !is_extinction, kept, mixed);
         }
         mixed = select(extinctions(was) > 0.0f, mixed, is);
-        if (here == 16) {
-            store(mixed, light + i);
-        } else {
-            alignas(64) float values[16];
-            store(mixed, values), std::copy_n(values, here, light + i);
-        }
+        store_some(mixed, here, light + i);
     }
     integrate_tile(blend.grid, blend.tiles, blend.light, blend.pass.view_depth, tile,
                    blend.sums.values.data() + 4 * tile * blend.grid.faces.size());

@@ -9,6 +9,7 @@
 
 #include "base/simd.h"
 
+#include <algorithm>
 #include <cstring>
 
 HWY_BEFORE_NAMESPACE();
@@ -55,18 +56,31 @@ HWY_INLINE Mask16 extinction_lanes() {
 // Lanes of froxels that keep what they were: mostly all of a tile or none.
 HWY_INLINE Mask16 stale_lanes(const uint8_t* stale, size_t count) {
     uint32_t four = 0;
-    if (stale) std::memcpy(&four, stale, count / 4);
+    if (stale && count >= 16) std::memcpy(&four, stale, 4);
+    for (size_t i = 0; stale && count < 16 && i < count / 4; ++i) four |= uint32_t{stale[i]} << (8 * i);
     if (four == 0 || four == 0x01010101) return Floats(four ? 1.0f : 0.0f) > 0.0f;
     alignas(64) float is[16];
     for (size_t i = 0; i < 16; ++i) is[i] = static_cast<float>(four >> (i / 4 * 8) & 1);
     return load(is) > 0.0f;
 }
 
+// How many of `count` values the lanes of part i hold.
+HWY_INLINE size_t lanes_of(size_t count, size_t i) {
+    return std::min(count - std::min(count, i * lane_step), lane_step);
+}
 HWY_INLINE Floats load_some(const float* from, size_t count) {
     if (count >= 16) return load(from);
-    alignas(64) float values[16] = {};
-    std::copy_n(from, count, values);
-    return load(values);
+    Floats r = 0.0f;
+    for (size_t i = 0; i < parts; ++i)
+        if (const size_t here = lanes_of(count, i); here > 0)
+            r.part[i] = hn::MaskedLoad(hn::FirstN(FloatTag(), here), FloatTag(), from + i * lane_step);
+    return r;
+}
+HWY_INLINE void store_some(const Floats& values, size_t count, float* to) {
+    if (count >= 16) return store(values, to);
+    for (size_t i = 0; i < parts; ++i)
+        if (const size_t here = lanes_of(count, i); here > 0)
+            hn::BlendedStore(values.part[i], hn::FirstN(FloatTag(), here), FloatTag(), to + i * lane_step);
 }
 }
 HWY_AFTER_NAMESPACE();
