@@ -12,7 +12,8 @@
 namespace tyndall {
 namespace {
 struct Options {
-    std::string scene, output, modes = "all", camera, frame, resolution, samples, runs, longest;
+    std::string scene, output, modes = "all", camera, frame, resolution, samples, noise, reference_seconds, runs,
+                               longest;
     std::vector<std::string> settings;
     bool quick = false;
 };
@@ -49,11 +50,14 @@ ChartJob make_job(const Options& texts) {
     job.render.isa = isa_name();
     job.modes = asked_modes(texts.modes);
     job.directory = texts.output;
-    if (texts.quick) job.reference_samples = 4, job.runs = 2, job.longest = 0.7;
+    if (texts.quick) job.reference.noise = 0.05, job.reference.seconds = 4, job.runs = 2, job.longest = 0.7;
+    if (!texts.noise.empty()) job.reference.noise = number_option("--reference-noise", texts.noise, 1e-5, 1);
     if (!texts.samples.empty())
-        job.reference_samples = static_cast<int>(integer_option("--samples", texts.samples, 4, 4096) + 1) / 2 * 2;
+        job.reference.count = static_cast<int>(integer_option("--samples", texts.samples, 4, 4096) + 1) / 2 * 2;
     if (!texts.runs.empty()) job.runs = static_cast<int>(integer_option("--runs", texts.runs, 1, 100));
     if (!texts.longest.empty()) job.longest = number_option("--longest", texts.longest, 1e-3, 1e6);
+    if (!texts.reference_seconds.empty())
+        job.reference.seconds = number_option("--reference-seconds", texts.reference_seconds, 0.1, 1e6);
     if (!texts.resolution.empty()) job.render.resolution = resolution_option("--res", texts.resolution);
     if (!texts.frame.empty()) job.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
     return job;
@@ -129,8 +133,12 @@ Run add_chart(CLI::App& app) {
     option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     option("--res", texts->resolution,
            "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
-    option("--samples", texts->samples, "rays per pixel of the reference, 4 or more (default: 16; 4 with\n--quick)",
-           "N");
+    option("--reference-noise", texts->noise,
+           "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
+           "SHARE");
+    option("--reference-seconds", texts->reference_seconds,
+           "at most so long for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
+    option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
     option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
     option("--longest", texts->longest,
            "leave out settings whose picture would take more seconds than this\n"

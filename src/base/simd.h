@@ -180,18 +180,26 @@ HWY_INLINE hn::Vec<IntTag> words_at(const char* base, const hn::Vec<IntTag>& off
 #endif
 }
 
+// Part i of two half floats per lane, the first in the lower 16 bits.
+HWY_INLINE void split_half_pairs(hn::Vec<hn::ScalableTag<uint32_t>> pair, size_t i, Floats& first, Floats& second) {
+    using ShortTag = hn::Rebind<uint16_t, hn::ScalableTag<uint32_t>>;
+    using HalfTag = hn::Rebind<hwy::float16_t, FloatTag>;
+    const auto low = hn::TruncateTo(ShortTag(), hn::And(pair, hn::Set(hn::ScalableTag<uint32_t>(), 0xffffu)));
+    const auto high = hn::TruncateTo(ShortTag(), hn::ShiftRight<16>(pair));
+    first.part[i] = hn::PromoteTo(FloatTag(), hn::BitCast(HalfTag(), low));
+    second.part[i] = hn::PromoteTo(FloatTag(), hn::BitCast(HalfTag(), high));
+}
+HWY_INLINE void load_half_pairs(const uint32_t* from, Floats& first, Floats& second) {
+    for (size_t i = 0; i < parts; ++i)
+        split_half_pairs(hn::LoadU(hn::ScalableTag<uint32_t>(), from + i * lane_step), i, first, second);
+}
+
 // Two neighbouring half floats per lane: base[index] and base[index + 1]. Reads 4 bytes at each index.
 HWY_INLINE void gather_half_pairs(const uint16_t* base, const Ints& index, Floats& first, Floats& second) {
-    using UintTag = hn::ScalableTag<uint32_t>;
-    using ShortTag = hn::Rebind<uint16_t, UintTag>;
-    using HalfTag = hn::Rebind<hwy::float16_t, FloatTag>;
     for (size_t i = 0; i < parts; ++i) {
         const auto offset = hn::ShiftLeft<1>(index.part[i]);
-        const auto pair = hn::BitCast(UintTag(), words_at(reinterpret_cast<const char*>(base), offset));
-        const auto low = hn::TruncateTo(ShortTag(), hn::And(pair, hn::Set(UintTag(), 0xffffu)));
-        const auto high = hn::TruncateTo(ShortTag(), hn::ShiftRight<16>(pair));
-        first.part[i] = hn::PromoteTo(FloatTag(), hn::BitCast(HalfTag(), low));
-        second.part[i] = hn::PromoteTo(FloatTag(), hn::BitCast(HalfTag(), high));
+        const auto pair = words_at(reinterpret_cast<const char*>(base), offset);
+        split_half_pairs(hn::BitCast(hn::ScalableTag<uint32_t>(), pair), i, first, second);
     }
 }
 

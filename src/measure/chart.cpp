@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/isa.h"
 #include "base/parallel.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <chrono>
@@ -79,9 +80,15 @@ double seconds_of(const Task& task, const ChartJob& job) {
 bool wants_unlit(const ChartJob& job) {
     return std::ranges::any_of(job.modes, [](const Mode* mode) { return lights_only(*mode); });
 }
-ReferenceSamples picture_samples(const ChartJob& job) { return {job.reference_samples, false, wants_unlit(job)}; }
+ReferenceSamples picture_samples(const ChartJob& job) {
+    ReferenceSamples samples = job.reference;
+    samples.unlit = wants_unlit(job);
+    return samples;
+}
 ReferenceSamples center_samples(const ChartJob& job) {
-    return {std::min(4, job.reference_samples / 2), true, wants_unlit(job)};
+    ReferenceSamples samples = picture_samples(job);
+    samples.count = 4, samples.centers = true;
+    return samples;
 }
 
 struct References {
@@ -106,15 +113,6 @@ std::string hash_of(const References& references, const ChartJob& job, FileHashe
                        reference_hash(references.picture, center_samples(job), files);
     for (const Shot& shot : references.sequence) text += reference_hash(shot, center_samples(job), files);
     return content_hash(text);
-}
-
-// Seconds that the reference takes: those of the march's last rung, which works as it does.
-double reference_seconds(const ChartStage& stage) {
-    const Mode& march = find_mode("march");
-    const Candidate exact{"", truth_of(stage.job.render.settings)};
-    Rung rung{&march, exact, 1};
-    rung.candidate.settings.pixel.samples = stage.job.reference_samples;
-    return expected_seconds(stage, rung);
 }
 
 void render_references(ChartStage& stage, References& references, Chart& chart, FileHashes& files, const Plan& plan,
@@ -165,7 +163,8 @@ std::string line_on(const ChartPoint& point) {
     return text;
 }
 
-// What is there already, what would take too long, and how long the rest will take.
+// What is there already, what would take too long, and how long the rest will take. What comes after a rung of a mode
+// that takes too long takes longer still.
 std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& references, FileHashes& files, Chart& chart,
                              const ChartControl& control) {
     std::vector<Task> tasks;
@@ -176,14 +175,17 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
                              static_cast<double>(rungs.size()));
         Task task{rung, point_hash(stage, rung, references, files), {}, 0};
         task.kept = kept_point(stage.job.directory, rung, task.hash);
-        if (!task.kept) task.seconds = expected_seconds(stage, rung);
-        const bool too_long = task.seconds > stage.job.longest;
-        if (too_long) chart.left_out.push_back({std::string(rung.mode->name), rung.place, task.seconds});
-        if (too_long && control.remark)
-            control.remark(std::string(rung.mode->name) + "." + std::to_string(rung.place) +
-                           " is left out: a picture would take about " +
-                           std::to_string(static_cast<int>(task.seconds + 0.5)) + " s");
-        if (!too_long) tasks.push_back(std::move(task));
+        const LeftOut* before = chart.left_out.empty() ? nullptr : &chart.left_out.back();
+        const bool goes_on = before && before->mode == rung.mode->name;
+        if (!task.kept) task.seconds = goes_on ? before->seconds : expected_seconds(stage, rung);
+        if (task.seconds <= stage.job.longest) {
+            tasks.push_back(std::move(task));
+            continue;
+        }
+        chart.left_out.push_back({std::string(rung.mode->name), rung.place, task.seconds});
+        if (control.remark && !goes_on)
+            control.remark(formatted("%s.%d and what follows it are left out: a picture would take about %.2g s",
+                                     std::string(rung.mode->name).c_str(), rung.place, task.seconds));
     }
     return tasks;
 }
@@ -208,7 +210,7 @@ Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& co
 
     Plan plan(control);
     const bool work = std::ranges::any_of(tasks, [](const Task& task) { return !task.kept; });
-    const double first = work ? reference_seconds(stage) : 0;
+    const double first = work ? reference_seconds(references.picture, picture_samples(job)) : 0;
     plan.expect(first);
     for (const Task& task : tasks) plan.expect(seconds_of(task, job));
     render_references(stage, references, chart, files, plan, first);

@@ -46,7 +46,7 @@ struct ChartJob {
     RenderJob render; // scene file, camera, picture size, settings that rungs do not decide
     int frame = 1;
     std::vector<const Mode*> modes;
-    int reference_samples = 16;
+    ReferenceSamples reference{};
     int runs = 3;                    // of each picture, at least
     double longest = 60;             // seconds a picture may take; rungs that would take longer are left out
     int sequence = 4;                // frames that flicker is measured on
@@ -54,7 +54,7 @@ struct ChartJob {
     std::filesystem::path directory; // for what is kept
 };
 
-// A rung that was left out, and the seconds its picture would have taken.
+// A rung that was left out, and the seconds its picture would have taken: that many or more.
 struct LeftOut {
     std::string mode;
     int rung = 0;

@@ -149,14 +149,20 @@ std::string summary(const Chart& chart) {
            ". Load of the machine: " + loads + ". Light scatters once everywhere.";
 }
 
+std::string reference_words(const ReferenceSamples& reference) {
+    if (reference.count > 0) return std::to_string(reference.count / 2) + " rays a pixel each";
+    return "as many rays as a noise of " + share_words(reference.noise) + " asks for, or " +
+           seconds_words(reference.seconds) + " each allow";
+}
+
 std::string method(const Chart& chart) {
     const ChartJob& job = chart.job;
     std::vector<std::string> lines{
         "Reference: <code>march</code> with exact shadows and light followed through the fog, two independent halves "
         "of " +
-            std::to_string(job.reference_samples / 2) + " rays a pixel each; their noise (" +
-            share_words(chart.reference_noise) + " of the mean) is taken out of the errors. FLIP still sees it: " +
-            number_words(chart.reference_flip) + " between the halves.",
+            reference_words(job.reference) + "; their noise (" + share_words(chart.reference_noise) +
+            " of the mean) is taken out of the errors. FLIP still sees it: " + number_words(chart.reference_flip) +
+            " between the halves.",
         "Error E: root of the mean squared difference / mean of the reference, of the picture or of the light of its "
         "fog alone, whichever is larger. 100 % is an error as large as the mean.",
         "Times: wall clock, median of at least " + std::to_string(job.runs) +
@@ -179,8 +185,8 @@ std::string method(const Chart& chart) {
     std::string list;
     for (const std::string& text : lines) list += element("li", text);
     for (const LeftOut& rung : chart.left_out)
-        list += element("li", xml_text(rung.mode) + " " + std::to_string(rung.rung) + " was left out: about " +
-                                  seconds_words(rung.seconds) + " a picture.");
+        list += element("li", xml_text(rung.mode) + " " + std::to_string(rung.rung) + " was left out: it takes about " +
+                                  seconds_words(rung.seconds) + " a picture, or more.");
     return element("ul", list);
 }
 }

@@ -128,6 +128,7 @@ std::string chart_csv(const Chart& chart) {
 
 std::string chart_json(const Chart& chart) {
     const ChartJob& job = chart.job;
+    const bool fixed = job.reference.count > 0;
     std::vector<Json> points, fields;
     for (const ChartPoint& point : chart.points) points.push_back(json_of_point(point));
     for (const ChartField& field : chart_fields())
@@ -142,9 +143,11 @@ std::string chart_json(const Chart& chart) {
                 {"isa", report::text(chart.isa)},
                 {"load_before", report::number(chart.load_before)},
                 {"load_after", report::number(chart.load_after)},
-                {"reference", report::object({{"samples", report::number(job.reference_samples)},
-                                              {"noise_rel", report::number(chart.reference_noise)},
-                                              {"flip_between_halves", report::number(chart.reference_flip)}})},
+                {"reference",
+                 report::object({{"samples", report::number(fixed ? job.reference.count : not_measured)},
+                                 {"noise_wanted", report::number(fixed ? not_measured : job.reference.noise)},
+                                 {"noise_rel", report::number(chart.reference_noise)},
+                                 {"flip_between_halves", report::number(chart.reference_flip)}})},
                 {"sequence", report::object({{"frames", report::number(job.sequence)},
                                              {"size", size_json(chart.sequence_size)},
                                              {"moves", report::boolean(chart.moves)}})},

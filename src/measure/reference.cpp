@@ -2,20 +2,25 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/random.h"
+#include "base/text.h"
 #include "render/resume.h"
+#include "render/to_target.h"
 
 #include <algorithm>
 
 namespace tyndall {
 namespace {
 constexpr uint32_t half_seeds[2] = {0x52454641u, 0x52454642u}; // unlike those of any picture measured
+constexpr uint32_t use_exact = 0xe8acu;
+constexpr int exact_samples = 4; // of each pixel
 const ExrOptions exact_colors{{"inscatter"}, true};
 
 RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
     RenderJob job = shot.job;
     job.mode = "march", job.quality = Quality::reference;
     job.settings = truth_of(job.settings);
-    job.settings.pixel.samples = std::max(samples.count / 2, 1);
+    if (samples.count > 0) job.settings.pixel.samples = std::max(samples.count / 2, 1);
     if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
     job.seed = half_seeds[half];
     job.exr = exact_colors;
@@ -31,9 +36,49 @@ Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
     return image;
 }
 
+// What integrates fog quickly enough for the noise wanted. Pictures of single samples would be off in both halves
+// alike.
+std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
+    FrameOptions options;
+    options.cancel = shot.cancel;
+    const View view = view_of(shot.scene, shot.job, shot.frame);
+    const double start = steady_seconds();
+    Choice choice = choose(find_mode("march"), view, snapshot, shot.job.settings, goal, start, options);
+    choice.measured.single = {infinity, infinity};
+    return std::make_shared<const Choice>(std::move(choice));
+}
+
+Goal goal_of(const Shot& shot, ReferenceSamples samples) {
+    return {std::sqrt(2.0) * samples.noise, samples.seconds, shot.job.quality, steady_seconds};
+}
+
+// Half of a reference with noise in place of a count, on two levels (Heinrich 2001, multilevel Monte Carlo): many
+// samples that are quick, and the mean difference that exact ones make, from few, which differ little.
+Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, View view,
+                     ReferenceSamples samples, const FrameOptions& options, FrameStats& stats) {
+    const Mode& mode = find_mode(job.mode);
+    Goal goal = goal_of(shot, samples);
+    goal.choice = choice_for(shot, snapshot, goal);
+    const Settings& quick = goal.choice->candidate.settings;
+    Layers result = render_to_target(mode, view, snapshot, quick, goal, options, stats);
+
+    view.seed = hash(view.seed, use_exact);
+    view.pixel_samples = exact_samples, view.batches = view.lamp_samples = view.edge_samples = 1;
+    FrameOptions plain;
+    plain.cancel = shot.cancel;
+    FrameStats ignored;
+    const Layers exact = render_frame(mode, view, snapshot, job.settings, plain, ignored);
+    const Layers rough = render_frame(mode, view, snapshot, quick, plain, ignored);
+    for (size_t i = 0; i < result.color.pixels.size(); ++i) {
+        result.color.pixels[i] += exact.color.pixels[i] - rough.color.pixels[i];
+        result.inscatter.pixels[i] += exact.inscatter.pixels[i] - rough.inscatter.pixels[i];
+    }
+    return result;
+}
+
 // A picture of the job, or the file an earlier run made of it.
-ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, const std::string& name,
-                     std::string hash, const std::function<void(double)>& progress) {
+ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, ReferenceSamples samples,
+                     const std::string& name, std::string hash, const std::function<void(double)>& progress) {
     const View view = view_of(shot.scene, job, shot.frame);
     const std::filesystem::path file = shot.directory / (name + ".exr");
     if (!shot.directory.empty()) {
@@ -45,7 +90,9 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob
     FrameOptions options;
     options.cancel = shot.cancel, options.progress = progress;
     FrameStats stats;
-    Layers layers = render_frame(find_mode(job.mode), view, fresh(snapshot), job.settings, options, stats);
+    const Snapshot own = fresh(snapshot);
+    Layers layers = samples.count > 0 ? render_frame(find_mode(job.mode), view, own, job.settings, options, stats)
+                                      : half_by_noise(shot, own, job, view, samples, options, stats);
     if (!shot.directory.empty()) {
         Provenance provenance = provenance_of(shot.scene, job, view, hash, stats);
         write_exr(file, layers, provenance, exact_colors);
@@ -53,8 +100,9 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob
     return {std::move(layers.color), std::move(layers.inscatter)};
 }
 
-std::string half_hash(const Shot& shot, const RenderJob& job, FileHashes& files) {
-    return frame_hash(shot.scene, job, view_of(shot.scene, job, shot.frame), files);
+std::string half_hash(const Shot& shot, const RenderJob& job, ReferenceSamples samples, FileHashes& files) {
+    const std::string hash = frame_hash(shot.scene, job, view_of(shot.scene, job, shot.frame), files);
+    return samples.count > 0 ? hash : content_hash(hash + formatted("%.9g %.9g", samples.noise, samples.seconds));
 }
 }
 
@@ -65,8 +113,16 @@ Snapshot fresh(const Snapshot& snapshot) {
 }
 
 std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
-    return content_hash(half_hash(shot, half_job(shot, samples, 0), files) +
-                        half_hash(shot, half_job(shot, samples, 1), files));
+    return content_hash(half_hash(shot, half_job(shot, samples, 0), samples, files) +
+                        half_hash(shot, half_job(shot, samples, 1), samples, files));
+}
+
+double reference_seconds(const Shot& shot, ReferenceSamples samples) {
+    const std::shared_ptr<const Choice> choice = choice_for(shot, fresh(shot.snapshot), goal_of(shot, samples));
+    const Measured& measured = choice->measured;
+    if (samples.count > 0) return samples.count * measured.sample_seconds;
+    const double needed = std::pow(measured.sample.value / (2 * samples.noise * samples.noise), 1 / choice->power);
+    return 2 * std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);
 }
 
 Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
@@ -85,10 +141,10 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
             if (shot.progress) shot.progress((static_cast<double>(half) + done) / (chance ? 2 : 1));
         };
         const RenderJob job = half_job(shot, samples, static_cast<int>(half));
-        const std::string hash = half_hash(shot, job, files), name = prefix + (half ? ".b" : ".a");
-        result.halves[half] = rendered(shot, shot.snapshot, job, name, hash, part);
+        const std::string hash = half_hash(shot, job, samples, files), name = prefix + (half ? ".b" : ".a");
+        result.halves[half] = rendered(shot, shot.snapshot, job, samples, name, hash, part);
         if (samples.unlit)
-            result.unlit[half] = rendered(shot, unlit, job, name + ".unlit", content_hash(hash + "unlit"), {});
+            result.unlit[half] = rendered(shot, unlit, job, samples, name + ".unlit", content_hash(hash + "unlit"), {});
     }
     return result;
 }

@@ -30,16 +30,20 @@ struct Shot {
     std::function<void(double)> progress; // 0..1
 };
 
-// How many pixel samples both halves of a reference take together; at pixel centres one is enough for each, except for
-// soft lights.
+// How good a reference is to be. Light at pixel centres needs one sample for each half, except from soft lights.
 struct ReferenceSamples {
-    int count = 16;
-    bool centers = false; // the light at pixel centres instead of the mean over pixels
+    int count = 0;        // pixel samples that both halves take together; 0 = as many as it takes to get to the noise
+    double noise = 0.02;  // of the mean of both halves, as a share of the picture's mean
+    double seconds = 60;  // at most, for each half: then it is as noisy as it is
+    bool centers = false; // the light at pixel centres instead of the mean over pixels; needs a count
     bool unlit = true;    // whether that part is wanted too
 };
 
 // Halves that an earlier run left in the directory are read back. Throws Error.
 Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files);
+
+// About how long both halves of a whole picture take.
+double reference_seconds(const Shot& shot, ReferenceSamples samples);
 
 // One hash over all that a reference depends on.
 std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashes& files);

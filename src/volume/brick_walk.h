@@ -77,10 +77,11 @@ void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, iv
         if (next >= range.high) return;
 
         // Over every border that lies here; through an edge or a corner several at once.
-        const bool x = border.x == next, y = border.y == next, z = border.z == next;
-        cell += ivec3(x ? step.x : 0, y ? step.y : 0, z ? step.z : 0);
-        border += dvec3(x ? across.x : 0, y ? across.y : 0, z ? across.z : 0);
-        if (glm::any(glm::lessThan(cell, first)) || glm::any(glm::greaterThan(cell, last))) return;
+        for (int axis = 0; axis < 3; ++axis) {
+            if (border[axis] != next) continue;
+            cell[axis] += step[axis], border[axis] += across[axis];
+            if (cell[axis] < first[axis] || cell[axis] > last[axis]) return;
+        }
     }
 }
 

@@ -1,10 +1,61 @@
-// Optical depth in closed form, in double. Along a ray trilinear density is a cubic in every voxel cell, which two
-// Gauss points integrate exactly.
+// Optical depth in closed form. Along a ray trilinear density is a cubic in every voxel cell, which two Gauss points
+// integrate exactly. Where a ray is and what is summed is kept in double, what is inside a cell in float.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "volume/optical_depth.cpp"
+#include <hwy/foreach_target.h>
+
+#include "base/simd.h"
 #include "volume/brick_walk.h"
-#include "volume/half.h"
 #include "volume/medium.h"
 
+#include <cstring>
+
+#ifndef TYNDALL_VOLUME_CROSSED_CELLS
+#define TYNDALL_VOLUME_CROSSED_CELLS
 namespace tyndall {
+// Sixteen cells that a ray crosses; those that are not there have no length.
+struct CrossedCells {
+    uint32_t pairs[4][16]; // of half floats, neighbours along z: those at y and y + 1, and the same at x + 1
+    float middle[3][16];   // of the stretch inside, from the cell's corner
+    float half[16];        // of the stretch's length, metres
+    float direction[3];    // in voxels per metre
+};
+}
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+Floats mixed(const Floats& a, const Floats& b, const Floats& share) { return fused(share, b - a, a); }
+
+double column_kernel(const CrossedCells& cells) {
+    Floats v[8];
+    for (int pair = 0; pair < 4; ++pair) load_half_pairs(cells.pairs[pair], v[2 * pair], v[2 * pair + 1]);
+    constexpr float gauss = 0.57735026918962576451f; // 1/√3
+    const Floats half = load(cells.half);
+    Floats sum = 0.0f;
+    for (const float side : {-gauss, gauss}) {
+        Floats w[3];
+        for (int axis = 0; axis < 3; ++axis)
+            w[axis] = fused(half, side * cells.direction[axis], load(cells.middle[axis]));
+        const Floats near = mixed(mixed(v[0], v[1], w[2]), mixed(v[2], v[3], w[2]), w[1]);
+        const Floats far = mixed(mixed(v[4], v[5], w[2]), mixed(v[6], v[7], w[2]), w[1]);
+        sum = sum + mixed(near, far, w[0]);
+    }
+    alignas(64) float parts_of[16];
+    store(sum * half, parts_of);
+    double sums[4] = {};
+    for (size_t i = 0; i < 16; ++i) sums[i % 4] += parts_of[i];
+    return sums[0] + sums[1] + (sums[2] + sums[3]);
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(column_kernel);
+
 namespace {
 // Integral of exp(-max(height, 0) / falloff) over `length` metres of a line that starts at `height` and rises by
 // `slope` per metre. Each part counts from its lower end: exp(-h/H) H/|s| (1 - exp(-|s| L/H)), without overflow or
@@ -20,39 +71,60 @@ double height_column(double height, double slope, double length, double falloff)
     return below + std::exp(-std::max(lower, 0.0) / falloff) * -std::expm1(-rate * above) / rate;
 }
 
-double cell_column(const uint16_t* corner, ivec3 cell, const LocalRay& ray, double low, double high) {
-    double v[8];
-    for (int c = 0; c < 8; ++c) v[c] = float_from_half(corner[(c >> 2) * 81 + ((c >> 1) & 1) * 9 + (c & 1)]);
-    constexpr double gauss = 0.57735026918962576451; // 1/√3
-    const double middle = 0.5 * (low + high), half = 0.5 * (high - low);
-    double sum = 0;
-    for (const double t : {middle - gauss * half, middle + gauss * half}) {
-        const dvec3 w = ray.origin + t * ray.direction - dvec3(cell);
-        const double a = v[0] + w.z * (v[1] - v[0]), b = v[2] + w.z * (v[3] - v[2]);
-        const double c = v[4] + w.z * (v[5] - v[4]), d = v[6] + w.z * (v[7] - v[6]);
-        const double e = a + w.y * (b - a), f = c + w.y * (d - c);
-        sum += e + w.x * (f - e);
+// Density integrated over the cells that a ray crosses, sixteen at a time.
+class CellSum {
+public:
+    explicit CellSum(const LocalRay& ray) : ray_(ray) {
+        for (int axis = 0; axis < 3; ++axis) cells_.direction[axis] = static_cast<float>(ray.direction[axis]);
     }
-    return sum * half;
-}
+    // `values` are those of the brick whose first cell is `first`.
+    void add(const uint16_t* values, ivec3 first, ivec3 cell, double low, double high) {
+        const ivec3 in = cell - first;
+        const uint16_t* corner = values + (in.x * 9 + in.y) * 9 + in.z;
+        corners_[count_] = corner;
+        __builtin_prefetch(corner), __builtin_prefetch(corner + 81);
+        const dvec3 middle = ray_.origin + 0.5 * (low + high) * ray_.direction - dvec3(cell);
+        for (int axis = 0; axis < 3; ++axis) cells_.middle[axis][count_] = static_cast<float>(middle[axis]);
+        cells_.half[count_] = static_cast<float>(0.5 * (high - low));
+        if (++count_ == 16) finish();
+    }
+    double sum() {
+        if (count_ > 0) finish();
+        return sum_;
+    }
+
+private:
+    void finish() {
+        for (size_t i = 0; i < count_; ++i)
+            for (size_t pair = 0; pair < 4; ++pair)
+                std::memcpy(&cells_.pairs[pair][i], corners_[i] + (pair >> 1) * 81 + (pair & 1) * 9, sizeof(uint32_t));
+        for (; count_ < 16; ++count_) cells_.half[count_] = 0;
+        sum_ += HWY_DYNAMIC_DISPATCH(column_kernel)(cells_), count_ = 0;
+    }
+
+    const LocalRay& ray_;
+    CrossedCells cells_{};
+    const uint16_t* corners_[16]; // of each cell: its first value
+    size_t count_ = 0;
+    double sum_ = 0;
+};
 
 double brick_column(const BrickPool& pool, const Ray& ray) {
     const LocalRay local = local_ray(pool, ray);
-    double column = 0;
+    CellSum cells(local);
+    double constant = 0;
     walk_bricks(pool, local, {0, ray.t_max}, [&](ivec3 brick, int64_t at, double low, double high) {
         const int32_t id = pool.index[at];
         if (id < 0) {
-            column += pool.constants[-id - 1] * (high - low);
+            constant += pool.constants[-id - 1] * (high - low);
             return;
         }
         const ivec3 first = brick * 8;
         const uint16_t* values = &pool.values[size_t(id - 1) * brick_stride];
-        walk_cells(local, {low, high}, 1, first, first + 7, [&](ivec3 cell, double from, double to) {
-            const ivec3 in = cell - first;
-            column += cell_column(values + (in.x * 9 + in.y) * 9 + in.z, cell, local, from, to);
-        });
+        walk_cells(local, {low, high}, 1, first, first + 7,
+                   [&](ivec3 cell, double from, double to) { cells.add(values, first, cell, from, to); });
     });
-    return column;
+    return constant + cells.sum();
 }
 
 // Density integrated along the ray, in metres.
@@ -75,3 +147,4 @@ double optical_depth(std::span<const Medium> media, const Ray& ray) {
     return sum;
 }
 }
+#endif
