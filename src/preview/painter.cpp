@@ -208,9 +208,13 @@ std::optional<ShownPicture> next_picture(Painter& painter, const Request& reques
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
     painter.request = request;
     if (!same) begin(painter, request);
-    if (shown_anew && !painter.rounds[0].layers.color.empty()) return shown(painter, request);
-    if (request.moving && !painter.quick) return paint_quick(painter, request, cancel);
-    if (request.moving) return {};
+    // Until this picture has begun, the layers are those of another.
+    if (shown_anew && !painter.picture.mode.empty()) return shown(painter, request);
+    if (request.moving) {
+        // A still picture that has begun is better than a quick one.
+        if (painter.quick || painter.rounds[0].rounds > 0) return {};
+        return paint_quick(painter, request, cancel);
+    }
     if (painter.rounds[0].rounds == 0 && !painter.stood_in && quick_mode(request) != request.mode)
         return paint_stand_in(painter, request, cancel);
     if (is_finished(painter, request)) return {};

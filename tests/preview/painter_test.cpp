@@ -162,6 +162,36 @@ TEST(Painter, CancelledWorkComesToNothing) {
     EXPECT_EQ(paint_all(painter, request).back().samples, request.most_samples);
 }
 
+TEST(Painter, APictureThatNeverBeganIsNotShownAnew) {
+    Painter painter;
+    Request request = request_for(small_scene());
+    paint_all(painter, request);
+    std::atomic<bool> cancelled{true};
+    ++request.revision;
+    EXPECT_FALSE(paint(painter, request, cancelled));
+    ++request.shown_revision, request.shown.exposure = 1;
+    const auto picture = paint(painter, request, never);
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->mode, "froxel");
+    EXPECT_EQ(picture->samples, 1);
+}
+
+TEST(Painter, AStillPictureThatHasBegunIsNotReplacedByAQuickOne) {
+    Painter painter;
+    Request request = request_for(small_scene());
+    request.mode = "froxel", request.beside = "shadow-map", request.most_samples = 8;
+    painter.paces["froxel"].level = 3; // quick pictures are small
+    for (int i = 0; i < 3; ++i) ASSERT_TRUE(paint(painter, request, never));
+    Request moving = request;
+    moving.moving = true;
+    EXPECT_FALSE(paint(painter, moving, never));
+    const std::vector<ShownPicture> rest = paint_all(painter, request);
+    ASSERT_FALSE(rest.empty());
+    EXPECT_EQ(rest.back().codes.size, request.size);
+    EXPECT_EQ(rest.back().beside, "shadow-map");
+    EXPECT_EQ(painter.rounds[0].layers.color.size, request.size);
+}
+
 TEST(SavePicture, FilesAreThoseOfRender) {
     flush_denormals();
     TemporaryDirectory directory;
