@@ -79,7 +79,7 @@ void note_times(Painter& painter, const FrameStats& stats) {
 // One ray a pixel of the quick mode.
 Layers render_quick(Painter& painter, const Request& request, float share, std::atomic<bool>& cancel) {
     View view = view_of(request);
-    view.size = glm::max(ivec2(glm::round(vec2(view.size) * share)), ivec2(8));
+    view.size = glm::min(glm::max(ivec2(glm::round(vec2(view.size) * share)), ivec2(8)), view.size);
     view.pixel_samples = view.lamp_samples = view.edge_samples = 1;
     view.frame = painter.ticks++;
     const Mode& mode = find_mode(quick_mode(request));
