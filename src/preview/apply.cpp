@@ -1,6 +1,7 @@
 // What each action does to the state.
 #include "base/error.h"
 #include "base/text.h"
+#include "preview/edit_actions.h"
 #include "preview/setting_groups.h"
 #include "preview/view_state.h"
 
@@ -86,6 +87,12 @@ void set_size(ViewState& state, double x, double y) {
     ++state.revision;
 }
 
+void show_tab(ViewState& state, const std::string& name) {
+    if (name != "render" && name != "lights")
+        fail(ExitCode::usage, "tab", "no '" + printable(name, 40) + "'; there is render, lights");
+    state.lights_tab = name == "lights";
+}
+
 // Frames outside of the scene's range are fine: animations hold or repeat there.
 void set_frame(ViewState& state, double frame) {
     const int wanted = static_cast<int>(std::round(frame));
@@ -109,7 +116,7 @@ bool apply(ViewState& state, const Action& action) {
     const std::string word = words.empty() ? "" : words[0];
     switch (action.verb) {
     case Verb::open:
-        state.scene_file = word, state.loading = true;
+        state.scene_file = word, state.loading = true, state.reloading = false;
         ++state.loads;
         break;
     case Verb::set:
@@ -181,11 +188,38 @@ bool apply(ViewState& state, const Action& action) {
     case Verb::loop:
         state.loop = word == "on";
         break;
+    case Verb::select:
+        state.selected = parse_thing(loaded_scene(state), word);
+        break;
+    case Verb::tab:
+        show_tab(state, word);
+        break;
+    case Verb::handles:
+        state.handles = word == "on";
+        break;
     case Verb::panels:
         state.panels = word == "on";
         break;
     case Verb::help:
         state.help = word == "on";
+        break;
+    case Verb::edit:
+        edit_scene(state, word, words[1], numbers.empty() ? 0 : numbers[0]);
+        break;
+    case Verb::undo:
+        undo_edit(state);
+        break;
+    case Verb::redo:
+        redo_edit(state);
+        break;
+    case Verb::cancel:
+        cancel_drag(state, numbers[0]);
+        break;
+    case Verb::save:
+        save_scene(state, {});
+        break;
+    case Verb::save_as:
+        save_scene(state, word);
         break;
     case Verb::key:
     case Verb::drag:

@@ -30,6 +30,10 @@ View view_of(const Request& request) {
     return view;
 }
 
+void stage(const Request& request) {
+    if (request.edited) put_parts(*request.edited, *request.scene);
+}
+
 namespace {
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -41,15 +45,15 @@ constexpr int most_round_samples = 8;
 void load(Painter& painter, const Request& request) {
     const auto start = Clock::now();
     for (Rounds& rounds : painter.rounds) rounds.prepared = nullptr;
-    const bool same_scene = painter.scene == request.scene;
-    if (same_scene && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
+    const bool same_scene = painter.scene == request.scene, same_edits = painter.edited == request.edited;
+    if (same_scene && same_edits && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
         painter.snapshot.kept_before = std::exchange(painter.snapshot.kept, std::make_shared<Kept>());
         painter.snapshot.notes.clear();
     } else {
         if (!same_scene) painter.history = {};
         painter.snapshot = make_snapshot(*request.scene, moment_of(*request.scene, request.frame),
                                          same_scene ? &painter.snapshot : nullptr, request.missing);
-        painter.scene = request.scene;
+        painter.scene = request.scene, painter.edited = request.edited;
     }
     painter.picture.times.load = seconds_since(start);
     painter.picture.notes = painter.snapshot.notes;
@@ -207,6 +211,7 @@ std::optional<ShownPicture> next_picture(Painter& painter, const Request& reques
     const bool same = painter.begun && painter.request.revision == request.revision;
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
     painter.request = request;
+    stage(request);
     if (!same) begin(painter, request);
     if (shown_anew && !painter.rounds[0].layers.color.empty()) return shown(painter, request);
     if (request.moving && !painter.quick) return paint_quick(painter, request, cancel);

@@ -18,7 +18,8 @@ struct Rounds {
 
 // What lasts from picture to picture.
 struct Painter {
-    std::shared_ptr<const Scene> scene; // of the snapshot
+    std::shared_ptr<const Scene> scene;          // of the snapshot,
+    std::shared_ptr<const EditableParts> edited; // and the edits in it
     Snapshot snapshot;
     History history; // of quick pictures
     std::map<std::string, Pace> paces;

@@ -1,6 +1,7 @@
 // What the interface asks for, and the pictures it gets.
 #pragma once
 #include "base/error.h"
+#include "preview/editable_parts.h"
 #include "preview/tone.h"
 #include "render/sequence.h"
 
@@ -8,10 +9,11 @@
 
 namespace tyndall {
 struct Request {
-    std::shared_ptr<const Scene> scene;
-    uint64_t revision = 0;       // another number: the picture is another one
-    uint64_t shown_revision = 0; // another number: the same picture is shown in another way
-    bool moving = false;         // the next change is near: quick pictures only
+    std::shared_ptr<Scene> scene;                // only the thread that renders touches it, and puts `edited` into it
+    std::shared_ptr<const EditableParts> edited; // null: the scene as it is
+    uint64_t revision = 0;                       // another number: the picture is another one
+    uint64_t shown_revision = 0;                 // another number: the same picture is shown in another way
+    bool moving = false;                         // the next change is near: quick pictures only
     int frame = 1;
     Camera camera;
     ivec2 size{640, 360};
@@ -59,4 +61,7 @@ const std::string& quick_mode(const Request& request);
 // What tyndall render would be told to make the finished picture.
 RenderJob job_of(const Request& request);
 View view_of(const Request& request);
+
+// Puts the edits of the request into its scene: before anything is read from it.
+void stage(const Request& request);
 }

@@ -3,13 +3,12 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "preview/edit_actions.h"
 
 #include <algorithm>
 
 namespace tyndall {
 namespace {
-double seconds_of(const ViewState& state) { return moment_of(*state.scene, state.frame).seconds; }
-
 void go_to(ViewState& state, int frame) { apply(state, {Verb::frame, {}, {static_cast<double>(frame)}, {}}); }
 }
 
@@ -18,15 +17,23 @@ const Scene& loaded_scene(const ViewState& state) {
     return *state.scene;
 }
 
-void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
+void take_scene(ViewState& state, LoadedScene loaded) {
+    const Scene& scene = loaded.session->scene;
     const auto has_name = [&](const CameraSource& camera) { return camera.name == state.camera; };
     if (!state.scene)
-        find_camera(*scene, state.camera);
-    else if (!std::ranges::any_of(scene->cameras, has_name))
+        find_camera(scene, state.camera);
+    else if (!std::ranges::any_of(scene.cameras, has_name))
         state.camera.clear();
-    const bool same_file = state.scene && state.scene->file == scene->file;
-    state.scene = std::move(scene);
-    ++state.revision;
+    const bool same_file = state.scene && state.scene->file == scene.file;
+    if (same_file && state.reloading) {
+        std::vector<std::string> lost = go_on_with(*state.session, std::move(*loaded.session));
+        if (!lost.empty()) state.message = "read again; lost: " + joined(lost, "; "), state.message_is_error = true;
+    } else {
+        state.session = std::move(loaded.session);
+    }
+    state.scene = {state.session, &state.session->scene};
+    state.stage = std::move(loaded.stage), state.reloading = false;
+    show_edits(state);
     if (same_file) return;
     state.free = false, state.playing = false;
     state.frame = state.scene->first_frame;
@@ -64,7 +71,7 @@ void advance(ViewState& state, double now, uint64_t shown_revision) {
 
 Request request_of(const ViewState& state, bool moving) {
     Request request;
-    request.scene = state.scene;
+    request.scene = state.stage, request.edited = state.parts;
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;

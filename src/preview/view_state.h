@@ -3,6 +3,7 @@
 #include "preview/action.h"
 #include "preview/camera_control.h"
 #include "preview/request.h"
+#include "preview/scene_loader.h"
 
 #include <optional>
 
@@ -11,7 +12,12 @@ struct ViewState {
     std::filesystem::path scene_file; // asked for last
     int loads = 0;                    // times a scene was asked for
     bool loading = false;
-    std::shared_ptr<const Scene> scene; // null until the first is there
+    bool reloading = false; // the scene shown, as its files are now: unsaved edits stay
+
+    std::shared_ptr<SceneSession> session;      // null until the first scene is there
+    std::shared_ptr<const Scene> scene;         // the session's, as edited
+    std::shared_ptr<Scene> stage;               // what is rendered: the render thread's own, without the edits ...
+    std::shared_ptr<const EditableParts> parts; // ... and they
 
     std::string mode = "march", stand_in = "froxel", beside;
     Quality quality = Quality::preview;
@@ -33,8 +39,11 @@ struct ViewState {
     double next_frame_at = 0; // seconds of the clock, while playing
 
     bool panels = true, help = false;
-    std::string file_error; // why the scene's files, as they are now, cannot be read
-    std::string message;    // the last thing that went wrong, or was done
+    bool lights_tab = false; // what the side shows: lights and fog, or rendering
+    bool handles = true;     // lights are drawn in the picture while the side shows them
+    Thing selected;          // its properties are shown; may be beyond the end
+    std::string file_error;  // why the scene's files, as they are now, cannot be read
+    std::string message;     // the last thing that went wrong, or was done
     bool message_is_error = false;
 
     uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow
@@ -46,9 +55,9 @@ bool apply(ViewState& state, const Action& action);
 // Throws Error (usage) before the first one.
 const Scene& loaded_scene(const ViewState& state);
 
-// A scene has been loaded: camera and time stay when it is the same file. Throws Error (usage) when the first one lacks
-// the camera.
-void take_scene(ViewState& state, std::shared_ptr<const Scene> scene);
+// A scene has been loaded: camera and time stay when it is the same file, and unsaved edits as well when it was read
+// again by itself; the message tells which of them were lost. Throws Error (usage) when the first one lacks the camera.
+void take_scene(ViewState& state, LoadedScene loaded);
 
 // The camera pictures are made with, and the point before it.
 Viewpoint viewpoint(const ViewState& state);
@@ -62,7 +71,8 @@ void advance(ViewState& state, double now, uint64_t shown_revision);
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);
 
-// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, [ and ].
+// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, [ and ];
+// with "ctrl+" and "shift+" before, in this order.
 std::optional<Action> action_of_key(const ViewState& state, std::string_view key);
 
 struct KeyInfo {

@@ -1,0 +1,96 @@
+#include "preview/edit_actions.h"
+
+#include "base/error.h"
+#include "base/json_pointer.h"
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+SceneSession& open_one(ViewState& state) {
+    loaded_scene(state);
+    return *state.session;
+}
+
+void say_done(ViewState& state, std::string message) {
+    state.message = std::move(message), state.message_is_error = false;
+}
+
+// Of a thing in its list: a name that is its own, else its number.
+std::string name_in_path(const Scene& scene, Part part, size_t index) {
+    const std::string& name = name_of(scene, part, index);
+    size_t alike = 0;
+    for (size_t i = 0; i < count_of(scene, part); ++i) alike += name_of(scene, part, i) == name;
+    return alike == 1 ? json_pointer("", name).substr(1) : std::to_string(index);
+}
+
+std::string path_of(const Scene& scene, Thing thing) {
+    constexpr const char* lists[] = {"lights/", "media/", "cameras/"};
+    if (thing.part == Part::scene) return "scene";
+    return lists[static_cast<int>(thing.part)] + name_in_path(scene, thing.part, thing.index);
+}
+
+std::string value_text(const Property& property, vec3 value) {
+    if (property.kind == ValueKind::toggle) return value.x != 0 ? "on" : "off";
+    if (property.kind == ValueKind::number) return formatted("%.9g", value.x);
+    return formatted("%.9g %.9g %.9g", value.x, value.y, value.z);
+}
+}
+
+double seconds_of(const ViewState& state) { return moment_of(*state.scene, state.frame).seconds; }
+
+// The exposure of the scene is how a picture is shown, not what it is made of.
+void edit_scene(ViewState& state, std::string_view path, std::string_view value, double drag) {
+    SceneSession& session = open_one(state);
+    const Edit change = parse_edit(session.scene, path, value, seconds_of(state));
+    edit(session, change, drag > 0 ? static_cast<uint64_t>(drag) : 0);
+    if (change.part == Part::scene && change.property == "exposure")
+        ++state.shown_revision;
+    else
+        show_edits(state), ++state.motions;
+}
+
+void undo_edit(ViewState& state) {
+    if (!undo(open_one(state))) return say_done(state, "nothing to undo");
+    show_edits(state);
+}
+
+void redo_edit(ViewState& state) {
+    if (!redo(open_one(state))) return say_done(state, "nothing to redo");
+    show_edits(state);
+}
+
+void cancel_drag(ViewState& state, double drag) {
+    if (take_back(open_one(state), static_cast<uint64_t>(std::max(drag, 0.0)))) show_edits(state);
+}
+
+void save_scene(ViewState& state, const std::filesystem::path& file) {
+    SceneSession& session = open_one(state);
+    if (file.empty()) {
+        save(session);
+    } else {
+        save_as(session, file);
+        state.stage = std::make_shared<Scene>(session.scene); // knows the new file
+        show_edits(state);
+    }
+    state.scene_file = session.scene.file;
+    say_done(state, "saved " + session.scene.file.string());
+}
+
+void show_edits(ViewState& state) {
+    state.parts = std::make_shared<const EditableParts>(editable_parts(state.session->scene));
+    ++state.revision;
+}
+
+Action selection_of(const Scene& scene, Thing thing) { return {Verb::select, {path_of(scene, thing)}, {}, {}}; }
+
+Action action_of(const Scene& scene, const Edit& edit, uint64_t drag) {
+    const Property& property = find_property(scene, edit.part, edit.index, edit.property);
+    std::string path = edit.property;
+    if (edit.part != Part::scene) path = path_of(scene, {edit.part, edit.index}) + "/" + path;
+    Action action{Verb::edit, {std::move(path), value_text(property, edit.value)}, {}, {}};
+    if (drag > 0) action.numbers.push_back(static_cast<double>(drag));
+    return action;
+}
+}

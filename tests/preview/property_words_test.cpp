@@ -1,0 +1,39 @@
+#include "editing.h"
+#include "preview/property_words.h"
+
+#include <set>
+
+namespace tyndall::test {
+TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
+    const Studio studio;
+    const Scene scene = load_scene(studio.file);
+    for (const Property& property : all_properties()) {
+        const PropertyWords& words = words_of(property);
+        EXPECT_LE(std::string(words.label).size(), 16u) << property.name;
+        EXPECT_GT(std::string(words.help).size(), 15u) << property.name;
+    }
+    for (const Part part : {Part::light, Part::medium, Part::camera, Part::scene})
+        for (size_t i = 0; i < count_of(scene, part); ++i) {
+            std::set<std::string> labels;
+            for (const Property* property : properties_of(scene, part, i))
+                EXPECT_TRUE(labels.insert(words_of(*property).label).second) << property->name;
+        }
+}
+
+TEST(PropertyWords, SlidersHoldTheirValuesAndStayInRange) {
+    for (const Property& property : all_properties()) {
+        if (property.kind != ValueKind::number) continue;
+        for (const float value : {property.least, property.slider_low, property.slider_high, property.most,
+                                  0.5f * (property.slider_low + property.slider_high), 3 * property.slider_high}) {
+            if (!(value >= property.least && value <= property.most)) continue;
+            const SliderRange range = slider_range(property, value);
+            EXPECT_LE(range.low, value) << property.name;
+            EXPECT_GE(range.high, value) << property.name;
+            EXPECT_GE(range.low, property.least) << property.name;
+            EXPECT_LE(range.high, property.most) << property.name;
+            EXPECT_LT(range.low, range.high) << property.name;
+            EXPECT_TRUE(!range.logarithmic || range.low >= 0) << property.name;
+        }
+    }
+}
+}
