@@ -2,6 +2,7 @@
 #include "panels.h"
 
 #include "base/text.h"
+#include "lights_panel.h"
 #include "picture_panel.h"
 #include "theme.h"
 
@@ -158,6 +159,8 @@ void draw_saving(ViewState& state, PanelMemory& memory, const Act& act) {
 }
 
 void draw_side(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+    draw_tabs(state, act);
+    if (state.lights_tab) return draw_lights(state, memory.edits, act);
     draw_modes(state, act);
     draw_shown(state, act);
     draw_cameras(state, act);
@@ -216,6 +219,7 @@ void draw_help(const Act& act) {
 }
 
 void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
     const float side = state.panels ? std::min(23 * type, 0.5f * whole.x) : 0;
@@ -226,7 +230,7 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.06f, 0.06f, 0.065f, 1));
     ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse);
-    draw_picture(state, shelf, act);
+    draw_picture(state, shelf, memory.edits, act);
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();

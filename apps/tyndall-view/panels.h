@@ -1,5 +1,6 @@
 // What is drawn, and the actions that come of it.
 #pragma once
+#include "edit_memory.h"
 #include "preview/render_thread.h"
 #include "preview/view_state.h"
 
@@ -20,6 +21,7 @@ struct PanelMemory {
     std::string held_row;  // a setting that was put back; its slider is dead until the mouse is up
     std::string file_name; // to write
     bool file_name_edited = false;
+    EditMemory edits;
 };
 
 using Act = std::function<void(const Action&)>; // does an action; errors become the state's message

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "handles_panel.h"
 #include "theme.h"
 
 #include <algorithm>
@@ -11,13 +12,8 @@ namespace tyndall {
 namespace {
 constexpr float degrees_a_height = 180; // of turning, for a drag as long as the picture is high
 
-struct Place {
-    ImVec2 low, high;
-    float height() const { return high.y - low.y; }
-};
-
 // The largest rectangle of the picture's shape in the space there is.
-Place fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
+PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     const float scale = std::min(space.x / static_cast<float>(size.x), space.y / static_cast<float>(size.y));
     const ImVec2 extent{scale * static_cast<float>(size.x), scale * static_cast<float>(size.y)};
     const ImVec2 low{std::floor(corner.x + 0.5f * (space.x - extent.x)),
@@ -26,7 +22,7 @@ Place fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
 }
 
 // Mouse on the picture: turning, shifting, looking around, nearer and further.
-void move_camera(const Place& place, const Act& act) {
+void move_camera(const PicturePlace& place, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / place.height(), y = -io.MouseDelta.y / place.height();
     if (ImGui::IsItemActive() && (x != 0 || y != 0)) {
@@ -65,7 +61,7 @@ void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
 }
 
 // The line between two techniques, which the mouse can take along, and their names.
-void draw_wipe(const Place& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
+void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
     const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
     const float x = place.low.x + state.shown.wipe * width;
     ImGui::SetCursorScreenPos({x - 0.5f * type, place.low.y});
@@ -108,7 +104,7 @@ std::string status_line(const ViewState& state, const ShownPicture& picture) {
     return text + "  \u00b7  " + std::string(name_of(mode.accuracy));
 }
 
-void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
+void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const Act& act) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
@@ -116,14 +112,14 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         if (state.message.empty() && state.file_error.empty())
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
-        const Place place = fitted(corner, space, shelf.picture->wanted);
+        const PicturePlace place = fitted(corner, space, shelf.picture->wanted);
         ImGui::GetWindowDrawList()->AddImage(shelf.texture, place.low, place.high);
         if (!shelf.picture->beside.empty()) draw_wipe(place, state, *shelf.picture, act);
         ImGui::SetCursorScreenPos(corner);
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
-        move_camera(place, act);
+        if (!draw_handles(state, shelf.picture->wanted, place, edits, act)) move_camera(place, act);
 
         // Always on the picture: what it is, how good it is, what is wrong with it.
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;

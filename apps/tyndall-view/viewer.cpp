@@ -19,11 +19,9 @@ void take_loaded(Viewer& viewer) {
     std::optional<LoadedScene> loaded = viewer.loader.take();
     if (!loaded) return;
     state.loading = false;
-    if (loaded->scene) {
-        viewer.watched = std::move(loaded->inputs);
-        viewer.window.set_title(state.scene_file.filename().string() + " - Tyndall");
+    if (loaded->session) {
         state.file_error.clear();
-        take_scene(state, loaded->scene);
+        take_scene(state, std::move(*loaded));
         return;
     }
     // The last good picture stays, unless there is none or a script asked for this scene.
@@ -36,11 +34,20 @@ void watch_files(Viewer& viewer) {
     ViewState& state = viewer.state;
     if (!state.scene || state.loading || viewer.now < viewer.watched_at + watch_interval) return;
     viewer.watched_at = viewer.now;
-    if (changed_inputs(viewer.watched).empty()) return;
-    viewer.watched = input_times(*state.scene); // of a broken file too: the next change counts
-    state.scene_file = state.scene->file, state.loading = true;
+    if (changed_inputs(state.session->inputs).empty()) return;
+    state.session->inputs = input_times(*state.scene); // of a broken file too: the next change counts
+    state.scene_file = state.scene->file, state.loading = state.reloading = true;
     viewer.script_place.clear();
     ++state.loads;
+}
+
+void show_title(Viewer& viewer) {
+    const ViewState& state = viewer.state;
+    const char* mark = state.session && has_unsaved_changes(*state.session) ? "* " : "";
+    const std::string title = mark + state.scene_file.filename().string() + " - Tyndall";
+    if (title == viewer.title) return;
+    viewer.title = title;
+    viewer.window.set_title(title);
 }
 
 void take_pictures(Viewer& viewer) {
@@ -116,6 +123,7 @@ void run_frame(Viewer& viewer) {
     viewer.shelf.texture = viewer.window.picture();
     draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
     post_request(viewer);
+    show_title(viewer);
     viewer.window.end_frame();
 
     const double drawn = seconds_now();

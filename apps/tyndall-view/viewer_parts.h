@@ -17,7 +17,7 @@ struct Viewer {
     Window window;
     ViewState state;
     SceneLoader loader;
-    std::vector<InputTime> watched;
+    std::string title;
     double watched_at = 0, started = 0, moved_at = -1e9, input_at = -1e9, now = 0, frame_seconds = 0;
     int loads_begun = 0;
     uint64_t motions_seen = 0, posted = 0, posted_shown = 0;

@@ -43,15 +43,21 @@ size_t hash_of(const ImDrawData& data) {
 
 const std::map<std::string, int>& key_codes() {
     static const std::map<std::string, int> codes = [] {
-        std::map<std::string, int> all{{"space", GLFW_KEY_SPACE},    {"left", GLFW_KEY_LEFT},
-                                       {"right", GLFW_KEY_RIGHT},    {"home", GLFW_KEY_HOME},
-                                       {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
-                                       {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
+        std::map<std::string, int> all{
+            {"space", GLFW_KEY_SPACE},   {"left", GLFW_KEY_LEFT},      {"right", GLFW_KEY_RIGHT},
+            {"home", GLFW_KEY_HOME},     {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
+            {"escape", GLFW_KEY_ESCAPE}, {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
         for (char c = 'a'; c <= 'z'; ++c) all[std::string(1, c)] = GLFW_KEY_A + (c - 'a');
         for (char c = '0'; c <= '9'; ++c) all[std::string(1, c)] = GLFW_KEY_0 + (c - '0');
         return all;
     }();
     return codes;
+}
+
+std::string plain_key(std::string_view key) {
+    for (const std::string_view modifier : {"ctrl+", "shift+"})
+        if (key.starts_with(modifier)) key.remove_prefix(modifier.size());
+    return std::string(key);
 }
 
 Window::Window(const std::string& title, ivec2 size) {
@@ -114,7 +120,9 @@ void Window::begin_frame(const ScriptedInput& input) {
         ImGuiIO& io = ImGui::GetIO();
         io.MousePos = {input.mouse.x, input.mouse.y};
         io.MouseDown[0] = input.down;
-        for (const auto& [name, code] : key_codes()) io.KeysDown[code] = name == input.key;
+        const std::string key = plain_key(input.key);
+        for (const auto& [name, code] : key_codes()) io.KeysDown[code] = name == key;
+        io.KeyCtrl = input.key.starts_with("ctrl+"), io.KeyShift = input.key.find("shift+") != input.key.npos;
     }
     ImGui::NewFrame();
 }

@@ -13,7 +13,7 @@ struct ScriptedInput {
     bool active = false;
     vec2 mouse{-1e6f}; // of the window, pixels
     bool down = false;
-    std::string key; // pressed in this frame; empty = none
+    std::string key; // pressed in this frame, "ctrl+" and "shift+" before it; empty = none
 };
 
 class Window {
@@ -49,4 +49,6 @@ private:
 
 // Names of keys as actions know them, with GLFW's numbers.
 const std::map<std::string, int>& key_codes();
+
+std::string plain_key(std::string_view key); // "z" of "ctrl+shift+z"
 }

@@ -1,0 +1,8 @@
+// One property of a light, of fog or of the scene: its name and what changes it.
+#pragma once
+#include "panels.h"
+#include "preview/property_words.h"
+
+namespace tyndall {
+void draw_property(const ViewState& state, const Property& property, size_t index, EditMemory& memory, const Act& act);
+}
