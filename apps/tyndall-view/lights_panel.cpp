@@ -51,8 +51,7 @@ std::string proposed_name(const SceneSession& session) {
 }
 
 void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
-    const std::string own = state.scene->file.string();
-    if (memory.file_name_of != own) memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
+    propose_name(state, memory);
     const float width = ImGui::CalcTextSize("Save as").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
     const bool entered = ImGui::InputText("##file", &memory.file_name, ImGuiInputTextFlags_EnterReturnsTrue);
@@ -114,6 +113,11 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     for (const Property* property : properties) draw_property(state, *property, thing.index, memory, act);
     ImGui::PopID();
 }
+}
+
+void propose_name(const ViewState& state, EditMemory& memory) {
+    const std::string own = state.scene->file.string();
+    if (memory.file_name_of != own) memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
 }
 
 void draw_tabs(const ViewState& state, const Act& act) {

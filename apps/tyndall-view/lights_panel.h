@@ -6,6 +6,9 @@
 namespace tyndall {
 void draw_lights(const ViewState& state, EditMemory& memory, const Act& act);
 
+// A name to save the scene as, for each scene once.
+void propose_name(const ViewState& state, EditMemory& memory);
+
 // The two pages of the side.
 void draw_tabs(const ViewState& state, const Act& act);
 

@@ -1,6 +1,8 @@
 // The side panel and the bar of time.
 #include "panels.h"
 
+#include "ask_panel.h"
+
 #include "base/text.h"
 #include "lights_panel.h"
 #include "picture_panel.h"
@@ -248,5 +250,6 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         ImGui::End();
     }
     if (state.help) draw_help(act);
+    draw_question(state, memory.edits, act);
 }
 }

@@ -106,12 +106,22 @@ void take_screenshot(Viewer& viewer) {
     }
 }
 
+// What was done to the window as a whole.
+void take_wishes(Viewer& viewer) {
+    if (viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
+    if (const std::string file = viewer.window.take_dropped(); !file.empty()) {
+        viewer.script_place.clear();
+        act(viewer, {Verb::open, {file}, {}, {}});
+    }
+}
+
 // One frame of the interface. Everything up to GL is its own time.
 void run_frame(Viewer& viewer) {
     viewer.window.wait(wait_of(viewer));
     const double start = seconds_now();
     viewer.frame_seconds = std::min(start - viewer.now, 0.1);
     viewer.now = start;
+    take_wishes(viewer);
     take_loaded(viewer);
     watch_files(viewer);
     take_pictures(viewer);
@@ -143,7 +153,7 @@ void run_viewer(const ViewerOptions& options) {
     Viewer viewer(options);
     viewer.script.actions = options.script;
     viewer.started = viewer.now = seconds_now();
-    while (!viewer.quit && !viewer.window.closed()) run_frame(viewer);
+    while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
     viewer.times.seconds = seconds_now() - viewer.started;
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
 }

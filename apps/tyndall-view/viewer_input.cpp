@@ -125,7 +125,7 @@ namespace {
 // Keys that are pressed now; those that fly go on while they are held.
 void read_keys(Viewer& viewer) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
+    if (io.WantTextInput || viewer.state.asked) return;
     for (const auto& [name, code] : key_codes()) {
         if (!ImGui::IsKeyDown(code) || io.KeyAlt) continue;
         const bool flies = name.size() == 1 && std::string_view("wasdqe").find(name[0]) != std::string_view::npos;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -73,6 +74,9 @@ Window::Window(const std::string& title, ivec2 size) {
     glfwSetWindowUserPointer(window_, this);
     glfwSetWindowRefreshCallback(
         window_, [](GLFWwindow* window) { static_cast<Window*>(glfwGetWindowUserPointer(window))->stale_ = true; });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
+        if (count > 0) static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_ = files[0];
+    });
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
 
@@ -102,7 +106,13 @@ Window::~Window() {
     glfwTerminate();
 }
 
-bool Window::closed() const { return glfwWindowShouldClose(window_); }
+bool Window::take_close() {
+    const bool asked = glfwWindowShouldClose(window_);
+    glfwSetWindowShouldClose(window_, GLFW_FALSE);
+    return asked;
+}
+
+std::string Window::take_dropped() { return std::exchange(dropped_, {}); }
 
 void Window::wait(double seconds) {
     if (seconds > 0)

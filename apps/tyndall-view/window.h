@@ -24,7 +24,8 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    bool closed() const;
+    bool take_close();          // its closing was asked for, said once
+    std::string take_dropped(); // a file dropped on it, said once; empty = none
     // Sleeps until there is something to do, or for so long.
     void wait(double seconds);
     static void wake(); // from any thread: ends wait()
@@ -42,6 +43,7 @@ public:
 private:
     GLFWwindow* window_ = nullptr;
     unsigned texture_ = 0;
+    std::string dropped_;
     size_t drawn_ = 0;  // hash of what was drawn last
     bool stale_ = true; // the picture is another one, or the window was uncovered
     ivec2 texture_size_{0};

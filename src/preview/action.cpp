@@ -50,7 +50,9 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::wait, "wait", "NAME [n]", "until idle, for so many seconds, or for \"samples N\""},
         {Verb::snapshot, "snapshot", "FILE", "write the picture as tyndall render does: .exr or .png"},
         {Verb::screenshot, "screenshot", "FILE", "write the window as it is: .png"},
-        {Verb::quit, "quit", "", "end"},
+        {Verb::close, "close", "", "close the window as its button does: asks when there are unsaved edits"},
+        {Verb::answer, "answer", "NAME", "what is to become of them: save, discard or cancel"},
+        {Verb::quit, "quit", "", "end without asking"},
     };
     return all;
 }

@@ -48,6 +48,8 @@ enum class Verb {
     wait,
     snapshot,
     screenshot,
+    close,
+    answer,
     quit
 };
 

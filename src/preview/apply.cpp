@@ -116,8 +116,13 @@ bool apply(ViewState& state, const Action& action) {
     const std::string word = words.empty() ? "" : words[0];
     switch (action.verb) {
     case Verb::open:
-        state.scene_file = word, state.loading = true, state.reloading = false;
-        ++state.loads;
+        open_scene(state, action);
+        break;
+    case Verb::close:
+        close_window(state, action);
+        break;
+    case Verb::answer:
+        answer(state, word);
         break;
     case Verb::set:
         apply_setting(state.settings, word + "=" + words[1]);

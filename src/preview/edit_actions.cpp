@@ -5,12 +5,20 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall {
 namespace {
 SceneSession& open_one(ViewState& state) {
     loaded_scene(state);
     return *state.session;
+}
+
+bool is_unsaved(const ViewState& state) { return state.session && has_unsaved_changes(*state.session); }
+
+void load(ViewState& state, const std::string& file) {
+    state.scene_file = file, state.loading = true, state.reloading = false;
+    ++state.loads;
 }
 
 void say_done(ViewState& state, std::string message) {
@@ -76,6 +84,34 @@ void save_scene(ViewState& state, const std::filesystem::path& file) {
     }
     state.scene_file = session.scene.file;
     say_done(state, "saved " + session.scene.file.string());
+}
+
+void open_scene(ViewState& state, const Action& action) {
+    if (action.place.empty() && is_unsaved(state)) {
+        state.asked = action;
+        return;
+    }
+    load(state, action.words[0]);
+}
+
+void close_window(ViewState& state, const Action& action) {
+    if (is_unsaved(state))
+        state.asked = action;
+    else
+        state.leaving = true;
+}
+
+void answer(ViewState& state, const std::string& word) {
+    if (!state.asked) fail(ExitCode::usage, "answer", "nothing was asked");
+    if (word != "save" && word != "discard" && word != "cancel")
+        fail(ExitCode::usage, "answer", "no '" + printable(word, 40) + "'; there is save, discard, cancel");
+    if (word == "save" && is_unsaved(state)) save_scene(state, {});
+    const Action action = *std::exchange(state.asked, std::nullopt);
+    if (word == "cancel") return;
+    if (action.verb == Verb::close)
+        state.leaving = true;
+    else
+        load(state, action.words[0]);
 }
 
 void show_edits(ViewState& state) {

@@ -15,6 +15,13 @@ void cancel_drag(ViewState& state, double drag);
 // Into its own file when none is given. Throws Error.
 void save_scene(ViewState& state, const std::filesystem::path& file);
 
+// Hands are asked before unsaved edits are lost, scripts only when they close the window: `asked` then waits for an
+// answer: save, discard or cancel. Throws Error: usage (of another answer, or without a question), and as saving does,
+// and goes on asking.
+void open_scene(ViewState& state, const Action& action);
+void close_window(ViewState& state, const Action& action);
+void answer(ViewState& state, const std::string& word);
+
 // The session's scene has changed: pictures have to follow.
 void show_edits(ViewState& state);
 

@@ -39,11 +39,13 @@ struct ViewState {
     double next_frame_at = 0; // seconds of the clock, while playing
 
     bool panels = true, help = false;
-    bool lights_tab = false; // what the side shows: lights and fog, or rendering
-    bool handles = true;     // lights are drawn in the picture while the side shows them
-    Thing selected;          // its properties are shown; may be beyond the end
-    std::string file_error;  // why the scene's files, as they are now, cannot be read
-    std::string message;     // the last thing that went wrong, or was done
+    bool lights_tab = false;     // what the side shows: lights and fog, or rendering
+    bool handles = true;         // lights are drawn in the picture while the side shows them
+    std::optional<Action> asked; // would lose unsaved edits: waits for an answer
+    bool leaving = false;        // the window is to close
+    Thing selected;              // its properties are shown; may be beyond the end
+    std::string file_error;      // why the scene's files, as they are now, cannot be read
+    std::string message;         // the last thing that went wrong, or was done
     bool message_is_error = false;
 
     uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow

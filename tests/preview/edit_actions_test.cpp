@@ -188,4 +188,46 @@ TEST(EditActions, UnsavedEditsAreNotedInWrittenPictures) {
     edited("undo");
     EXPECT_EQ(unsaved_text(*edited.state.session), "without the last 1 steps that were saved\n");
 }
+
+TEST(EditActions, HandsAreAskedBeforeEditsAreLost) {
+    Edited edited;
+    const std::filesystem::path own = edited.studio.file;
+    edited("close");
+    EXPECT_TRUE(edited.state.leaving) << "nothing to lose";
+    edited.state.leaving = false;
+    edited("edit ambient 0.3");
+
+    edited("close");
+    EXPECT_FALSE(edited.state.leaving);
+    ASSERT_TRUE(edited.state.asked);
+    edited("answer cancel");
+    EXPECT_FALSE(edited.state.asked || edited.state.leaving);
+
+    edited("open other.json");
+    ASSERT_TRUE(edited.state.asked);
+    EXPECT_EQ(edited.state.loads, 0);
+    error_text(ExitCode::usage, [&] { edited("answer maybe"); });
+    edited("answer discard");
+    EXPECT_EQ(edited.state.loads, 1);
+    EXPECT_EQ(edited.state.scene_file, "other.json");
+    error_text(ExitCode::usage, [&] { edited("answer save"); });
+
+    apply(edited.state, parse_action("open third.json", "script.txt:1"));
+    EXPECT_EQ(edited.state.loads, 2) << "scripts know what they do";
+
+    edited("close");
+    edited("answer save");
+    EXPECT_TRUE(edited.state.leaving);
+    EXPECT_EQ(load_scene(own).ambient.at(0), vec3(0.3f));
+}
+
+TEST(EditActions, WhatCannotBeSavedIsAskedOn) {
+    Edited edited;
+    edited("edit ambient 0.3");
+    edited("close");
+    edited.studio.write("scene.json", "{}"); // by somebody else
+    error_text(ExitCode::refused, [&] { edited("answer save"); });
+    EXPECT_TRUE(edited.state.asked);
+    EXPECT_FALSE(edited.state.leaving);
+}
 }
