@@ -61,6 +61,9 @@ void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
     tip("Write a scene file of this name, and go on with that one");
 }
 
+// A colour at its brightest.
+ImVec4 hue_of(vec3 color) { return shown_color(color / std::max(max_component(color), 1e-6f)); }
+
 // A line of the list: a dot, a name, what it is.
 void draw_line(const ViewState& state, Thing thing, const std::string& name, const char* kind, ImVec4 color,
                const Act& act) {
@@ -83,8 +86,7 @@ void draw_list(const ViewState& state, const Act& act) {
     small_heading("Lights");
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const LightSource& light = scene.lights[i];
-        const vec3 color = light.color.at(seconds), hue = color / std::max(max_component(color), 1e-6f);
-        draw_line(state, {Part::light, i}, light.name, kind_name(light), shown_color(hue), act);
+        draw_line(state, {Part::light, i}, light.name, kind_name(light), hue_of(light.color.at(seconds)), act);
     }
     if (scene.lights.empty()) ImGui::TextDisabled("none");
     small_heading("Fog");
@@ -95,8 +97,7 @@ void draw_list(const ViewState& state, const Act& act) {
     }
     if (scene.media.empty()) ImGui::TextDisabled("none");
     small_heading("Everything");
-    draw_line(state, {Part::scene, 0}, "ambient, background, exposure", "", shown_color(scene.ambient.at(seconds)),
-              act);
+    draw_line(state, {Part::scene, 0}, "ambient, background, exposure", "", hue_of(scene.ambient.at(seconds)), act);
 }
 
 void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {

@@ -57,6 +57,7 @@ void apply_theme(float scale) {
     colors[ImGuiCol_ScrollbarGrab] = grey(0.27f);
     colors[ImGuiCol_ScrollbarGrabHovered] = grey(0.35f);
     colors[ImGuiCol_ScrollbarGrabActive] = grey(0.42f);
+    colors[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, 0.55f};
     colors[ImGuiCol_TextSelectedBg] = tinted(0.35f);
     colors[ImGuiCol_NavHighlight] = tinted(0.6f);
 }
