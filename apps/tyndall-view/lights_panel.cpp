@@ -11,6 +11,8 @@
 
 namespace tyndall {
 namespace {
+constexpr size_t most_lines = 9; // of the list, as far as it does not scroll
+
 void small_heading(const char* text) {
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
     ImGui::TextColored(quiet, "%s", text);
@@ -111,7 +113,11 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     const std::vector<const Property*> properties = properties_of(scene, thing.part, thing.index);
     if (properties.empty()) ImGui::TextDisabled("belongs to the glTF; nothing to change here");
     ImGui::PushID(place_of(scene, thing.part, thing.index).c_str());
-    for (const Property* property : properties) draw_property(state, *property, thing.index, memory, act);
+    for (const Property* property : properties) {
+        const bool sun = thing.part == Part::light && scene.lights[thing.index].kind == LightKind::sun;
+        if (sun && std::string_view(property->name) == "direction") draw_sun_place(state, thing.index, memory, act);
+        draw_property(state, *property, thing.index, memory, act);
+    }
     ImGui::PopID();
 }
 }
@@ -139,7 +145,12 @@ void draw_lights(const ViewState& state, EditMemory& memory, const Act& act) {
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.held.clear();
     draw_steps(state, act);
     draw_save_as(state, memory, act);
+    // A long list scrolls by itself.
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const size_t lines = state.scene->lights.size() + state.scene->media.size();
+    if (lines > most_lines) ImGui::BeginChild("list", {0, static_cast<float>(most_lines + 6) * line});
     draw_list(state, act);
+    if (lines > most_lines) ImGui::EndChild();
     draw_selected(state, memory, act);
 }
 }

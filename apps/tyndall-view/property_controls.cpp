@@ -10,7 +10,8 @@
 namespace tyndall {
 namespace {
 constexpr float label_share = 0.4f;
-constexpr double slow = 0.002; // of a vector's usual range, for a pixel of dragging
+constexpr float highest_sun = 89.9f; // degrees: beyond it the bearing would be lost
+constexpr double slow = 0.002;       // of a vector's usual range, for a pixel of dragging
 
 bool is_degrees(const Property& property) { return std::string_view(property.unit) == "degrees"; }
 
@@ -101,10 +102,29 @@ void draw_diamond(float right, float middle) {
                                               ImGui::GetColorU32(accent));
 }
 
-void note_refusal(const ViewState& state, const std::string& path, EditMemory& memory) {
+// The reason without the place, which is where it is shown.
+void note_refusal(const ViewState& state, Part part, const std::string& path, EditMemory& memory) {
     memory.refused.clear();
     if (state.message.empty() || !state.message_is_error) return;
-    memory.refused = path, memory.why = state.message;
+    const std::string prefix = path + ": ";
+    const bool here = state.message.starts_with(prefix);
+    memory.refused = path, memory.why = in_words(part, here ? state.message.substr(prefix.size()) : state.message);
+}
+
+// What is changed by the same grip of the mouse is one step; typed values stand alone.
+uint64_t drag_now(const EditMemory& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
+
+// A label on the left; returns whether the mouse is on it.
+bool draw_label(const char* text, bool keyed) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    const bool hovered = ImGui::IsItemHovered();
+    const float column = label_share * ImGui::GetWindowWidth();
+    const float middle = 0.5f * (ImGui::GetItemRectMin().y + ImGui::GetItemRectMax().y);
+    if (keyed) draw_diamond(ImGui::GetWindowPos().x + column, middle);
+    ImGui::SameLine(column);
+    ImGui::SetNextItemWidth(-1);
+    return hovered;
 }
 }
 
@@ -121,24 +141,15 @@ void draw_property(const ViewState& state, const Property& property, size_t inde
     const std::string path = place_of(scene, property.part, index) + "/" + property.name;
 
     ImGui::PushID(property.name);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(words_of(property).label);
-    bool hovered = ImGui::IsItemHovered();
-    const float column = label_share * ImGui::GetWindowWidth();
-    const float middle = 0.5f * (ImGui::GetItemRectMin().y + ImGui::GetItemRectMax().y);
-    if (keyed) draw_diamond(ImGui::GetWindowPos().x + column, middle);
-    ImGui::SameLine(column);
-
+    bool hovered = draw_label(words_of(property).label, keyed);
     const SliderRange range = held_range(property, value.x, path, memory);
     ImGui::BeginGroup();
     const bool changed = edit_value(property, range, value);
     ImGui::EndGroup();
     if (ImGui::IsItemActivated()) memory.held = path, memory.range = range;
     if (changed) {
-        // What is changed by the same grip of the mouse is one step; typed values stand alone.
-        const uint64_t drag = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0;
-        act(action_of(scene, {property.part, index, property.name, value, seconds}, drag));
-        note_refusal(state, path, memory);
+        act(action_of(scene, {property.part, index, property.name, value, seconds}, drag_now(memory)));
+        note_refusal(state, property.part, path, memory);
     }
     hovered |= ImGui::IsItemHovered() && !ImGui::IsItemActive() && !ImGui::IsPopupOpen("palette");
     if (hovered) explain(property, path, keyed);
@@ -148,5 +159,24 @@ void draw_property(const ViewState& state, const Property& property, size_t inde
         ImGui::PopStyleColor();
     }
     ImGui::PopID();
+}
+
+void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memory, const Act& act) {
+    const double seconds = seconds_of(state);
+    const vec3 direction = light_place(*state.scene, light, seconds).direction;
+    SunPlace place = sun_place(direction);
+    const auto slider = [&](const char* label, const char* help, float& value, float low, float high) {
+        ImGui::PushID(label);
+        bool hovered = draw_label(label, false);
+        const bool changed = ImGui::SliderFloat("##value", &value, low, high, "%.1f\u00b0");
+        hovered |= ImGui::IsItemHovered() && !ImGui::IsItemActive();
+        if (hovered) ImGui::SetTooltip("%s", help);
+        ImGui::PopID();
+        if (changed)
+            act(action_of(*state.scene, {Part::light, light, "direction", direction_from(place), seconds},
+                          drag_now(memory)));
+    };
+    slider("height", "Of the sun above the horizon", place.height, -10, highest_sun);
+    slider("bearing", "The side the sun stands on: 0 is +z, 90 is +x", place.bearing, 0, 360);
 }
 }

@@ -82,7 +82,7 @@ void save_scene(ViewState& state, const std::filesystem::path& file) {
         state.stage = std::make_shared<Scene>(session.scene); // knows the new file
         show_edits(state);
     }
-    state.scene_file = session.scene.file;
+    state.scene_file = session.scene.file, state.file_error.clear();
     say_done(state, "saved " + session.scene.file.string());
 }
 

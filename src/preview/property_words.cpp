@@ -80,6 +80,28 @@ SliderRange slider_range(const Property& property, float value) {
     return range;
 }
 
+// Names of one ordinary word may stand for themselves in a message.
+std::string in_words(Part part, std::string message) {
+    for (const Row& row : rows) {
+        if (row.part != part || row.name.find('_') == row.name.npos) continue;
+        for (size_t at = 0; (at = message.find(row.name, at)) != message.npos;
+             at += std::string_view(row.words.label).size())
+            message.replace(at, row.name.size(), row.words.label);
+    }
+    return message;
+}
+
+SunPlace sun_place(vec3 direction) {
+    const vec3 to_sun = -glm::normalize(direction);
+    const float bearing = glm::degrees(std::atan2(to_sun.x, to_sun.z));
+    return {glm::degrees(std::asin(std::clamp(to_sun.y, -1.0f, 1.0f))), bearing < 0 ? bearing + 360 : bearing};
+}
+
+vec3 direction_from(const SunPlace& place) {
+    const float height = glm::radians(place.height), bearing = glm::radians(place.bearing);
+    return -vec3(std::cos(height) * std::sin(bearing), std::sin(height), std::cos(height) * std::cos(bearing));
+}
+
 const char* kind_name(const LightSource& light) {
     switch (light.kind) {
     case LightKind::point:

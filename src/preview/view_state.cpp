@@ -6,9 +6,28 @@
 #include "preview/edit_actions.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall {
 namespace {
+bool is_there(const ViewState& state) {
+    return state.scene && state.selected.index < count_of(*state.scene, state.selected.part);
+}
+
+std::string selected_name(const ViewState& state) {
+    return is_there(state) ? name_of(*state.scene, state.selected.part, state.selected.index) : "";
+}
+
+// What was selected may stand elsewhere in the list now.
+void select_by_name(ViewState& state, const std::string& name) {
+    for (size_t i = 0; i < count_of(*state.scene, state.selected.part); ++i) {
+        if (name_of(*state.scene, state.selected.part, i) != name) continue;
+        state.selected.index = i;
+        return;
+    }
+    state.selected = {};
+}
+
 void go_to(ViewState& state, int frame) { apply(state, {Verb::frame, {}, {static_cast<double>(frame)}, {}}); }
 }
 
@@ -25,15 +44,19 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     else if (!std::ranges::any_of(scene.cameras, has_name))
         state.camera.clear();
     const bool same_file = state.scene && state.scene->file == scene.file;
-    if (same_file && state.reloading) {
+    const bool again = std::exchange(state.reloading, false);
+    if (again && !same_file) return; // meanwhile it was saved as another file
+    const std::string selected = selected_name(state);
+    if (again) {
         std::vector<std::string> lost = go_on_with(*state.session, std::move(*loaded.session));
         if (!lost.empty()) state.message = "read again; lost: " + joined(lost, "; "), state.message_is_error = true;
     } else {
         state.session = std::move(loaded.session);
     }
     state.scene = {state.session, &state.session->scene};
-    state.stage = std::move(loaded.stage), state.reloading = false;
+    state.stage = std::move(loaded.stage);
     show_edits(state);
+    select_by_name(state, selected);
     if (same_file) return;
     state.free = false, state.playing = false;
     state.frame = state.scene->first_frame;

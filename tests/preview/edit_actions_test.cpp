@@ -115,16 +115,31 @@ TEST(EditActions, UnsavedEditsSurviveReadingAgainAndLostOnesAreTold) {
     edited("edit media/dust/g 0.4");
     std::string text = read_file(edited.studio.file);
     text.replace(text.find("\"dust\""), 6, "\"smoke\"");
+    const size_t stage = text.find("    { \"name\": \"stage\""), next = text.find("    { \"type\": \"spot\"");
+    text.erase(stage, next - stage);
+    edited("select lights/evening");
     edited.studio.write("scene.json", text);
     edited.state.reloading = true;
     edited.open(edited.studio.file);
-    EXPECT_EQ(edited.state.scene->lights[6].intensity.at(0), 31);
+    EXPECT_EQ(edited.state.scene->lights.back().intensity.at(0), 31);
     EXPECT_TRUE(edited.state.message_is_error);
     EXPECT_NE(edited.state.message.find("media/dust/g"), std::string::npos) << edited.state.message;
     EXPECT_FALSE(edited.state.reloading);
+    EXPECT_EQ(edited.state.selected, (Thing{Part::light, 5})) << "where it stands now";
     edited.open(edited.studio.file); // asked for: as the file is
-    EXPECT_NE(edited.state.scene->lights[6].intensity.at(0), 31);
+    EXPECT_NE(edited.state.scene->lights.back().intensity.at(0), 31);
     EXPECT_FALSE(has_unsaved_changes(*edited.state.session));
+}
+
+TEST(EditActions, AReloadThatComesAfterSavingElsewhereIsForgotten) {
+    Edited edited;
+    edited.state.reloading = true;
+    edited("edit ambient 0.3");
+    edited("save-as " + (edited.studio / "other.json").string());
+    edited("edit ambient 0.4");
+    edited.open(edited.studio.file);
+    EXPECT_EQ(edited.state.scene->file, edited.studio / "other.json");
+    EXPECT_EQ(edited.state.scene->ambient.at(0), vec3(0.4f));
 }
 
 TEST(EditActions, ActionsOfEditsAreTheirWords) {

@@ -20,6 +20,25 @@ TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
         }
 }
 
+TEST(PropertyWords, MessagesSpeakOfLabels) {
+    EXPECT_EQ(in_words(Part::light, "outer_cone must not be less than inner_cone, at any moment"),
+              "beam edge must not be less than full beam, at any moment");
+    EXPECT_EQ(in_words(Part::medium, "outer_cone"), "outer_cone");
+}
+
+TEST(PropertyWords, SunsStandWhereTheirLightComesFrom) {
+    EXPECT_NEAR(sun_place({0, -3, 0}).height, 90, 1e-3f);
+    EXPECT_NEAR(sun_place({0, 0, -2}).height, 0, 1e-3f);
+    EXPECT_NEAR(sun_place({0, 0, -2}).bearing, 0, 1e-3f);
+    EXPECT_NEAR(sun_place({-1, -1, 0}).height, 45, 1e-3f);
+    EXPECT_NEAR(sun_place({-1, -1, 0}).bearing, 90, 1e-3f);
+    EXPECT_NEAR(sun_place({1, 1, 0}).height, -45, 1e-3f);
+    for (const vec3 direction : {vec3(0.78f, -0.42f, 0.15f), vec3(-0.1f, -0.9f, -0.4f), vec3(0.3f, 0.2f, -0.9f)}) {
+        const vec3 again = direction_from(sun_place(direction));
+        EXPECT_LT(glm::distance(again, glm::normalize(direction)), 1e-5f);
+    }
+}
+
 TEST(PropertyWords, SlidersHoldTheirValuesAndStayInRange) {
     for (const Property& property : all_properties()) {
         if (property.kind != ValueKind::number) continue;
