@@ -14,6 +14,7 @@ struct EditMemory {
     bool has_mouse = false;   // since it was pressed on a light in the picture,
     bool moved = false;       // and has gone far enough to move it
     std::optional<HandleDrag> drag;
+    bool file_exists = false; // there is one of the name to save as
     std::string file_name;    // to save as
     std::string file_name_of; // the scene's own file when that was proposed
 };

@@ -11,6 +11,7 @@
 
 namespace tyndall {
 namespace {
+constexpr int most_proposals = 1000;
 constexpr size_t most_lines = 9; // of the list, as far as it does not scroll
 
 void small_heading(const char* text) {
@@ -46,21 +47,35 @@ void draw_steps(const ViewState& state, const Act& act) {
         ImGui::TextDisabled("saved");
 }
 
-// "lantern_2.json" beside lantern.json, as a proposal.
+bool is_taken(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::exists(file, ignored);
+}
+
+// The first of lantern_2.json, lantern_3.json ... that there is not yet; of a bare model lantern.json before them.
 std::string proposed_name(const SceneSession& session) {
     std::filesystem::path file = session.scene.file;
-    return file.replace_filename(file.stem().string() + (session.has_file ? "_2.json" : ".json")).string();
+    const std::string stem = file.stem().string();
+    for (int number = session.has_file ? 2 : 1; number < most_proposals; ++number) {
+        file.replace_filename(stem + (number > 1 ? "_" + std::to_string(number) : "") + ".json");
+        if (!is_taken(file)) break;
+    }
+    return file.string();
 }
 
 void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
     propose_name(state, memory);
     const float width = ImGui::CalcTextSize("Save as").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
-    const bool entered = ImGui::InputText("##file", &memory.file_name, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::InputText("##file", &memory.file_name)) memory.file_exists = is_taken(memory.file_name);
     tip(memory.file_name.c_str());
     ImGui::SameLine();
-    if (ImGui::Button("Save as") || entered) act({Verb::save_as, {memory.file_name}, {}, {}});
-    tip("Write a scene file of this name, and go on with that one");
+    if (memory.file_exists) ImGui::PushStyleColor(ImGuiCol_Text, caution);
+    const bool pressed = ImGui::Button(memory.file_exists ? "Replace" : "Save as", {width, 0});
+    if (memory.file_exists) ImGui::PopStyleColor();
+    tip(memory.file_exists ? "There is such a file: write over it, and go on with that one"
+                           : "Write a scene file of this name, and go on with that one");
+    if (pressed) act({Verb::save_as, {memory.file_name}, {}, {}});
 }
 
 // A colour at its brightest.
@@ -76,8 +91,10 @@ void draw_line(const ViewState& state, Thing thing, const std::string& name, con
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddCircleFilled({at.x + 0.6f * type, at.y + 0.5f * type}, radius, ImGui::GetColorU32(color));
     list->AddCircle({at.x + 0.6f * type, at.y + 0.5f * type}, radius, IM_COL32(255, 255, 255, 60));
-    list->AddText({at.x + 1.4f * type, at.y}, ImGui::GetColorU32(ImGuiCol_Text), printable(name, 40).c_str());
     const float right = ImGui::GetWindowPos().x + ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(kind).x;
+    list->PushClipRect(at, {right - 0.5f * type, at.y + 2 * type}, true);
+    list->AddText({at.x + 1.4f * type, at.y}, ImGui::GetColorU32(ImGuiCol_Text), printable(name, 60).c_str());
+    list->PopClipRect();
     list->AddText({right, at.y}, ImGui::GetColorU32(quiet), kind);
     ImGui::PopID();
 }
@@ -124,7 +141,9 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
 
 void propose_name(const ViewState& state, EditMemory& memory) {
     const std::string own = state.scene->file.string();
-    if (memory.file_name_of != own) memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
+    if (memory.file_name_of == own) return;
+    memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
+    memory.file_exists = is_taken(memory.file_name);
 }
 
 void draw_tabs(const ViewState& state, const Act& act) {

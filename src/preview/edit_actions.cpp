@@ -28,9 +28,12 @@ void say_done(ViewState& state, std::string message) {
 // Of a thing in its list: a name that is its own, else its number.
 std::string name_in_path(const Scene& scene, Part part, size_t index) {
     const std::string& name = name_of(scene, part, index);
-    size_t alike = 0;
-    for (size_t i = 0; i < count_of(scene, part); ++i) alike += name_of(scene, part, i) == name;
-    return alike == 1 ? json_pointer("", name).substr(1) : std::to_string(index);
+    const std::string number = std::to_string(index);
+    size_t alike = 0, numbers = 0;
+    for (size_t i = 0; i < count_of(scene, part); ++i)
+        alike += name_of(scene, part, i) == name, numbers += name_of(scene, part, i) == number;
+    if (alike == 1) return json_pointer("", name).substr(1);
+    return (numbers > 0 ? "#" : "") + number;
 }
 
 std::string path_of(const Scene& scene, Thing thing) {

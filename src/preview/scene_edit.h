@@ -34,7 +34,8 @@ struct Thing {
 // "lights/lamp", "media/0", "scene". Throws Error (usage).
 Thing parse_thing(const Scene& scene, std::string_view path);
 
-// "lights/lamp/intensity", "media/0/g", "exposure" and "400", "0.9 0.8 0.7", "on": names or numbers from 0; ~1 stands
-// for a slash in a name, ~0 for ~. One number for a vector or colour means all three. Throws Error (usage).
+// "lights/lamp/intensity", "media/0/g", "exposure" and "400", "0.9 0.8 0.7", "on": names or numbers from 0, with a #
+// before a number that is a name as well; ~1 stands for a slash in a name, ~0 for ~. One number for a vector or colour
+// means all three. Throws Error (usage).
 Edit parse_edit(const Scene& scene, std::string_view path, std::string_view value, double seconds);
 }

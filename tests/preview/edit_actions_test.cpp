@@ -146,9 +146,11 @@ TEST(EditActions, ActionsOfEditsAreTheirWords) {
     Edited edited;
     Scene scene = *edited.state.scene;
     scene.lights[0].name = "a/b~c";
-    scene.lights[1].name = scene.lights[2].name = "twin";
+    scene.lights[1].name = scene.lights[2].name = "twin", scene.lights[4].name = "1";
     const Edit edits[] = {{Part::light, 0, "intensity", vec3(0.1f, 0, 0), 0},
                           {Part::light, 2, "position", vec3(1 / 3.0f, -2e-7f, 1e9f), 0},
+                          {Part::light, 1, "intensity", vec3(7, 0, 0), 0},
+                          {Part::light, 4, "intensity", vec3(8, 0, 0), 0},
                           {Part::light, 6, "shadows", vec3(0), 0},
                           {Part::medium, 1, "rotate", vec3(1.1f, 2.2f, 3.3f), 0},
                           {Part::scene, 0, "background/sky/zenith", vec3(0.7f), 0}};
