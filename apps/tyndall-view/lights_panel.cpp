@@ -52,10 +52,16 @@ bool is_taken(const std::filesystem::path& file) {
     return std::filesystem::exists(file, ignored);
 }
 
+// "lantern" of lantern_12.
+std::string without_number(const std::string& name) {
+    const size_t last = name.find_last_not_of("0123456789");
+    return last != name.npos && last > 0 && last + 1 < name.size() && name[last] == '_' ? name.substr(0, last) : name;
+}
+
 // The first of lantern_2.json, lantern_3.json ... that there is not yet; of a bare model lantern.json before them.
 std::string proposed_name(const SceneSession& session) {
     std::filesystem::path file = session.scene.file;
-    const std::string stem = file.stem().string();
+    const std::string stem = session.has_file ? without_number(file.stem().string()) : file.stem().string();
     for (int number = session.has_file ? 2 : 1; number < most_proposals; ++number) {
         file.replace_filename(stem + (number > 1 ? "_" + std::to_string(number) : "") + ".json");
         if (!is_taken(file)) break;

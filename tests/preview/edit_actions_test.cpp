@@ -2,7 +2,6 @@
 #include "editing.h"
 #include "fixtures.h"
 #include "preview/edit_actions.h"
-#include "preview/painter.h"
 
 #include <bit>
 
@@ -21,7 +20,6 @@ struct Edited {
     void operator()(const std::string& line) { apply(state, parse_action(line)); }
 };
 
-std::atomic<bool> never = false;
 }
 
 TEST(EditActions, EditsAreSeenAndUndone) {
@@ -163,36 +161,6 @@ TEST(EditActions, ActionsOfEditsAreTheirWords) {
         EXPECT_EQ(again.property, edit.property);
         EXPECT_EQ(bits(again.value), bits(edit.value)) << action.words[1];
     }
-}
-
-// The painter's scene stays one object through all edits, and shares what they leave alone.
-TEST(EditActions, PicturesFollowEditsAndKeepTheTriangles) {
-    ViewState state;
-    take_scene(state, small_scene());
-    state.most_samples = 4;
-    const auto painted = [&](Painter& painter) {
-        Image<glm::u8vec4> codes;
-        while (const auto picture = paint(painter, request_of(state, false), never)) codes = picture->codes;
-        return codes.pixels;
-    };
-    Painter painter, fresh;
-    const auto first = painted(painter);
-    const std::shared_ptr<const Occluders> triangles = painter.snapshot.occluders;
-    apply(state, parse_action("edit lights/sun/intensity 9"));
-    const auto second = painted(painter);
-    EXPECT_NE(first, second);
-    EXPECT_EQ(painter.snapshot.occluders, triangles);
-    apply(state, parse_action("edit media/haze/extinction 0.7"));
-    EXPECT_NE(painted(painter), second);
-    EXPECT_EQ(painted(fresh).empty(), false);
-    apply(state, parse_action("undo"));
-    apply(state, parse_action("undo"));
-    EXPECT_EQ(painted(painter), first);
-
-    // What was read again is another scene.
-    take_scene(state, small_scene());
-    painted(painter);
-    EXPECT_NE(painter.snapshot.occluders, triangles);
 }
 
 TEST(EditActions, UnsavedEditsAreNotedInWrittenPictures) {
