@@ -51,7 +51,7 @@ void cone(ImVec2 tip, vec2 along, float length, ImU32 color) {
 
 // Which way a light shines in the picture; down when it shines along the view.
 vec2 drawn_direction(const ViewState& state, ivec2 size, const LightIcon& icon) {
-    const Camera camera = viewpoint(state).camera;
+    const Camera camera = camera_now(state);
     const vec3 direction = light_place(*state.scene, icon.light, seconds_of(state)).direction;
     const auto tip = pixel_of(camera, size, icon.place + 20 * pixel_span(camera, size, icon.place) * direction);
     const vec2 way = tip ? *tip - icon.pixel : vec2(0);
@@ -107,7 +107,7 @@ void draw_words(ImVec2 at, const std::string& text) {
 void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const Zoom& zoom, float length) {
     const LightSource& light = state.scene->lights[icon.light];
     if (light.kind != LightKind::spot) return;
-    const Camera camera = viewpoint(state).camera;
+    const Camera camera = camera_now(state);
     const double seconds = seconds_of(state);
     const LightPlace place = light_place(*state.scene, icon.light, seconds);
     const float metres = light.target ? glm::distance(light.target->at(seconds), place.position)
@@ -169,7 +169,7 @@ bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place,
     const Zoom zoom{{place.low.x, place.low.y}, place.height() / static_cast<float>(size.y)};
     const float type = ImGui::GetFontSize(), length = 4.7f * type / zoom.scale, reach = 0.75f * type / zoom.scale;
     const vec2 pixel = zoom.back(io.MousePos);
-    const Camera camera = viewpoint(state).camera;
+    const Camera camera = camera_now(state);
 
     const std::vector<LightIcon> icons = icons_in_view(state, size, 3 * type / zoom.scale);
     const LightIcon* selected = nullptr;

@@ -7,21 +7,22 @@
 namespace tyndall {
 namespace {
 constexpr float sun_height = 0.14f; // below the upper edge, as a share of the picture's height
+constexpr float sun_depth = 5;      // metres
 constexpr int ring_points = 48;
 }
 
 std::vector<LightIcon> icons_in_view(const ViewState& state, ivec2 size, float gap) {
-    const Viewpoint view = viewpoint(state);
+    const Camera camera = camera_now(state);
     const vec2 middle{0.5f * static_cast<float>(size.x), sun_height * static_cast<float>(size.y)};
-    const Ray ray = camera_ray(view.camera, size, middle);
-    const vec3 place = ray.at(view.distance / glm::dot(ray.direction, view.camera.forward));
-    std::vector<LightIcon> icons = light_icons(view.camera, size, *state.scene, seconds_of(state), place);
+    const Ray ray = camera_ray(camera, size, middle);
+    const vec3 place = ray.at(sun_depth / glm::dot(ray.direction, camera.forward));
+    std::vector<LightIcon> icons = light_icons(camera, size, *state.scene, seconds_of(state), place);
     float shift = 0;
     for (LightIcon& icon : icons) {
         if (icon.place != place) continue;
         const vec2 from = icon.pixel;
         icon.pixel.x += shift, shift += gap;
-        icon.place += drag_across_view(view.camera, size, place, from, icon.pixel);
+        icon.place += drag_across_view(camera, size, place, from, icon.pixel);
     }
     return icons;
 }
@@ -40,7 +41,7 @@ HandleDrag begin_drag(const ViewState& state, ivec2 size, const LightIcon& icon,
     HandleDrag drag;
     drag.number = number;
     drag.before.lights = state.scene->lights, drag.before.nodes = state.scene->nodes;
-    drag.camera = viewpoint(state).camera, drag.size = size, drag.seconds = seconds_of(state);
+    drag.camera = camera_now(state), drag.size = size, drag.seconds = seconds_of(state);
     drag.icon = icon, drag.handle = handle, drag.from = from, drag.length = length;
     return drag;
 }

@@ -5,7 +5,7 @@
 
 namespace tyndall {
 // As light_icons. Suns without a place of their own stand side by side near the upper edge of the picture, `gap` pixels
-// apart, as far away as the point looked at.
+// apart.
 std::vector<LightIcon> icons_in_view(const ViewState& state, ivec2 size, float gap);
 
 // Of icons, the one nearest to a pixel within reach; null when there is none.

@@ -62,6 +62,12 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     state.frame = state.scene->first_frame;
 }
 
+Camera camera_now(const ViewState& state) {
+    if (state.free) return state.view.camera;
+    const Scene& scene = loaded_scene(state);
+    return camera_at(scene, find_camera(scene, state.camera), seconds_of(state));
+}
+
 Viewpoint viewpoint(const ViewState& state) {
     if (state.free) return state.view;
     const Scene& scene = loaded_scene(state);
@@ -98,7 +104,7 @@ Request request_of(const ViewState& state, bool moving) {
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;
-    request.camera = viewpoint(state).camera;
+    request.camera = camera_now(state);
     request.size = state.size.x > 0 ? state.size : state.scene->resolution;
     request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;
     request.settings = state.settings, request.seed = state.seed, request.missing = state.missing;

@@ -61,7 +61,8 @@ const Scene& loaded_scene(const ViewState& state);
 // again by itself; the message tells which of them were lost. Throws Error (usage) when the first one lacks the camera.
 void take_scene(ViewState& state, LoadedScene loaded);
 
-// The camera pictures are made with, and the point before it.
+// The camera pictures are made with, and the point before it, for which all of the scene may have to be looked at.
+Camera camera_now(const ViewState& state);
 Viewpoint viewpoint(const ViewState& state);
 
 // Where the camera is when it was moved by hand: what a scene file says of such a camera.
