@@ -26,7 +26,11 @@ void take_loaded(Viewer& viewer) {
     }
     // The last good picture stays, unless there is none or a script asked for this scene.
     if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
-    state.file_error = loaded->error;
+    state.scene_file = state.scene->file;
+    if (std::exchange(state.reloading, false))
+        state.file_error = loaded->error;
+    else
+        tell(viewer, loaded->error, true);
 }
 
 // Reads the scene again when one of its files has changed.
@@ -109,10 +113,7 @@ void take_screenshot(Viewer& viewer) {
 // What was done to the window as a whole.
 void take_wishes(Viewer& viewer) {
     if (viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
-    if (const std::string file = viewer.window.take_dropped(); !file.empty()) {
-        viewer.script_place.clear();
-        act(viewer, {Verb::open, {file}, {}, {}});
-    }
+    if (const std::string file = viewer.window.take_dropped(); !file.empty()) act(viewer, {Verb::open, {file}, {}, {}});
 }
 
 // One frame of the interface. Everything up to GL is its own time.

@@ -68,6 +68,8 @@ void perform(Viewer& viewer, const Action& action) {
 }
 
 void act(Viewer& viewer, const Action& action) {
+    // A scene that hands open is no matter of the script's.
+    if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_place.clear();
     try {
         if (action.verb != Verb::brighten) viewer.state.message.clear();
         perform(viewer, action);
