@@ -2,7 +2,9 @@
 #include "panels.h"
 
 #include "base/text.h"
+#include "inspector.h"
 #include "picture_panel.h"
+#include "preview/reference_picture.h"
 #include "theme.h"
 
 #include <imgui_stdlib.h>
@@ -51,10 +53,18 @@ void draw_modes(const ViewState& state, const Act& act) {
     labelled("beside it");
     if (ImGui::BeginCombo("##beside", state.beside.empty() ? "nothing" : state.beside.c_str())) {
         if (ImGui::Selectable("nothing", state.beside.empty())) act({Verb::beside, {}, {}, {}});
+        const std::string reference(reference_name);
+        if (ImGui::Selectable(reference.c_str(), state.beside == reference)) act({Verb::beside, {reference}, {}, {}});
         for (const Mode& mode : modes())
             if (ImGui::Selectable(std::string(mode.name).c_str(), mode.name == state.beside))
                 act({Verb::beside, {std::string(mode.name)}, {}, {}});
         ImGui::EndCombo();
+    }
+    if (!state.beside.empty()) {
+        labelled("arranged");
+        if (ImGui::RadioButton("wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
+        ImGui::SameLine();
+        if (ImGui::RadioButton("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
     }
     labelled("quality");
     if (ImGui::BeginCombo("##quality", std::string(name_of(state.quality)).c_str())) {
@@ -220,9 +230,10 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     const float type = ImGui::GetFontSize();
     const float side = state.panels ? std::min(23 * type, 0.5f * whole.x) : 0;
     const float bar = state.panels ? ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y : 0;
+    const float strip = state.panels ? inspector_height(state, whole.y) : 0;
 
     ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({whole.x - side, whole.y - bar});
+    ImGui::SetNextWindowSize({whole.x - side, whole.y - bar - strip});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.06f, 0.06f, 0.065f, 1));
     ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse);
@@ -231,6 +242,13 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
 
+    if (strip > 0) {
+        ImGui::SetNextWindowPos({0, whole.y - bar - strip});
+        ImGui::SetNextWindowSize({whole.x - side, strip});
+        ImGui::Begin("looked into", nullptr, fixed);
+        draw_inspector(state, shelf, act);
+        ImGui::End();
+    }
     if (state.panels) {
         ImGui::SetNextWindowPos({0, whole.y - bar});
         ImGui::SetNextWindowSize({whole.x - side, bar});

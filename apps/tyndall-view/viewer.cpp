@@ -52,6 +52,7 @@ void take_pictures(Viewer& viewer) {
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
+            if (picture->ray) viewer.shelf.ray = picture->ray;
             viewer.shelf.picture = std::move(picture);
             viewer.new_picture = true;
         }

@@ -15,6 +15,8 @@ enum class Verb {
     mode,
     beside,
     wipe,
+    arrange,
+    explain,
     quality,
     orders,
     show,

@@ -1,6 +1,7 @@
 // What each action does to the state.
 #include "base/error.h"
 #include "base/text.h"
+#include "preview/reference_picture.h"
 #include "preview/setting_groups.h"
 #include "preview/view_state.h"
 
@@ -23,8 +24,13 @@ void set_mode(ViewState& state, const std::string& name) {
 }
 
 void set_beside(ViewState& state, const std::string& name) {
-    state.beside = name.empty() ? "" : std::string(find_mode(name).name);
+    state.beside = name.empty() || name == reference_name ? name : std::string(find_mode(name).name);
     ++state.revision;
+}
+
+void set_arrangement(ViewState& state, const std::string& name) {
+    state.shown.side_by_side = name == "side";
+    ++state.shown_revision;
 }
 
 void set_wipe(ViewState& state, double share) {
@@ -67,6 +73,22 @@ void set_shown(ViewState& state, const std::string& name) {
     ++state.shown_revision;
 }
 
+ivec2 picture_size(const ViewState& state) { return state.size.x > 0 ? state.size : loaded_scene(state).resolution; }
+
+void set_explained(ViewState& state, const std::vector<double>& pixel) {
+    std::optional<ivec2> asked;
+    if (!pixel.empty()) {
+        const ivec2 size = picture_size(state);
+        const double x = std::floor(pixel[0]), y = std::floor(pixel[1]);
+        if (!(x >= 0 && y >= 0 && x < size.x && y < size.y))
+            fail(ExitCode::usage, "explain",
+                 formatted("%g %g lies outside the picture of %d x %d pixels", x, y, size.x, size.y));
+        asked = ivec2(static_cast<int>(x), static_cast<int>(y));
+    }
+    state.explain = asked;
+    ++state.shown_revision;
+}
+
 void set_exposure(ViewState& state, double ev) {
     state.shown.exposure = static_cast<float>(std::clamp(ev, -100.0, 100.0));
     ++state.shown_revision;
@@ -83,6 +105,7 @@ void set_size(ViewState& state, double x, double y) {
     if (!scenes_own && !(x >= 1 && y >= 1 && x <= largest_side && y <= largest_side))
         fail(ExitCode::usage, "size", "expected 1 to 16384 pixels on each side, or 0 0 for the scene's");
     state.size = {static_cast<int>(x), static_cast<int>(y)};
+    state.explain.reset(); // pixels are others now
     ++state.revision;
 }
 
@@ -127,6 +150,12 @@ bool apply(ViewState& state, const Action& action) {
         break;
     case Verb::wipe:
         set_wipe(state, numbers[0]);
+        break;
+    case Verb::arrange:
+        set_arrangement(state, word);
+        break;
+    case Verb::explain:
+        set_explained(state, numbers);
         break;
     case Verb::quality:
         set_quality(state, word);

@@ -5,8 +5,11 @@
 #include "render/sequence.h"
 
 #include <memory>
+#include <optional>
 
 namespace tyndall {
+struct RayAnswer;
+
 struct Request {
     std::shared_ptr<const Scene> scene;
     uint64_t revision = 0;       // another number: the picture is another one
@@ -17,11 +20,12 @@ struct Request {
     ivec2 size{640, 360};
     std::string mode = "march";
     std::string stand_in = "froxel"; // mode of quick pictures when `mode` is march or path; empty = the same
-    std::string beside;              // mode of the right part of still pictures; empty = none
+    std::string beside;              // mode of the right part of still pictures, or reference; empty = none
     Settings settings;
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     Shown shown;
+    std::optional<ivec2> explain;     // a pixel whose ray is asked about
     int most_samples = 64;            // per pixel, after which a picture is finished
     double wanted_seconds = 1.0 / 30; // of quick pictures
 };
@@ -35,10 +39,26 @@ struct StageTimes {
     double total() const { return load + prepare + render + tone; }
 };
 
+// Of the reference that a picture is held against.
+struct ReferenceFacts {
+    std::string what; // "exact march, light scattered once"
+    int samples = 0;  // per pixel so far
+    bool finished = false;
+    double change = -1; // by the step from quality final to the exact march; negative: not made yet
+    double noise = -1;  // its standard error, a share of its mean; negative: not known yet
+};
+
+// How far a picture is from its reference, as shares of the reference's mean.
+struct ErrorFigures {
+    double worst = 0, picture = 0, fog = 0; // root mean squares; worst of both, `rmse_rel` of tyndall compare
+    double bias = 0;                        // of the picture: above 0 it is too bright
+};
+
 struct ShownPicture {
     uint64_t revision = 0;
     int frame = 1;
     Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays
+    int across = 1;           // pictures side by side in them
     ivec2 wanted{0};          // size of the whole picture
     std::string mode;         // that made it, perhaps a stand-in
     std::string beside;       // that made its right part; empty = it is all of one mode
@@ -47,7 +67,10 @@ struct ShownPicture {
     int samples = 0;          // per pixel so far; of two modes, the fewer
     StageTimes times;         // of its last round of samples
     uint64_t non_finite = 0;
-    std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures
+    std::optional<ReferenceFacts> reference;
+    std::optional<ErrorFigures> errors, errors_beside; // of both techniques, where the errors are shown
+    std::shared_ptr<const RayAnswer> ray;              // as far as it is known
+    std::vector<Limit> limits;                         // of the mode asked for, worst first; empty in quick pictures
     std::vector<std::string> notes;
     std::string error; // why there is no picture
     ExitCode code = ExitCode::ok;

@@ -29,6 +29,7 @@ void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
     ++state.revision;
     if (same_file) return;
     state.free = false, state.playing = false;
+    state.explain.reset();
     state.frame = state.scene->first_frame;
 }
 
@@ -73,6 +74,8 @@ Request request_of(const ViewState& state, bool moving) {
     request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;
     request.settings = state.settings, request.seed = state.seed, request.missing = state.missing;
     request.shown = state.shown;
+    const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
+    if (state.explain && inside(*state.explain)) request.explain = state.explain;
     request.shown.exposure += state.scene->exposure.at(seconds_of(state));
     request.most_samples = state.most_samples;
     request.wanted_seconds = 1 / state.wanted_rate;

@@ -23,6 +23,8 @@ struct ViewState {
     double wanted_rate = 30; // quick pictures per second
     Shown shown;             // exposure on top of the scene's
 
+    std::optional<ivec2> explain; // a pixel whose ray is asked about
+
     std::string camera; // of the scene; empty = its own choice
     bool free = false;  // the camera was moved by hand: `view` holds
     Viewpoint view;
