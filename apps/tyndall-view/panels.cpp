@@ -62,9 +62,11 @@ void draw_modes(const ViewState& state, const Act& act) {
     }
     if (!state.beside.empty()) {
         labelled("arranged");
-        if (ImGui::RadioButton("wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
-        ImGui::SameLine();
-        if (ImGui::RadioButton("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
+        if (ImGui::BeginCombo("##arranged", state.shown.side_by_side ? "side by side" : "with a wipe")) {
+            if (ImGui::Selectable("with a wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
+            if (ImGui::Selectable("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
+            ImGui::EndCombo();
+        }
     }
     labelled("quality");
     if (ImGui::BeginCombo("##quality", std::string(name_of(state.quality)).c_str())) {
@@ -92,6 +94,21 @@ void draw_shown(const ViewState& state, const Act& act) {
         act({Verb::exposure, {}, {0}, {}});
     else if (changed && !ImGui::IsMouseDoubleClicked(0))
         act({Verb::exposure, {}, {exposure}, {}});
+}
+
+void draw_looking_into(const ViewState& state, const Act& act) {
+    heading("Look into");
+    bool volume = state.volume_shown;
+    if (ImGui::Checkbox("volume", &volume)) act({Verb::volume, {volume ? "on" : "off"}, {}, {}});
+    tooltip("density of the fog, slice by slice, and what is known of its grid");
+    ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+    bool ray = state.explain.has_value();
+    if (ImGui::Checkbox("ray", &ray) && state.scene) {
+        const ivec2 size = state.size.x > 0 ? state.size : state.scene->resolution;
+        const std::vector<double> middle{0.5 * size.x, 0.5 * size.y};
+        act({Verb::explain, {}, ray ? middle : std::vector<double>(), {}});
+    }
+    tooltip("what happens on the ray of a pixel: shift + click on the picture says which");
 }
 
 void draw_cameras(const ViewState& state, const Act& act) {
@@ -170,6 +187,7 @@ void draw_saving(ViewState& state, PanelMemory& memory, const Act& act) {
 void draw_side(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
     draw_modes(state, act);
     draw_shown(state, act);
+    draw_looking_into(state, act);
     draw_cameras(state, act);
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
     draw_remarks(state, shelf);

@@ -204,8 +204,10 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
         if (shelf.picture->mode == state.mode) words.push_back({wrongs(shelf.limits), severity_color(shelf.limits)});
-        draw_band({place.low.x + 0.5f * type, place.high.y - line - 0.5f * type}, words, width);
-        draw_errors(place, place.high.y - line - 0.5f * type, state, *shelf.picture);
+        const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
+        const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
+        draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
+        draw_errors(place, bottom - line - 0.5f * type, state, *shelf.picture);
     }
     const ImVec2 above{corner.x + 0.5f * type, corner.y + 0.5f * type};
     if (shelf.saving >= 0)

@@ -21,6 +21,10 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::explain, "explain", "[x] [y]",
          "what happens on the ray of a pixel, 0 0 the upper left, and what every technique makes of it; without: "
          "close"},
+        {Verb::volume, "volume", "on|off", "show a medium's density and what is known of its grid"},
+        {Verb::medium, "medium", "NAME", "which medium that is"},
+        {Verb::slice, "slice", "x|y|z n", "its density across an axis, at a share of its extent"},
+        {Verb::project, "project", "x|y|z maximum|mean", "its largest or mean density along an axis"},
         {Verb::quality, "quality", "NAME", "all settings as draft, preview, final or reference have them"},
         {Verb::orders, "orders", "NAME", "how many times light scatters: a number, or all"},
         {Verb::show, "show", "NAME", "picture, fog, transmittance, depth, validity or error: against the reference"},

@@ -89,6 +89,23 @@ void set_explained(ViewState& state, const std::vector<double>& pixel) {
     ++state.shown_revision;
 }
 
+void set_medium(ViewState& state, const std::string& name) {
+    std::vector<std::string> names;
+    for (const MediumSource& medium : loaded_scene(state).media) names.push_back(medium.name);
+    if (!std::ranges::count(names, name))
+        fail(ExitCode::usage, "medium", "no '" + printable(name, 40) + "' here; there is " + joined(names, ", "));
+    state.volume.medium = name, state.volume_shown = true;
+    ++state.shown_revision;
+}
+
+// What is asked about is shown.
+void look_at_volume(ViewState& state, VolumeLook look, const std::string& axis, float position) {
+    state.volume.look = look, state.volume.axis = axis[0] - 'x';
+    state.volume.position = std::clamp(position, 0.0f, 1.0f);
+    state.volume_shown = true;
+    ++state.shown_revision;
+}
+
 void set_exposure(ViewState& state, double ev) {
     state.shown.exposure = static_cast<float>(std::clamp(ev, -100.0, 100.0));
     ++state.shown_revision;
@@ -156,6 +173,19 @@ bool apply(ViewState& state, const Action& action) {
         break;
     case Verb::explain:
         set_explained(state, numbers);
+        break;
+    case Verb::volume:
+        state.volume_shown = word == "on";
+        ++state.shown_revision;
+        break;
+    case Verb::medium:
+        set_medium(state, word);
+        break;
+    case Verb::slice:
+        look_at_volume(state, VolumeLook::slice, word, static_cast<float>(numbers[0]));
+        break;
+    case Verb::project:
+        look_at_volume(state, words[1] == "mean" ? VolumeLook::mean : VolumeLook::maximum, word, state.volume.position);
         break;
     case Verb::quality:
         set_quality(state, word);

@@ -58,7 +58,14 @@ void load(Painter& painter, const Request& request) {
     painter.picture.notes = painter.snapshot.notes;
 }
 
+bool asks_for_volume(const Painter& painter, const Request& request) {
+    const VolumePicture* last = painter.volume.get();
+    return request.volume && !(last && last->revision == request.revision && last->question == *request.volume &&
+                               (request.moving || !last->quick));
+}
+
 bool is_finished(const Painter& painter, const Request& request) {
+    if (asks_for_volume(painter, request)) return false;
     const int wanted = request.most_samples;
     if (asks_for_ray(request, painter.ray.get())) return false;
     if (painter.rounds[0].samples < wanted || (mode_beside(request) && painter.rounds[1].samples < wanted))
@@ -103,6 +110,10 @@ ShownPicture shown(Painter& painter, const Request& request) {
     const auto start = Clock::now();
     ShownPicture picture = painter.picture;
     if (request.explain) picture.ray = painter.ray;
+    if (request.volume && asks_for_volume(painter, request) &&
+        !(picture.quick && request.volume->look != VolumeLook::slice))
+        painter.volume = volume_picture(request, painter.snapshot, painter.known_volumes);
+    if (request.volume) picture.volume = painter.volume;
     const Layers* reference = picture.quick ? nullptr : shown_reference(painter, request);
     if (reference) picture.reference = facts_of(painter.reference, request);
     picture.codes = codes_of(painter.rounds[0].layers, reference, request, picture.errors);

@@ -5,6 +5,7 @@
 #include "preview/pace.h"
 #include "preview/ray_question.h"
 #include "preview/reference_picture.h"
+#include "preview/volume_picture.h"
 
 #include <map>
 #include <optional>
@@ -23,6 +24,8 @@ struct Painter {
     Rounds rounds[2]; // of the mode, whose layers may be those of a quick picture, and of the mode beside
     ReferencePicture reference;
     std::shared_ptr<const RayAnswer> ray;
+    std::shared_ptr<const VolumePicture> volume;
+    KnownVolumes known_volumes;
     ShownPicture picture; // all but its codes
 };
 

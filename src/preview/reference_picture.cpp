@@ -116,10 +116,8 @@ ReferenceFacts facts_of(const ReferencePicture& reference, const Request& reques
     facts.change = reference.exact.color.empty() ? -1 : reference.change;
     if (reference.half_samples[0] > 0 && reference.half_samples[1] > 0) {
         const auto& [a, b] = reference.halves;
-        const Layers& layers = reference.rounds.layers;
-        facts.noise =
-            std::max(standard_error(a.color, b.color, reference.half_samples, mean_of(layers.color)),
-                     standard_error(a.inscatter, b.inscatter, reference.half_samples, mean_of(layers.inscatter)));
+        const double mean = mean_of(reference.rounds.layers.inscatter);
+        facts.noise = standard_error(a.inscatter, b.inscatter, reference.half_samples, mean);
     }
     return facts;
 }
@@ -145,7 +143,7 @@ std::string reference_text(const ReferenceFacts& facts) {
     std::string text = "reference: " + facts.what;
     text += formatted("  \u00b7  %d %s  \u00b7  ", facts.samples, facts.samples == 1 ? "sample" : "samples");
     if (facts.noise < 0) return text + "a first look";
-    text += "noise " + percent_text(facts.noise);
+    text += "noise of its fog " + percent_text(facts.noise);
     return facts.finished ? text + formatted("  \u00b7  %s from quality final", percent_text(facts.change).c_str())
                           : text + ", the exact one to come";
 }

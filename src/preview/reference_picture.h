@@ -50,7 +50,8 @@ inline const Layers& layers_of(const ReferencePicture& reference) {
     return reference.exact.color.empty() ? reference.rounds.layers : reference.exact;
 }
 
-// What it is, and its standard error as a share of its mean: from the difference of its halves.
+// What it is, and the standard error of its fog light as a share of the mean, from the difference of its halves: edges
+// of surfaces are as rough in the pictures held against it.
 ReferenceFacts facts_of(const ReferencePicture& reference, const Request& request);
 
 // How far a picture is from it.

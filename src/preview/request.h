@@ -9,6 +9,18 @@
 
 namespace tyndall {
 struct RayAnswer;
+struct VolumePicture;
+
+// What of a medium's density is to be seen.
+enum class VolumeLook { slice, maximum, mean };
+struct VolumeQuestion {
+    std::string medium; // empty = the first
+    VolumeLook look = VolumeLook::slice;
+    int axis = 2;          // across which, or along which
+    float position = 0.5f; // of a slice, as a share of the medium's extent
+
+    bool operator==(const VolumeQuestion&) const = default;
+};
 
 struct Request {
     std::shared_ptr<const Scene> scene;
@@ -25,7 +37,8 @@ struct Request {
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     Shown shown;
-    std::optional<ivec2> explain;     // a pixel whose ray is asked about
+    std::optional<ivec2> explain; // a pixel whose ray is asked about
+    std::optional<VolumeQuestion> volume;
     int most_samples = 64;            // per pixel, after which a picture is finished
     double wanted_seconds = 1.0 / 30; // of quick pictures
 };
@@ -45,7 +58,7 @@ struct ReferenceFacts {
     int samples = 0;  // per pixel so far
     bool finished = false;
     double change = -1; // by the step from quality final to the exact march; negative: not made yet
-    double noise = -1;  // its standard error, a share of its mean; negative: not known yet
+    double noise = -1;  // standard error of its fog light, a share of the mean; negative: not known yet
 };
 
 // How far a picture is from its reference, as shares of the reference's mean.
@@ -70,7 +83,8 @@ struct ShownPicture {
     std::optional<ReferenceFacts> reference;
     std::optional<ErrorFigures> errors, errors_beside; // of both techniques, where the errors are shown
     std::shared_ptr<const RayAnswer> ray;              // as far as it is known
-    std::vector<Limit> limits;                         // of the mode asked for, worst first; empty in quick pictures
+    std::shared_ptr<const VolumePicture> volume;
+    std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures
     std::vector<std::string> notes;
     std::string error; // why there is no picture
     ExitCode code = ExitCode::ok;

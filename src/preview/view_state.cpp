@@ -30,6 +30,7 @@ void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
     if (same_file) return;
     state.free = false, state.playing = false;
     state.explain.reset();
+    state.volume.medium.clear();
     state.frame = state.scene->first_frame;
 }
 
@@ -76,6 +77,7 @@ Request request_of(const ViewState& state, bool moving) {
     request.shown = state.shown;
     const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
     if (state.explain && inside(*state.explain)) request.explain = state.explain;
+    if (state.volume_shown) request.volume = state.volume;
     request.shown.exposure += state.scene->exposure.at(seconds_of(state));
     request.most_samples = state.most_samples;
     request.wanted_seconds = 1 / state.wanted_rate;

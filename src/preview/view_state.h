@@ -24,6 +24,8 @@ struct ViewState {
     Shown shown;             // exposure on top of the scene's
 
     std::optional<ivec2> explain; // a pixel whose ray is asked about
+    bool volume_shown = false;    // and a medium:
+    VolumeQuestion volume;
 
     std::string camera; // of the scene; empty = its own choice
     bool free = false;  // the camera was moved by hand: `view` holds

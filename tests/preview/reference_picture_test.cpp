@@ -159,8 +159,10 @@ TEST(ReferencePicture, NoiseIsTheStandardErrorOfTheMeanOfBothHalves) {
     ReferencePicture reference;
     reference.rounds.samples = 4, reference.rounds.layers = even({4, 4}, 2, 2);
     reference.half_samples = {3, 1};
-    for (size_t i = 0; i < 2; ++i)
-        reference.halves[i] = {even({4, 4}, 2, 0).color, even({4, 4}, i ? 2.4f : 2.0f, 0).color};
+    for (size_t i = 0; i < 2; ++i) {
+        const Layers half = even({4, 4}, i ? 9.0f : 1.0f, i ? 2.4f : 2.0f);
+        reference.halves[i] = {half.color, half.inscatter};
+    }
     EXPECT_NEAR(facts_of(reference, error_request("cone")).noise, std::sqrt(0.03) / 2, 1e-7);
 }
 
