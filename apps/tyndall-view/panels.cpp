@@ -196,6 +196,21 @@ void draw_side(ViewState& state, const Shelf& shelf, PanelMemory& memory, const 
     draw_saving(state, memory, act);
 }
 
+// On the bar of time: frames for which volume files are missing.
+void mark_gaps(const ViewState& state) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const int first = state.scene->first_frame, count = state.scene->last_frame - first + 1;
+    const float width = (high.x - low.x) / static_cast<float>(std::max(count, 1));
+    for (const int frame : state.gaps) {
+        const float x = low.x + width * static_cast<float>(frame - first);
+        ImGui::GetWindowDrawList()->AddRectFilled({x, high.y - 4}, {x + std::max(width - 1, 1.0f), high.y},
+                                                  ImGui::GetColorU32(trouble));
+    }
+    if (!state.gaps.empty())
+        tooltip(formatted("%zu frames lack a volume file (red); the action \"missing hold\" shows the one before",
+                          state.gaps.size()));
+}
+
 void draw_time(const ViewState& state, const Act& act) {
     if (!state.scene) return;
     const Scene& scene = *state.scene;
@@ -221,6 +236,7 @@ void draw_time(const ViewState& state, const Act& act) {
     if (ImGui::SliderInt("##frame", &frame, scene.first_frame, std::max(scene.last_frame, scene.first_frame),
                          "frame %d"))
         act({Verb::frame, {}, {static_cast<double>(frame)}, {}});
+    mark_gaps(state);
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", moment.c_str());

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "error_panel.h"
+#include "preview/missing_frames.h"
 #include "preview/reference_picture.h"
 #include "theme.h"
 
@@ -204,6 +205,8 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
         if (shelf.picture->mode == state.mode) words.push_back({wrongs(shelf.limits), severity_color(shelf.limits)});
+        if (const std::string gap = missing_text(*state.scene, state.frame, state.missing); !gap.empty())
+            words.push_back({gap, trouble});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
         draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);

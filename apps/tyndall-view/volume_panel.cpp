@@ -18,7 +18,7 @@ void draw_scale(ImVec2 low, ImVec2 high, const VolumePicture& shown) {
     const float type = ImGui::GetFontSize();
     draw_words({low.x, low.y}, quiet, "density");
     draw_words({low.x + 5 * type, low.y}, quiet, "1/m");
-    const float top = low.y + 1.5f * type, bottom = high.y - 0.5f * type;
+    const float top = low.y + 1.5f * type, bottom = high.y - 2 * type;
     constexpr int pieces = 32;
     for (int i = 0; i < pieces; ++i) {
         const auto color = [](int piece) {
@@ -38,7 +38,8 @@ void draw_scale(ImVec2 low, ImVec2 high, const VolumePicture& shown) {
     }
 }
 
-void draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2 high) {
+// Returns where it ends on the right.
+float draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2 high) {
     const float type = ImGui::GetFontSize();
     const ImVec2 space{high.x - low.x, high.y - low.y - 1.4f * type};
     const vec2 size(shown.codes.size);
@@ -48,9 +49,10 @@ void draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2 
     list->AddImage(texture, low, end);
     list->AddRect(low, end, IM_COL32(70, 70, 74, 255));
     draw_words({low.x, end.y + 0.2f * type}, quiet,
-               formatted("%s %.3g to %.3g m \u2192   %s %.3g to %.3g m \u2191", axis_names[shown.right],
+               formatted("%s %.3g to %.3g m to the right, %s %.3g to %.3g m upwards", axis_names[shown.right],
                          double(shown.box.low[shown.right]), double(shown.box.high[shown.right]), axis_names[shown.up],
                          double(shown.box.low[shown.up]), double(shown.box.high[shown.up])));
+    return end.x;
 }
 
 void draw_controls(const ViewState& state, const VolumePicture& shown, const Act& act) {
@@ -79,18 +81,21 @@ void draw_controls(const ViewState& state, const VolumePicture& shown, const Act
         ImGui::EndCombo();
     }
     for (int i = 0; i < 3; ++i) {
-        ImGui::SameLine();
+        if (i > 0) ImGui::SameLine();
         if (ImGui::RadioButton(axis_names[i], asked.axis == i)) look(asked.look, axis_names[i]);
     }
     if (asked.look != VolumeLook::slice) return;
     float position = asked.position;
+    ImGui::SameLine();
     ImGui::SetNextItemWidth(-1);
     const std::string place = formatted("%s = %.3g m", axis.c_str(), shown.place);
     if (ImGui::SliderFloat("##position", &position, 0, 1, place.c_str())) act({Verb::slice, {axis}, {position}, {}});
 }
 
 void draw_facts(const VolumePicture& shown) {
-    if (!ImGui::BeginTable("facts", 2, ImGuiTableFlags_SizingFixedFit)) return;
+    if (!ImGui::BeginTable("facts", 2)) return;
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
     for (const auto& [name, value] : shown.facts) {
         ImGui::TableNextColumn();
         ImGui::TextDisabled("%s", name.c_str());
@@ -114,8 +119,8 @@ void draw_volume(const ViewState& state, const Shelf& shelf, const Act& act) {
     if (shown.codes.empty()) {
         ImGui::TextDisabled("%s", shown.remark.c_str());
     } else {
-        draw_density(shown, shelf.volume_texture, low, {low.x + picture - type, low.y + space.y});
-        draw_scale({low.x + picture, low.y}, {low.x + picture + scale, low.y + space.y}, shown);
+        const float end = draw_density(shown, shelf.volume_texture, low, {low.x + picture - type, low.y + space.y});
+        draw_scale({end + type, low.y}, {end + type + scale, low.y + space.y}, shown);
     }
     ImGui::SetCursorScreenPos({low.x + picture + scale + type, low.y});
     ImGui::BeginChild("facts", {0, 0});

@@ -42,6 +42,8 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::play, "play", "[n]", "play on, or n frames"},
         {Verb::stop, "stop", "", "stop playing"},
         {Verb::loop, "loop", "on|off", "whether playing begins anew at the end"},
+        {Verb::missing, "missing", "error|hold|skip",
+         "frames that a sequence of volumes lacks: said, the one before shown, or without fog"},
         {Verb::panels, "panels", "on|off", "show the panels"},
         {Verb::help, "help", "on|off", "show what keys and mouse do"},
         {Verb::key, "key", "NAME", "press a key"},

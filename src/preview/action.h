@@ -38,6 +38,7 @@ enum class Verb {
     play,
     stop,
     loop,
+    missing,
     panels,
     help,
     key,

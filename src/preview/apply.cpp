@@ -240,6 +240,10 @@ bool apply(ViewState& state, const Action& action) {
     case Verb::loop:
         state.loop = word == "on";
         break;
+    case Verb::missing:
+        state.missing = word == "hold" ? MissingFrame::hold : word == "skip" ? MissingFrame::skip : MissingFrame::error;
+        ++state.revision;
+        break;
     case Verb::panels:
         state.panels = word == "on";
         break;

@@ -42,19 +42,24 @@ const Mode* mode_beside(const Request& request) {
 // The scene at the request's moment. What stands still is shared with the picture before.
 void load(Painter& painter, const Request& request) {
     const auto start = Clock::now();
+    double ahead_seconds = 0;
     for (Rounds& rounds : painter.rounds) rounds.prepared = nullptr;
     painter.reference.rounds.prepared = nullptr;
-    const bool same_scene = painter.scene == request.scene;
-    if (same_scene && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
+    const bool same_scene = painter.scene == request.scene, same_files = painter.request.missing == request.missing;
+    if (same_scene && same_files && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
         painter.snapshot.kept_before = std::exchange(painter.snapshot.kept, std::make_shared<Kept>());
         painter.snapshot.notes.clear();
     } else {
         if (!same_scene) painter.history = {};
-        painter.snapshot = make_snapshot(*request.scene, moment_of(*request.scene, request.frame),
-                                         same_scene ? &painter.snapshot : nullptr, request.missing);
+        painter.store.begin(request.scene, request.missing);
+        if (same_files) painter.store.put(painter.snapshot);
+        std::optional<Snapshot> stored = painter.store.take(request.frame, ahead_seconds);
+        painter.snapshot = stored ? std::move(*stored)
+                                  : make_snapshot(*request.scene, moment_of(*request.scene, request.frame),
+                                                  same_scene ? &painter.snapshot : nullptr, request.missing);
         painter.scene = request.scene;
     }
-    painter.picture.times.load = seconds_since(start);
+    painter.picture.times.load = seconds_since(start) + ahead_seconds;
     painter.picture.notes = painter.snapshot.notes;
 }
 
@@ -236,11 +241,14 @@ void begin(Painter& painter, const Request& request) {
 std::optional<ShownPicture> next_picture(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     const bool same = painter.begun && painter.request.revision == request.revision;
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
-    painter.request = request;
     if (!same) begin(painter, request);
+    painter.request = request;
     if (shown_anew && !painter.rounds[0].layers.color.empty()) return shown(painter, request);
     if (request.moving && !painter.quick) return paint_quick(painter, request, cancel);
-    if (request.moving) return {};
+    if (request.moving) {
+        if (request.next_frame) painter.store.make_ahead(*request.next_frame, painter.snapshot);
+        return {};
+    }
     if (painter.rounds[0].rounds == 0 && !painter.stood_in && quick_mode(request) != request.mode)
         return paint_stand_in(painter, request, cancel);
     if (is_finished(painter, request)) return {};

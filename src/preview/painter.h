@@ -2,6 +2,7 @@
 // the stand-in mode, then rounds of samples of the mode asked for, averaged; in turns with those of the mode beside and
 // of the reference, when they are shown.
 #pragma once
+#include "preview/frame_store.h"
 #include "preview/pace.h"
 #include "preview/ray_question.h"
 #include "preview/reference_picture.h"
@@ -15,7 +16,8 @@ namespace tyndall {
 struct Painter {
     std::shared_ptr<const Scene> scene; // of the snapshot
     Snapshot snapshot;
-    History history; // of quick pictures
+    FrameStore store; // of this scene's frames
+    History history;  // of quick pictures
     std::map<std::string, Pace> paces;
     int ticks = 0; // quick pictures and stand-ins so far
     bool begun = false;

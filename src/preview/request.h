@@ -28,6 +28,7 @@ struct Request {
     uint64_t shown_revision = 0; // another number: the same picture is shown in another way
     bool moving = false;         // the next change is near: quick pictures only
     int frame = 1;
+    std::optional<int> next_frame; // that will be asked for, while playing
     Camera camera;
     ivec2 size{640, 360};
     std::string mode = "march";

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "preview/missing_frames.h"
 
 #include <algorithm>
 
@@ -26,6 +27,7 @@ void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
         state.camera.clear();
     const bool same_file = state.scene && state.scene->file == scene->file;
     state.scene = std::move(scene);
+    state.gaps = missing_frames(*state.scene);
     ++state.revision;
     if (same_file) return;
     state.free = false, state.playing = false;
@@ -49,19 +51,23 @@ std::string camera_json(const Viewpoint& view) {
 
 void advance(ViewState& state, double now, uint64_t shown_revision) {
     if (!state.playing || !state.scene || shown_revision != state.revision || now < state.next_frame_at) return;
-    const Scene& scene = *state.scene;
-    const double period = 1 / scene.frame_rate;
+    const double period = 1 / state.scene->frame_rate;
     const bool on_time = state.next_frame_at > now - period;
     state.next_frame_at = (on_time ? state.next_frame_at : now) + period;
-    if (state.frames_to_play > 0 && --state.frames_to_play == 0) {
+    const std::optional<int> next = next_frame(state);
+    if (state.frames_to_play > 0 && --state.frames_to_play == 0)
         state.playing = false;
-    } else if (state.frame < scene.last_frame) {
-        go_to(state, state.frame + 1);
-    } else if (state.loop && scene.last_frame > scene.first_frame) {
-        go_to(state, scene.first_frame);
-    } else if (!state.loop || state.frames_to_play == 0) {
+    else if (next)
+        go_to(state, *next);
+    else if (!state.loop || state.frames_to_play == 0)
         state.playing = false;
-    }
+}
+
+std::optional<int> next_frame(const ViewState& state) {
+    const Scene& scene = loaded_scene(state);
+    if (state.frame < scene.last_frame) return state.frame + 1;
+    if (state.loop && scene.last_frame > scene.first_frame) return scene.first_frame;
+    return {};
 }
 
 Request request_of(const ViewState& state, bool moving) {
@@ -70,6 +76,7 @@ Request request_of(const ViewState& state, bool moving) {
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;
+    if (state.playing) request.next_frame = next_frame(state);
     request.camera = viewpoint(state).camera;
     request.size = state.size.x > 0 ? state.size : state.scene->resolution;
     request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;

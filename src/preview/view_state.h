@@ -35,6 +35,7 @@ struct ViewState {
     bool playing = false, loop = true;
     int frames_to_play = 0;   // then it stops; 0 = on and on
     double next_frame_at = 0; // seconds of the clock, while playing
+    std::vector<int> gaps;    // frames for which volume files are missing
 
     bool panels = true, help = false;
     std::string file_error; // why the scene's files, as they are now, cannot be read
@@ -62,6 +63,9 @@ std::string camera_json(const Viewpoint& view);
 
 // While playing: on to the next frame when the picture of this one is there and its time is over.
 void advance(ViewState& state, double now, uint64_t shown_revision);
+
+// The frame that playing shows after this one; nothing when it ends here.
+std::optional<int> next_frame(const ViewState& state);
 
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);

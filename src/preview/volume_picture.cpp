@@ -111,8 +111,9 @@ std::vector<std::pair<std::string, std::string>> file_facts(const std::filesyste
         if (!wanted.empty() && grid.name != wanted) continue;
         facts.emplace_back("grid", printable(grid.name, 80) + ": " + kind_text(grid));
         for (auto& row : grid_rows(grid)) facts.push_back(std::move(row));
+        if (grid.usable) // the only shape of tree that can be read
+            facts.emplace_back("tree", "4 levels: root, nodes of 32\u00b3 and 16\u00b3, leaves of 8\u00b3");
     }
-    facts.emplace_back("tree", "4 levels: root, nodes of 32\u00b3 and 16\u00b3, leaves of 8\u00b3");
     return facts;
 }
 
