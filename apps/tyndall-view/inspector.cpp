@@ -7,7 +7,7 @@
 
 namespace tyndall {
 float inspector_height(const ViewState& state, float whole) {
-    return state.explain || state.volume_shown ? 0.42f * whole : 0;
+    return state.explain || state.volume_shown ? 0.45f * whole : 0;
 }
 
 void draw_inspector(ViewState& state, const Shelf& shelf, const Act& act) {

@@ -205,8 +205,6 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
         if (shelf.picture->mode == state.mode) words.push_back({wrongs(shelf.limits), severity_color(shelf.limits)});
-        if (const std::string gap = missing_text(*state.scene, state.frame, state.missing); !gap.empty())
-            words.push_back({gap, trouble});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
         draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
@@ -219,5 +217,8 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         draw_band(above, {{state.file_error, trouble}}, space.x - 2 * type);
     else if (!state.message.empty())
         draw_band(above, {{state.message, state.message_is_error ? trouble : text_color}}, space.x - 2 * type);
+    else if (state.scene)
+        if (const std::string gap = missing_text(*state.scene, state.frame, state.missing); !gap.empty())
+            draw_band(above, {{gap, trouble}}, space.x - 2 * type);
 }
 }

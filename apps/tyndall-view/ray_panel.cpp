@@ -142,9 +142,19 @@ void draw_pointer(const Plot& plot, const RayStory& story, std::span<const size_
     }
 }
 
+// The brightest of the lights that shine on some of the ray, or would without shadows.
+std::vector<size_t> reaching_lights(const RayStory& story) {
+    std::vector<size_t> lights = drawn_lights(story, most_lights);
+    std::erase_if(lights, [&](size_t l) {
+        return std::ranges::all_of(story.lights[l].stretches,
+                                   [](const LightStretch& stretch) { return stretch.state == Lighting::out_of_reach; });
+    });
+    return lights;
+}
+
 void draw_curves(const RayStory& story, ImVec2 low, ImVec2 high) {
-    const float type = ImGui::GetFontSize(), left = low.x + 4 * type, lit = 1.15f * type;
-    const std::vector<size_t> lights = drawn_lights(story, most_lights);
+    const float type = ImGui::GetFontSize(), left = low.x + 5 * type, lit = type;
+    const std::vector<size_t> lights = reaching_lights(story);
     const float fixed = 3 * 1.3f * type + static_cast<float>(lights.size()) * (lit + 3) + 1.5f * type;
     const float unit = std::max((high.y - low.y - fixed) / 3, 1.2f * type);
     const Stretch range = axis_of(story);
@@ -160,7 +170,7 @@ void draw_curves(const RayStory& story, ImVec2 low, ImVec2 high) {
     draw_transmittance(next("gets through: to the eye (white), from each light (colour)"), story, lights);
     draw_light(next("light that arrives at the eye, nits per metre (grey: ambient and glow)"), story, lights);
     for (size_t l = 0; l < lights.size(); ++l, y += lit + 3) {
-        const std::string name = shortened(story.lights[lights[l]].name, 3.4 * 12);
+        const std::string name = shortened(story.lights[lights[l]].name, 4.8 * 12);
         draw_words({low.x, y}, ImGui::ColorConvertU32ToFloat4(light_colors[l]), name);
         draw_lit({{left, y}, {high.x, y + lit}, range, 1}, story.lights[lights[l]], light_colors[l]);
     }
@@ -221,7 +231,11 @@ std::string headline(const RayAnswer& answer) {
         formatted("pixel %d, %d  \u00b7  frame %d  \u00b7  ", answer.pixel.x, answer.pixel.y, answer.frame);
     text += story.hits ? formatted("%.3g m to %s", story.end, story.surfaces.back().name.c_str())
                        : std::string("into the background");
-    return text + formatted("  \u00b7  optical depth %.3g", story.depth);
+    text += formatted("  \u00b7  optical depth %.3g", story.depth);
+    const size_t reaching = reaching_lights(story).size();
+    if (reaching < story.lights.size())
+        text += formatted("  \u00b7  %zu of %zu lights on it", reaching, story.lights.size());
+    return text;
 }
 }
 

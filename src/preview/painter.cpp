@@ -80,19 +80,19 @@ bool is_finished(const Painter& painter, const Request& request) {
 }
 
 // The reference of a picture of this size, as far as it has got and is shown.
-const Layers* shown_reference(const Painter& painter, const Request& request) {
+const ReferencePicture* shown_reference(const Painter& painter, const Request& request) {
     const Rounds& rounds = painter.reference.rounds;
     const bool there = wants_reference(request) && rounds.rounds > 0 && is_reference_of(painter.reference, request);
-    return there && rounds.layers.size == painter.rounds[0].layers.size ? &layers_of(painter.reference) : nullptr;
+    return there && rounds.layers.size == painter.rounds[0].layers.size ? &painter.reference : nullptr;
 }
 
 // What of a mode's picture is shown, and its errors where these are.
-Image<glm::u8vec4> codes_of(const Layers& layers, const Layers* reference, const Request& request,
+Image<glm::u8vec4> codes_of(const Rounds& rounds, const ReferencePicture* reference, const Request& request,
                             std::optional<ErrorFigures>& errors) {
     errors.reset();
-    if (request.shown.layer != ShownLayer::error || !reference) return toned(layers, request.shown);
-    errors = error_figures(layers, *reference);
-    return error_codes(layers, *reference);
+    if (request.shown.layer != ShownLayer::error || !reference) return toned(rounds.layers, request.shown);
+    errors = error_figures(rounds, *reference);
+    return error_codes(rounds.layers, layers_of(*reference));
 }
 
 // Two pictures as one: the right one from the wipe on, or both whole beside each other.
@@ -119,15 +119,15 @@ ShownPicture shown(Painter& painter, const Request& request) {
         !(picture.quick && request.volume->look != VolumeLook::slice))
         painter.volume = volume_picture(request, painter.snapshot, painter.known_volumes);
     if (request.volume) picture.volume = painter.volume;
-    const Layers* reference = picture.quick ? nullptr : shown_reference(painter, request);
+    const ReferencePicture* reference = picture.quick ? nullptr : shown_reference(painter, request);
     if (reference) picture.reference = facts_of(painter.reference, request);
-    picture.codes = codes_of(painter.rounds[0].layers, reference, request, picture.errors);
+    picture.codes = codes_of(painter.rounds[0], reference, request, picture.errors);
     if (!request.beside.empty()) {
         Image<glm::u8vec4> right;
         if (!picture.quick && !mode_beside(request) && reference)
-            right = toned(*reference, request.shown), picture.beside = reference_name;
+            right = toned(layers_of(*reference), request.shown), picture.beside = reference_name;
         else if (!picture.quick && painter.rounds[1].rounds > 0)
-            right = codes_of(painter.rounds[1].layers, reference, request, picture.errors_beside),
+            right = codes_of(painter.rounds[1], reference, request, picture.errors_beside),
             picture.beside = request.beside;
         put_beside(right, request.shown, picture.codes);
         picture.across = request.shown.side_by_side ? 2 : 1;

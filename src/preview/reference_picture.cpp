@@ -26,22 +26,26 @@ std::string key_of(const Request& request, const Settings& settings) {
     return key + bits_of(request.camera);
 }
 
-void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half_samples) {
-    if (half_samples == 0) half = {Image<vec3>(layers.size), Image<vec3>(layers.size)};
-    half_samples += samples;
-    const float share = static_cast<float>(samples) / static_cast<float>(half_samples);
-    for (size_t i = 0; i < half.color.pixels.size(); ++i) {
-        half.color.pixels[i] += share * (layers.color.pixels[i] - half.color.pixels[i]);
-        half.inscatter.pixels[i] += share * (layers.inscatter.pixels[i] - half.inscatter.pixels[i]);
-    }
-}
-
 // Of the mean of n samples, when halves of a and b samples differ by d on the root mean square: each sample's variance
 // is d² / (1/a + 1/b).
 double standard_error(const Image<vec3>& a, const Image<vec3>& b, std::array<int, 2> samples, double mean) {
     const double n = samples[0] + samples[1];
     const double part = std::sqrt(static_cast<double>(samples[0]) * samples[1]) / n;
     return relative(part * measure_errors(a, b).rmse, mean);
+}
+
+bool has_halves(const Rounds& rounds) { return rounds.half_samples[0] > 0 && rounds.half_samples[1] > 0; }
+
+Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
+    Image<vec3> result = a;
+    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] -= b.pixels[i];
+    return result;
+}
+
+// Of what a picture's layer differs by from the reference's.
+double noise_of(const Rounds& picture, const Rounds& reference, Image<vec3> ColorLayers::*layer, double mean) {
+    const auto half = [&](size_t i) { return difference(picture.halves[i].*layer, reference.halves[i].*layer); };
+    return standard_error(half(0), half(1), reference.half_samples, mean);
 }
 
 double mean_of(const Image<vec3>& image) { return measure_errors(image, image).mean_reference; }
@@ -100,9 +104,7 @@ void paint_reference(ReferencePicture& reference, const Request& request, const 
     if (rounds.samples >= request.most_samples) return make_exact(reference, request, snapshot, cancel);
     const int samples = round_samples(rounds, request, &like);
     Round round = render_round(rounds, find_mode("march"), request, reference.settings, snapshot, samples, cancel);
-    const size_t half = static_cast<size_t>(rounds.rounds % 2);
     if (rounds.rounds == 0) reference.look = {round.layers.color, round.layers.inscatter};
-    if (rounds.rounds > 0) add_to_half(round.layers, samples, reference.halves[half], reference.half_samples[half]);
     add_round(std::move(round), request, rounds);
 }
 
@@ -114,26 +116,31 @@ ReferenceFacts facts_of(const ReferencePicture& reference, const Request& reques
     facts.what = reference.exact.color.empty() ? "march of quality final" : "exact march";
     facts.what += orders > 1 ? formatted(", light scattered up to %d times", orders) : ", light scattered once";
     facts.change = reference.exact.color.empty() ? -1 : reference.change;
-    if (reference.half_samples[0] > 0 && reference.half_samples[1] > 0) {
-        const auto& [a, b] = reference.halves;
-        const double mean = mean_of(reference.rounds.layers.inscatter);
-        facts.noise = standard_error(a.inscatter, b.inscatter, reference.half_samples, mean);
-    }
+    const Rounds& rounds = reference.rounds;
+    if (has_halves(rounds))
+        facts.noise = standard_error(rounds.halves[0].inscatter, rounds.halves[1].inscatter, rounds.half_samples,
+                                     mean_of(rounds.layers.inscatter));
     return facts;
 }
 
-ErrorFigures error_figures(const Layers& picture, const Layers& reference) {
+ErrorFigures error_figures(const Rounds& picture, const ReferencePicture& reference) {
+    const Layers& truth = layers_of(reference);
     Comparison comparison;
-    comparison.beauty = measure_errors(picture.color, reference.color);
-    comparison.layers.emplace_back("inscatter", measure_errors(picture.inscatter, reference.inscatter));
-    const auto share = [](const Errors& errors) { return relative(errors.rmse, errors.mean_reference); };
-    return {comparison.worst_rmse(), share(comparison.beauty), share(comparison.layers[0].second),
-            relative(comparison.beauty.bias, comparison.beauty.mean_reference)};
+    comparison.beauty = measure_errors(picture.layers.color, truth.color);
+    comparison.layers.emplace_back("inscatter", measure_errors(picture.layers.inscatter, truth.inscatter));
+    const Errors &color = comparison.beauty, &fog = comparison.layers[0].second;
+    ErrorFigures figures{comparison.worst_rmse(), relative(color.rmse, color.mean_reference),
+                         relative(fog.rmse, fog.mean_reference), relative(color.bias, color.mean_reference)};
+    if (has_halves(picture) && has_halves(reference.rounds))
+        figures.noise = std::max(noise_of(picture, reference.rounds, &ColorLayers::color, color.mean_reference),
+                                 noise_of(picture, reference.rounds, &ColorLayers::inscatter, fog.mean_reference));
+    return figures;
 }
 
 std::string error_text(const ErrorFigures& errors) {
-    std::string text = "rmse_rel " + percent_text(errors.worst) + "  \u00b7  picture " + percent_text(errors.picture) +
-                       ", fog " + percent_text(errors.fog);
+    std::string text = "rmse_rel " + percent_text(errors.worst);
+    if (errors.noise >= 0) text += ", of it noise " + percent_text(std::min(errors.noise, errors.worst));
+    text += "  \u00b7  picture " + percent_text(errors.picture) + ", fog " + percent_text(errors.fog);
     if (std::abs(errors.bias) >= worth_saying)
         text += "  \u00b7  " + percent_text(std::abs(errors.bias)) + (errors.bias > 0 ? " too bright" : " too dark");
     return text;

@@ -6,10 +6,7 @@
 #pragma once
 #include "measure/comparison.h"
 #include "measure/heatmap.h"
-#include "measure/reference.h"
 #include "preview/rounds.h"
-
-#include <array>
 
 namespace tyndall {
 inline constexpr std::string_view reference_name = "reference"; // beside a mode, instead of another one
@@ -20,11 +17,9 @@ struct ReferencePicture {
     std::string key;   // of all it depends on
     Settings settings; // of quality final
     Rounds rounds;
-    ColorLayers look;                  // one sample at pixels' middles
-    Layers exact;                      // in the end
-    double change = 0;                 // that made, a share of the mean
-    std::array<ColorLayers, 2> halves; // of rounds in turns
-    std::array<int, 2> half_samples{};
+    ColorLayers look;  // one sample at pixels' middles
+    Layers exact;      // in the end
+    double change = 0; // that made, a share of the mean
 };
 
 // The picture's light and pixels with the march's rows of quality final.
@@ -54,8 +49,8 @@ inline const Layers& layers_of(const ReferencePicture& reference) {
 // of surfaces are as rough in the pictures held against it.
 ReferenceFacts facts_of(const ReferencePicture& reference, const Request& request);
 
-// How far a picture is from it.
-ErrorFigures error_figures(const Layers& picture, const Layers& reference);
+// How far a picture is from it. The noise is that of their difference, from the halves of both.
+ErrorFigures error_figures(const Rounds& picture, const ReferencePicture& reference);
 
 // "rmse_rel 3.1 % · picture 2.0 %, fog 3.1 % · 1.2 % too bright".
 std::string error_text(const ErrorFigures& errors);

@@ -66,6 +66,7 @@ struct ReferenceFacts {
 struct ErrorFigures {
     double worst = 0, picture = 0, fog = 0; // root mean squares; worst of both, `rmse_rel` of tyndall compare
     double bias = 0;                        // of the picture: above 0 it is too bright
+    double noise = -1;                      // of worst, as a root mean square; negative: not known yet
 };
 
 struct ShownPicture {

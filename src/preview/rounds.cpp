@@ -13,6 +13,17 @@ using Clock = std::chrono::steady_clock;
 constexpr double longest_round = 0.4; // seconds; the picture is renewed at least as often
 constexpr int most_round_samples = 8;
 
+// Into the mean of one half.
+void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half_samples) {
+    if (half_samples == 0) half = {Image<vec3>(layers.size), Image<vec3>(layers.size)};
+    half_samples += samples;
+    const float share = static_cast<float>(samples) / static_cast<float>(half_samples);
+    for (size_t i = 0; i < half.color.pixels.size(); ++i) {
+        half.color.pixels[i] += share * (layers.color.pixels[i] - half.color.pixels[i]);
+        half.inscatter.pixels[i] += share * (layers.inscatter.pixels[i] - half.inscatter.pixels[i]);
+    }
+}
+
 // What a mode prepares serves all rounds, unless it is a part of the picture's noise.
 void prepare(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Rounds& rounds,
              FrameOptions& options, FrameStats& stats) {
@@ -45,6 +56,8 @@ Round render_round(Rounds& rounds, const Mode& mode, const Request& request, con
 
 void add_round(Round round, const Request& request, Rounds& rounds) {
     const int samples = round.stats.samples;
+    const size_t half = static_cast<size_t>(rounds.rounds % 2);
+    if (rounds.rounds > 0) add_to_half(round.layers, samples, rounds.halves[half], rounds.half_samples[half]);
     if (rounds.samples == 0)
         rounds.layers = std::move(round.layers);
     else

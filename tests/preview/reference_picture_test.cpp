@@ -157,13 +157,24 @@ TEST(ReferencePicture, BothTechniquesAreHeldAgainstIt) {
 TEST(ReferencePicture, NoiseIsTheStandardErrorOfTheMeanOfBothHalves) {
     // Halves of 3 and 1 samples, 0.4 apart: 0.16 = v (1/3 + 1), so v = 0.12; of 4 samples √(v/4), of a mean of 2.
     ReferencePicture reference;
-    reference.rounds.samples = 4, reference.rounds.layers = even({4, 4}, 2, 2);
-    reference.half_samples = {3, 1};
+    Rounds& rounds = reference.rounds;
+    rounds.samples = 4, rounds.layers = even({4, 4}, 2, 2), rounds.half_samples = {3, 1};
     for (size_t i = 0; i < 2; ++i) {
         const Layers half = even({4, 4}, i ? 9.0f : 1.0f, i ? 2.4f : 2.0f);
-        reference.halves[i] = {half.color, half.inscatter};
+        rounds.halves[i] = {half.color, half.inscatter};
     }
     EXPECT_NEAR(facts_of(reference, error_request("cone")).noise, std::sqrt(0.03) / 2, 1e-7);
+
+    // A picture that is twice as bright, noise and all, differs by just that noise; one that is the same, by none.
+    Rounds picture = rounds;
+    EXPECT_EQ(error_figures(picture, reference).noise, 0);
+    picture.layers = even({4, 4}, 4, 4);
+    for (ColorLayers& half : picture.halves) {
+        for (vec3& color : half.color.pixels) color = vec3(0);
+        for (vec3& fog : half.inscatter.pixels) fog *= 2;
+    }
+    // Of colour the halves are 8 apart: 64 = v 4/3, √(48/4) of 2, which is more.
+    EXPECT_NEAR(error_figures(picture, reference).noise, std::sqrt(12.0) / 2, 1e-6);
 }
 
 TEST(ReferencePicture, ColoursRiseWithTheErrorInPowersOfTen) {
