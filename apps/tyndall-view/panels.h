@@ -11,8 +11,10 @@ namespace tyndall {
 struct Shelf {
     std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
     std::vector<Limit> limits;                   // of the mode, as far as they are known
+    std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
     double saving = -1;                          // share of a file that is being written
-    void* texture = nullptr;
+    std::shared_ptr<const VolumePicture> volume; // the same
+    void *texture = nullptr, *volume_texture = nullptr;
     double seconds = 0; // since the last interface frame
 };
 

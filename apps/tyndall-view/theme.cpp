@@ -52,6 +52,10 @@ void apply_theme(float scale) {
     colors[ImGuiCol_Header] = tinted(0.22f);
     colors[ImGuiCol_HeaderHovered] = grey(0.25f);
     colors[ImGuiCol_HeaderActive] = tinted(0.35f);
+    colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = grey(0.17f);
+    colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = tinted(0.30f);
+    colors[ImGuiCol_TabHovered] = grey(0.29f);
+    colors[ImGuiCol_TableHeaderBg] = grey(0.125f);
     colors[ImGuiCol_Separator] = grey(0.22f);
     colors[ImGuiCol_ScrollbarBg] = grey(0.125f, 0);
     colors[ImGuiCol_ScrollbarGrab] = grey(0.27f);

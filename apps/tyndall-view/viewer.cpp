@@ -1,6 +1,7 @@
 // The frames of the interface.
 #include "../tyndall/common.h"
 #include "base/error.h"
+#include "preview/volume_picture.h"
 #include "render/png.h"
 #include "viewer_parts.h"
 
@@ -63,6 +64,9 @@ void take_pictures(Viewer& viewer) {
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
+            if (picture->ray) viewer.shelf.ray = picture->ray;
+            if (picture->volume && picture->volume != viewer.shelf.volume)
+                viewer.shelf.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();
             viewer.shelf.picture = std::move(picture);
             viewer.new_picture = true;
         }
@@ -131,7 +135,7 @@ void run_frame(Viewer& viewer) {
     move_scripted_mouse(viewer);
     viewer.window.begin_frame(viewer.scripted);
     read_input(viewer);
-    viewer.shelf.texture = viewer.window.picture();
+    viewer.shelf.texture = viewer.window.picture(), viewer.shelf.volume_texture = viewer.window.picture(1);
     draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
     post_request(viewer);
     show_title(viewer);
@@ -139,7 +143,8 @@ void run_frame(Viewer& viewer) {
 
     const double drawn = seconds_now();
     if (viewer.new_picture) viewer.window.set_picture(viewer.shelf.picture->codes);
-    viewer.new_picture = false;
+    if (viewer.new_volume) viewer.window.set_picture(viewer.shelf.volume->codes, 1);
+    viewer.new_picture = viewer.new_volume = false;
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
     const double done = seconds_now();
     viewer.times.interface.push_back(drawn - start);

@@ -24,7 +24,7 @@ struct Viewer {
     bool posted_moving = false;
     Shelf shelf;
     uint64_t picture_revision = 0; // of the newest answer, with or without a picture
-    bool new_picture = false;
+    bool new_picture = false, new_volume = false;
     PanelMemory memory;
     ScriptPlayer script;
     ScriptedInput scripted;

@@ -89,16 +89,18 @@ Window::Window(const std::string& title, ivec2 size) {
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
     ImGui_ImplOpenGL3_Init("#version 130");
 
-    glGenTextures(1, &texture_);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glGenTextures(2, textures_);
+    for (const unsigned texture : textures_) {
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
 }
 
 Window::~Window() {
-    glDeleteTextures(1, &texture_);
+    glDeleteTextures(2, textures_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -157,17 +159,17 @@ void Window::swap() { glfwSwapBuffers(window_); }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::set_picture(const Image<glm::u8vec4>& codes) {
-    glBindTexture(GL_TEXTURE_2D, texture_);
+void Window::set_picture(const Image<glm::u8vec4>& codes, size_t which) {
+    glBindTexture(GL_TEXTURE_2D, textures_[which]);
     const ivec2 size = codes.size;
-    if (size == texture_size_)
+    if (size == texture_sizes_[which])
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
     else
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
-    texture_size_ = size, stale_ = true;
+    texture_sizes_[which] = size, stale_ = true;
 }
 
-void* Window::picture() const { return reinterpret_cast<void*>(static_cast<intptr_t>(texture_)); }
+void* Window::picture(size_t which) const { return reinterpret_cast<void*>(static_cast<intptr_t>(textures_[which])); }
 
 Image<glm::u8vec3> Window::pixels() const {
     ivec2 size{0};

@@ -1,4 +1,4 @@
-// A window with Dear ImGui in it, and one texture for the picture.
+// A window with Dear ImGui in it, and textures for pictures.
 #pragma once
 #include "base/image.h"
 
@@ -36,17 +36,18 @@ public:
     void swap();
     void set_title(const std::string& title);
 
-    void set_picture(const Image<glm::u8vec4>& codes); // call between end_frame() and draw()
-    void* picture() const;                             // texture for ImGui::Image
-    Image<glm::u8vec3> pixels() const;                 // of what was drawn
+    // There are two: the picture itself and another one. Call between end_frame() and draw().
+    void set_picture(const Image<glm::u8vec4>& codes, size_t which = 0);
+    void* picture(size_t which = 0) const; // texture for ImGui::Image
+    Image<glm::u8vec3> pixels() const;     // of what was drawn
 
 private:
     GLFWwindow* window_ = nullptr;
-    unsigned texture_ = 0;
+    unsigned textures_[2]{};
     std::string dropped_;
     size_t drawn_ = 0;  // hash of what was drawn last
     bool stale_ = true; // the picture is another one, or the window was uncovered
-    ivec2 texture_size_{0};
+    ivec2 texture_sizes_[2]{};
 };
 
 // Names of keys as actions know them, with GLFW's numbers.

@@ -4,6 +4,7 @@
 #include "base/frames.h"
 #include "base/text.h"
 #include "preview/edit_actions.h"
+#include "preview/missing_frames.h"
 
 #include <algorithm>
 #include <utility>
@@ -55,10 +56,13 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     }
     state.scene = {state.session, &state.session->scene};
     state.stage = std::move(loaded.stage);
+    state.gaps = missing_frames(*state.scene);
     show_edits(state);
     select_by_name(state, selected);
     if (same_file) return;
     state.free = false, state.playing = false;
+    state.explain.reset();
+    state.volume.medium.clear();
     state.frame = state.scene->first_frame;
 }
 
@@ -83,19 +87,23 @@ std::string camera_json(const Viewpoint& view) {
 
 void advance(ViewState& state, double now, uint64_t shown_revision) {
     if (!state.playing || !state.scene || shown_revision != state.revision || now < state.next_frame_at) return;
-    const Scene& scene = *state.scene;
-    const double period = 1 / scene.frame_rate;
+    const double period = 1 / state.scene->frame_rate;
     const bool on_time = state.next_frame_at > now - period;
     state.next_frame_at = (on_time ? state.next_frame_at : now) + period;
-    if (state.frames_to_play > 0 && --state.frames_to_play == 0) {
+    const std::optional<int> next = next_frame(state);
+    if (state.frames_to_play > 0 && --state.frames_to_play == 0)
         state.playing = false;
-    } else if (state.frame < scene.last_frame) {
-        go_to(state, state.frame + 1);
-    } else if (state.loop && scene.last_frame > scene.first_frame) {
-        go_to(state, scene.first_frame);
-    } else if (!state.loop || state.frames_to_play == 0) {
+    else if (next)
+        go_to(state, *next);
+    else if (!state.loop || state.frames_to_play == 0)
         state.playing = false;
-    }
+}
+
+std::optional<int> next_frame(const ViewState& state) {
+    const Scene& scene = loaded_scene(state);
+    if (state.frame < scene.last_frame) return state.frame + 1;
+    if (state.loop && scene.last_frame > scene.first_frame) return scene.first_frame;
+    return {};
 }
 
 Request request_of(const ViewState& state, bool moving) {
@@ -104,11 +112,15 @@ Request request_of(const ViewState& state, bool moving) {
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;
+    if (state.playing) request.next_frame = next_frame(state);
     request.camera = camera_now(state);
     request.size = state.size.x > 0 ? state.size : state.scene->resolution;
     request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;
     request.settings = state.settings, request.seed = state.seed, request.missing = state.missing;
     request.shown = state.shown;
+    const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
+    if (state.explain && inside(*state.explain)) request.explain = state.explain;
+    if (state.volume_shown) request.volume = state.volume;
     request.shown.exposure += state.scene->exposure.at(seconds_of(state));
     request.most_samples = state.most_samples;
     request.wanted_seconds = 1 / state.wanted_rate;

@@ -29,6 +29,10 @@ struct ViewState {
     double wanted_rate = 30; // quick pictures per second
     Shown shown;             // exposure on top of the scene's
 
+    std::optional<ivec2> explain; // a pixel whose ray is asked about
+    bool volume_shown = false;    // and a medium:
+    VolumeQuestion volume;
+
     std::string camera; // of the scene; empty = its own choice
     bool free = false;  // the camera was moved by hand: `view` holds
     Viewpoint view;
@@ -37,6 +41,7 @@ struct ViewState {
     bool playing = false, loop = true;
     int frames_to_play = 0;   // then it stops; 0 = on and on
     double next_frame_at = 0; // seconds of the clock, while playing
+    std::vector<int> gaps;    // frames for which volume files are missing
 
     bool panels = true, help = false;
     bool lights_tab = false;     // what the side shows: lights and fog, or rendering
@@ -70,6 +75,9 @@ std::string camera_json(const Viewpoint& view);
 
 // While playing: on to the next frame when the picture of this one is there and its time is over.
 void advance(ViewState& state, double now, uint64_t shown_revision);
+
+// The frame that playing shows after this one; nothing when it ends here.
+std::optional<int> next_frame(const ViewState& state);
 
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);

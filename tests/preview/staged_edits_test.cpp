@@ -81,4 +81,26 @@ TEST(StagedEdits, AfterAMistakeTheSceneIsMadeAnew) {
     act(state, "edit lights/sun/intensity 9");
     EXPECT_EQ(painted(painter, request_of(state, false)), painted(fresh, request_of(state, false)));
 }
+
+// What is kept of other moments, and the truth that pictures are held against, is of the scene as it was.
+TEST(StagedEdits, FramesAndReferencesOfBeforeAreForgotten) {
+    ViewState state = small_state();
+    Painter painter, fresh;
+    for (const char* frame : {"frame 1", "frame 2", "frame 1"}) {
+        act(state, frame);
+        painted(painter, request_of(state, false));
+    }
+    act(state, "edit media/haze/extinction 0.7");
+    painted(painter, request_of(state, false));
+    EXPECT_EQ(painter.store.size(), 0u);
+    act(state, "frame 2");
+    EXPECT_EQ(painted(painter, request_of(state, false)), painted(fresh, request_of(state, false)));
+
+    act(state, "show error");
+    painted(painter, request_of(state, false));
+    EXPECT_GT(painter.reference.rounds.rounds, 0);
+    act(state, "edit media/haze/extinction 0.1");
+    const auto first = paint(painter, request_of(state, false), never_cancelled);
+    EXPECT_FALSE(first->reference);
+}
 }

@@ -17,15 +17,15 @@ void act(ViewState& state, const char* line) { apply(state, parse_action(line));
 
 TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {
     ViewState state = state_with_scene();
-    for (const char* line :
-         {"mode cone", "beside froxel", "beside", "set march.nodes 7", "reset march.nodes", "quality draft",
-          "camera side", "orbit 1 2", "turn 1 2", "pan 0.1 0", "dolly 0.9", "fly 0 0 1", "size 20 10", "frame 3"}) {
+    for (const char* line : {"mode cone", "beside froxel", "beside reference", "beside", "set march.nodes 7",
+                             "reset march.nodes", "quality draft", "camera side", "orbit 1 2", "turn 1 2", "pan 0.1 0",
+                             "dolly 0.9", "fly 0 0 1", "size 20 10", "frame 3"}) {
         const uint64_t before = state.revision, shown = state.shown_revision;
         act(state, line);
         EXPECT_GT(state.revision, before) << line;
         EXPECT_EQ(state.shown_revision, shown) << line;
     }
-    for (const char* line : {"exposure 1", "brighten 0.5", "show fog", "wipe 0.3"}) {
+    for (const char* line : {"exposure 1", "brighten 0.5", "arrange side", "show error", "show fog", "wipe 0.3"}) {
         const uint64_t before = state.revision, shown = state.shown_revision;
         act(state, line);
         EXPECT_EQ(state.revision, before) << line;
