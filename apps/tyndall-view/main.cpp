@@ -25,7 +25,7 @@ void add_options(CLI::App& app, Texts& texts) {
     const auto option = [&](const char* name, std::string& text, const char* type, const char* help) {
         return app.add_option(name, text, help)->type_name(type);
     };
-    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf/.glb by itself")->required();
+    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself")->required();
     option("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
     option("--stand-in", texts.stand_in, "NAME",
            "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");

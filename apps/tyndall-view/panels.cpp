@@ -1,8 +1,12 @@
 // The side panel and the bar of time.
 #include "panels.h"
 
+#include "ask_panel.h"
 #include "base/text.h"
+#include "inspector.h"
+#include "lights_panel.h"
 #include "picture_panel.h"
+#include "preview/reference_picture.h"
 #include "theme.h"
 
 #include <imgui_stdlib.h>
@@ -51,10 +55,20 @@ void draw_modes(const ViewState& state, const Act& act) {
     labelled("beside it");
     if (ImGui::BeginCombo("##beside", state.beside.empty() ? "nothing" : state.beside.c_str())) {
         if (ImGui::Selectable("nothing", state.beside.empty())) act({Verb::beside, {}, {}, {}});
+        const std::string reference(reference_name);
+        if (ImGui::Selectable(reference.c_str(), state.beside == reference)) act({Verb::beside, {reference}, {}, {}});
         for (const Mode& mode : modes())
             if (ImGui::Selectable(std::string(mode.name).c_str(), mode.name == state.beside))
                 act({Verb::beside, {std::string(mode.name)}, {}, {}});
         ImGui::EndCombo();
+    }
+    if (!state.beside.empty()) {
+        labelled("arranged");
+        if (ImGui::BeginCombo("##arranged", state.shown.side_by_side ? "side by side" : "with a wipe")) {
+            if (ImGui::Selectable("with a wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
+            if (ImGui::Selectable("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
+            ImGui::EndCombo();
+        }
     }
     labelled("quality");
     if (ImGui::BeginCombo("##quality", std::string(name_of(state.quality)).c_str())) {
@@ -82,6 +96,21 @@ void draw_shown(const ViewState& state, const Act& act) {
         act({Verb::exposure, {}, {0}, {}});
     else if (changed && !ImGui::IsMouseDoubleClicked(0))
         act({Verb::exposure, {}, {exposure}, {}});
+}
+
+void draw_looking_into(const ViewState& state, const Act& act) {
+    heading("Look into");
+    bool volume = state.volume_shown;
+    if (ImGui::Checkbox("volume", &volume)) act({Verb::volume, {volume ? "on" : "off"}, {}, {}});
+    tooltip("density of the fog, slice by slice, and what is known of its grid");
+    ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
+    bool ray = state.explain.has_value();
+    if (ImGui::Checkbox("ray", &ray) && state.scene) {
+        const ivec2 size = state.size.x > 0 ? state.size : state.scene->resolution;
+        const std::vector<double> middle{0.5 * size.x, 0.5 * size.y};
+        act({Verb::explain, {}, ray ? middle : std::vector<double>(), {}});
+    }
+    tooltip("what happens on the ray of a pixel: shift + click on the picture says which");
 }
 
 void draw_cameras(const ViewState& state, const Act& act) {
@@ -158,14 +187,32 @@ void draw_saving(ViewState& state, PanelMemory& memory, const Act& act) {
 }
 
 void draw_side(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+    draw_tabs(state, act);
+    if (state.lights_tab) return draw_lights(state, memory.edits, act);
     draw_modes(state, act);
     draw_shown(state, act);
+    draw_looking_into(state, act);
     draw_cameras(state, act);
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
     draw_remarks(state, shelf);
     draw_settings(state, memory, act);
     draw_times(shelf);
     draw_saving(state, memory, act);
+}
+
+// On the bar of time: frames for which volume files are missing.
+void mark_gaps(const ViewState& state) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const int first = state.scene->first_frame, count = state.scene->last_frame - first + 1;
+    const float width = (high.x - low.x) / static_cast<float>(std::max(count, 1));
+    for (const int frame : state.gaps) {
+        const float x = low.x + width * static_cast<float>(frame - first);
+        ImGui::GetWindowDrawList()->AddRectFilled({x, high.y - 4}, {x + std::max(width - 1, 1.0f), high.y},
+                                                  ImGui::GetColorU32(trouble));
+    }
+    if (!state.gaps.empty())
+        tooltip(formatted("%zu frames lack a volume file (red); the action \"missing hold\" shows the one before",
+                          state.gaps.size()));
 }
 
 void draw_time(const ViewState& state, const Act& act) {
@@ -193,6 +240,7 @@ void draw_time(const ViewState& state, const Act& act) {
     if (ImGui::SliderInt("##frame", &frame, scene.first_frame, std::max(scene.last_frame, scene.first_frame),
                          "frame %d"))
         act({Verb::frame, {}, {static_cast<double>(frame)}, {}});
+    mark_gaps(state);
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::TextDisabled("%s", moment.c_str());
@@ -216,21 +264,30 @@ void draw_help(const Act& act) {
 }
 
 void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+    if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
     const float side = state.panels ? std::min(23 * type, 0.5f * whole.x) : 0;
     const float bar = state.panels ? ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y : 0;
+    const float strip = state.panels ? inspector_height(state, whole.y) : 0;
 
     ImGui::SetNextWindowPos({0, 0});
-    ImGui::SetNextWindowSize({whole.x - side, whole.y - bar});
+    ImGui::SetNextWindowSize({whole.x - side, whole.y - bar - strip});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.06f, 0.06f, 0.065f, 1));
     ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse);
-    draw_picture(state, shelf, act);
+    draw_picture(state, shelf, memory.edits, act);
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
 
+    if (strip > 0) {
+        ImGui::SetNextWindowPos({0, whole.y - bar - strip});
+        ImGui::SetNextWindowSize({whole.x - side, strip});
+        ImGui::Begin("looked into", nullptr, fixed);
+        draw_inspector(state, shelf, act);
+        ImGui::End();
+    }
     if (state.panels) {
         ImGui::SetNextWindowPos({0, whole.y - bar});
         ImGui::SetNextWindowSize({whole.x - side, bar});
@@ -244,5 +301,6 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         ImGui::End();
     }
     if (state.help) draw_help(act);
+    draw_question(state, memory.edits, act);
 }
 }

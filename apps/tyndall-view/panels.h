@@ -1,5 +1,6 @@
 // What is drawn, and the actions that come of it.
 #pragma once
+#include "edit_memory.h"
 #include "preview/render_thread.h"
 #include "preview/view_state.h"
 
@@ -10,8 +11,10 @@ namespace tyndall {
 struct Shelf {
     std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
     std::vector<Limit> limits;                   // of the mode, as far as they are known
+    std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
     double saving = -1;                          // share of a file that is being written
-    void* texture = nullptr;
+    std::shared_ptr<const VolumePicture> volume; // the same
+    void *texture = nullptr, *volume_texture = nullptr;
     double seconds = 0; // since the last interface frame
 };
 
@@ -20,6 +23,7 @@ struct PanelMemory {
     std::string held_row;  // a setting that was put back; its slider is dead until the mouse is up
     std::string file_name; // to write
     bool file_name_edited = false;
+    EditMemory edits;
 };
 
 using Act = std::function<void(const Action&)>; // does an action; errors become the state's message

@@ -3,6 +3,10 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "error_panel.h"
+#include "handles_panel.h"
+#include "preview/missing_frames.h"
+#include "preview/reference_picture.h"
 #include "theme.h"
 
 #include <algorithm>
@@ -10,14 +14,10 @@
 namespace tyndall {
 namespace {
 constexpr float degrees_a_height = 180; // of turning, for a drag as long as the picture is high
-
-struct Place {
-    ImVec2 low, high;
-    float height() const { return high.y - low.y; }
-};
+constexpr float still = 3;              // pixels within which a press is a click
 
 // The largest rectangle of the picture's shape in the space there is.
-Place fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
+PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     const float scale = std::min(space.x / static_cast<float>(size.x), space.y / static_cast<float>(size.y));
     const ImVec2 extent{scale * static_cast<float>(size.x), scale * static_cast<float>(size.y)};
     const ImVec2 low{std::floor(corner.x + 0.5f * (space.x - extent.x)),
@@ -25,8 +25,13 @@ Place fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     return {low, {low.x + extent.x, low.y + extent.y}};
 }
 
+// Of pictures side by side, the left one.
+PicturePlace left_of(const PicturePlace& place, int across) {
+    return {place.low, {place.low.x + (place.high.x - place.low.x) / static_cast<float>(across), place.high.y}};
+}
+
 // Mouse on the picture: turning, shifting, looking around, nearer and further.
-void move_camera(const Place& place, const Act& act) {
+void move_camera(const PicturePlace& place, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / place.height(), y = -io.MouseDelta.y / place.height();
     if (ImGui::IsItemActive() && (x != 0 || y != 0)) {
@@ -39,6 +44,34 @@ void move_camera(const Place& place, const Act& act) {
             act({Verb::orbit, {}, {degrees_a_height * x, degrees_a_height * y}, {}});
     }
     if (ImGui::IsItemHovered() && io.MouseWheel != 0) act({Verb::dolly, {}, {std::pow(0.9, io.MouseWheel)}, {}});
+}
+
+// Shift and a click without a drag ask about the pixel.
+void ask_about_pixel(const PicturePlace& place, const ShownPicture& picture, const Act& act) {
+    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0), at = ImGui::GetIO().MousePos;
+    const bool clicked = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
+    if (!clicked || !ImGui::GetIO().KeyShift || std::abs(moved.x) + std::abs(moved.y) > still) return;
+    const float scale = place.height() / static_cast<float>(picture.wanted.y);
+    const int x = static_cast<int>((at.x - place.low.x) / scale), y = static_cast<int>((at.y - place.low.y) / scale);
+    act({Verb::explain, {}, {static_cast<double>(x % picture.wanted.x), static_cast<double>(y)}, {}});
+}
+
+// The pixel whose ray is told about, in each of the pictures side by side.
+void mark_pixel(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
+    if (!state.explain) return;
+    const float scale = place.height() / static_cast<float>(picture.wanted.y), type = ImGui::GetFontSize();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    for (int i = 0; i < picture.across; ++i) {
+        const vec2 at = scale * (vec2(*state.explain) + 0.5f + vec2(i * picture.wanted.x, 0));
+        const ImVec2 middle{place.low.x + at.x, place.low.y + at.y};
+        for (const auto& [color, wide] :
+             {std::pair{IM_COL32(0, 0, 0, 200), 3.5f}, {ImGui::GetColorU32(accent), 1.5f}}) {
+            list->AddCircle(middle, 0.5f * type, color, 0, wide);
+            for (const ImVec2 way : {ImVec2{1, 0}, ImVec2{-1, 0}, ImVec2{0, 1}, ImVec2{0, -1}})
+                list->AddLine({middle.x + 0.5f * type * way.x, middle.y + 0.5f * type * way.y},
+                              {middle.x + type * way.x, middle.y + type * way.y}, color, wide);
+        }
+    }
 }
 
 struct Words {
@@ -65,7 +98,7 @@ void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
 }
 
 // The line between two techniques, which the mouse can take along, and their names.
-void draw_wipe(const Place& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
+void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
     const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
     const float x = place.low.x + state.shown.wipe * width;
     ImGui::SetCursorScreenPos({x - 0.5f * type, place.low.y});
@@ -80,6 +113,43 @@ void draw_wipe(const Place& place, const ViewState& state, const ShownPicture& p
     const float left = ImGui::CalcTextSize(picture.mode.c_str()).x + 1.5f * type;
     draw_band({x - left, place.low.y + 0.5f * type}, {{picture.mode, text}}, width);
     draw_band({x + 0.7f * type, place.low.y + 0.5f * type}, {{picture.beside, text}}, width);
+}
+
+// The names of two pictures side by side.
+void draw_names(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
+    const float type = ImGui::GetFontSize(), middle = 0.5f * (place.low.x + place.high.x);
+    const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
+    const std::string wait = state.beside + (picture.quick ? ", once it stands still" : " ...");
+    draw_band({place.low.x + 0.5f * type, place.low.y + 0.5f * type}, {{picture.mode, text}}, middle - place.low.x);
+    draw_band({middle + 0.5f * type, place.low.y + 0.5f * type},
+              {{picture.beside.empty() ? wait : picture.beside, picture.beside.empty() ? quiet : text}},
+              place.high.x - middle);
+    ImGui::GetWindowDrawList()->AddLine({middle, place.low.y}, {middle, place.high.y}, IM_COL32(60, 60, 63, 255));
+}
+
+// Against what the picture is held, and how far it is from that: from `bottom` upwards.
+void draw_errors(const PicturePlace& place, float bottom, const ViewState& state, const ShownPicture& picture) {
+    if (!picture.reference) {
+        const bool wanted = state.shown.layer == ShownLayer::error || state.beside == reference_name;
+        if (wanted)
+            draw_band(
+                {place.low.x + 0.5f * ImGui::GetFontSize(), bottom - 1.9f * ImGui::GetFontSize()},
+                {{picture.quick ? "the reference waits until things stand still" : "the reference is being made ...",
+                  quiet}},
+                place.high.x - place.low.x);
+        return;
+    }
+    const float type = ImGui::GetFontSize(), line = 1.9f * type, left = place.low.x + 0.5f * type;
+    const float width = place.high.x - place.low.x - 2 * type;
+    const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
+    float y = bottom - line;
+    draw_band({left, y}, {{reference_text(*picture.reference), text}}, width);
+    if (picture.errors_beside)
+        draw_band({left, y -= line}, {{picture.beside, accent}, {error_text(*picture.errors_beside), text}}, width);
+    if (picture.errors) {
+        draw_band({left, y -= line}, {{picture.mode, accent}, {error_text(*picture.errors), text}}, width);
+        draw_error_legend({left, y - 2.9f * type - 0.4f * type}, std::min(26 * type, width));
+    }
 }
 
 ImVec4 severity_color(const std::vector<Limit>& limits) {
@@ -101,14 +171,15 @@ std::string status_line(const ViewState& state, const ShownPicture& picture) {
     const Mode& mode = find_mode(picture.mode);
     std::string text = picture.mode;
     if (picture.mode != state.mode) text += " for " + state.mode;
-    text += formatted("  \u00b7  %d \u00d7 %d", picture.codes.size.x, picture.codes.size.y);
-    if (picture.codes.size != picture.wanted) text += formatted(" of %d \u00d7 %d", picture.wanted.x, picture.wanted.y);
+    const ivec2 size(picture.codes.size.x / picture.across, picture.codes.size.y);
+    text += formatted("  \u00b7  %d \u00d7 %d", size.x, size.y);
+    if (size != picture.wanted) text += formatted(" of %d \u00d7 %d", picture.wanted.x, picture.wanted.y);
     text += formatted("  \u00b7  %d %s", picture.samples, picture.samples == 1 ? "sample" : "samples");
     text += formatted("  \u00b7  %.*f ms", picture.times.total() < 0.01 ? 1 : 0, 1e3 * picture.times.total());
     return text + "  \u00b7  " + std::string(name_of(mode.accuracy));
 }
 
-void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
+void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const Act& act) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
@@ -116,20 +187,29 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         if (state.message.empty() && state.file_error.empty())
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
-        const Place place = fitted(corner, space, shelf.picture->wanted);
+        const ivec2 wanted = shelf.picture->wanted;
+        const PicturePlace place = fitted(corner, space, {shelf.picture->across * wanted.x, wanted.y});
         ImGui::GetWindowDrawList()->AddImage(shelf.texture, place.low, place.high);
-        if (!shelf.picture->beside.empty()) draw_wipe(place, state, *shelf.picture, act);
+        if (shelf.picture->across > 1)
+            draw_names(place, state, *shelf.picture);
+        else if (!shelf.picture->beside.empty())
+            draw_wipe(place, state, *shelf.picture, act);
         ImGui::SetCursorScreenPos(corner);
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
-        move_camera(place, act);
+        if (!draw_handles(state, wanted, left_of(place, shelf.picture->across), edits, act)) move_camera(place, act);
+        ask_about_pixel(place, *shelf.picture, act);
+        mark_pixel(place, state, *shelf.picture);
 
         // Always on the picture: what it is, how good it is, what is wrong with it.
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
         if (shelf.picture->mode == state.mode) words.push_back({wrongs(shelf.limits), severity_color(shelf.limits)});
-        draw_band({place.low.x + 0.5f * type, place.high.y - line - 0.5f * type}, words, width);
+        const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
+        const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
+        draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
+        draw_errors(place, bottom - line - 0.5f * type, state, *shelf.picture);
     }
     const ImVec2 above{corner.x + 0.5f * type, corner.y + 0.5f * type};
     if (shelf.saving >= 0)
@@ -138,5 +218,8 @@ void draw_picture(ViewState& state, const Shelf& shelf, const Act& act) {
         draw_band(above, {{state.file_error, trouble}}, space.x - 2 * type);
     else if (!state.message.empty())
         draw_band(above, {{state.message, state.message_is_error ? trouble : text_color}}, space.x - 2 * type);
+    else if (state.scene)
+        if (const std::string gap = missing_text(*state.scene, state.frame, state.missing); !gap.empty())
+            draw_band(above, {{gap, trouble}}, space.x - 2 * type);
 }
 }

@@ -52,11 +52,16 @@ void apply_theme(float scale) {
     colors[ImGuiCol_Header] = tinted(0.22f);
     colors[ImGuiCol_HeaderHovered] = grey(0.25f);
     colors[ImGuiCol_HeaderActive] = tinted(0.35f);
+    colors[ImGuiCol_Tab] = colors[ImGuiCol_TabUnfocused] = grey(0.17f);
+    colors[ImGuiCol_TabActive] = colors[ImGuiCol_TabUnfocusedActive] = tinted(0.30f);
+    colors[ImGuiCol_TabHovered] = grey(0.29f);
+    colors[ImGuiCol_TableHeaderBg] = grey(0.125f);
     colors[ImGuiCol_Separator] = grey(0.22f);
     colors[ImGuiCol_ScrollbarBg] = grey(0.125f, 0);
     colors[ImGuiCol_ScrollbarGrab] = grey(0.27f);
     colors[ImGuiCol_ScrollbarGrabHovered] = grey(0.35f);
     colors[ImGuiCol_ScrollbarGrabActive] = grey(0.42f);
+    colors[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, 0.55f};
     colors[ImGuiCol_TextSelectedBg] = tinted(0.35f);
     colors[ImGuiCol_NavHighlight] = tinted(0.6f);
 }

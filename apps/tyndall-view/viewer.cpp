@@ -1,6 +1,7 @@
 // The frames of the interface.
 #include "../tyndall/common.h"
 #include "base/error.h"
+#include "preview/volume_picture.h"
 #include "render/png.h"
 #include "viewer_parts.h"
 
@@ -19,16 +20,18 @@ void take_loaded(Viewer& viewer) {
     std::optional<LoadedScene> loaded = viewer.loader.take();
     if (!loaded) return;
     state.loading = false;
-    if (loaded->scene) {
-        viewer.watched = std::move(loaded->inputs);
-        viewer.window.set_title(state.scene_file.filename().string() + " - Tyndall");
+    if (loaded->session) {
         state.file_error.clear();
-        take_scene(state, loaded->scene);
+        take_scene(state, std::move(*loaded));
         return;
     }
     // The last good picture stays, unless there is none or a script asked for this scene.
     if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
-    state.file_error = loaded->error;
+    state.scene_file = state.scene->file;
+    if (std::exchange(state.reloading, false))
+        state.file_error = loaded->error;
+    else
+        tell(viewer, loaded->error, true);
 }
 
 // Reads the scene again when one of its files has changed.
@@ -36,11 +39,20 @@ void watch_files(Viewer& viewer) {
     ViewState& state = viewer.state;
     if (!state.scene || state.loading || viewer.now < viewer.watched_at + watch_interval) return;
     viewer.watched_at = viewer.now;
-    if (changed_inputs(viewer.watched).empty()) return;
-    viewer.watched = input_times(*state.scene); // of a broken file too: the next change counts
-    state.scene_file = state.scene->file, state.loading = true;
+    if (changed_inputs(state.session->inputs).empty()) return;
+    state.session->inputs = input_times(*state.scene); // of a broken file too: the next change counts
+    state.scene_file = state.scene->file, state.loading = state.reloading = true;
     viewer.script_place.clear();
     ++state.loads;
+}
+
+void show_title(Viewer& viewer) {
+    const ViewState& state = viewer.state;
+    const char* mark = state.session && has_unsaved_changes(*state.session) ? "* " : "";
+    const std::string title = mark + state.scene_file.filename().string() + " - Tyndall";
+    if (title == viewer.title) return;
+    viewer.title = title;
+    viewer.window.set_title(title);
 }
 
 void take_pictures(Viewer& viewer) {
@@ -52,6 +64,9 @@ void take_pictures(Viewer& viewer) {
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
+            if (picture->ray) viewer.shelf.ray = picture->ray;
+            if (picture->volume && picture->volume != viewer.shelf.volume)
+                viewer.shelf.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();
             viewer.shelf.picture = std::move(picture);
             viewer.new_picture = true;
         }
@@ -99,12 +114,19 @@ void take_screenshot(Viewer& viewer) {
     }
 }
 
+// What was done to the window as a whole.
+void take_wishes(Viewer& viewer) {
+    if (viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
+    if (const std::string file = viewer.window.take_dropped(); !file.empty()) act(viewer, {Verb::open, {file}, {}, {}});
+}
+
 // One frame of the interface. Everything up to GL is its own time.
 void run_frame(Viewer& viewer) {
     viewer.window.wait(wait_of(viewer));
     const double start = seconds_now();
     viewer.frame_seconds = std::min(start - viewer.now, 0.1);
     viewer.now = start;
+    take_wishes(viewer);
     take_loaded(viewer);
     watch_files(viewer);
     take_pictures(viewer);
@@ -113,14 +135,16 @@ void run_frame(Viewer& viewer) {
     move_scripted_mouse(viewer);
     viewer.window.begin_frame(viewer.scripted);
     read_input(viewer);
-    viewer.shelf.texture = viewer.window.picture();
+    viewer.shelf.texture = viewer.window.picture(), viewer.shelf.volume_texture = viewer.window.picture(1);
     draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
     post_request(viewer);
+    show_title(viewer);
     viewer.window.end_frame();
 
     const double drawn = seconds_now();
     if (viewer.new_picture) viewer.window.set_picture(viewer.shelf.picture->codes);
-    viewer.new_picture = false;
+    if (viewer.new_volume) viewer.window.set_picture(viewer.shelf.volume->codes, 1);
+    viewer.new_picture = viewer.new_volume = false;
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
     const double done = seconds_now();
     viewer.times.interface.push_back(drawn - start);
@@ -135,7 +159,7 @@ void run_viewer(const ViewerOptions& options) {
     Viewer viewer(options);
     viewer.script.actions = options.script;
     viewer.started = viewer.now = seconds_now();
-    while (!viewer.quit && !viewer.window.closed()) run_frame(viewer);
+    while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
     viewer.times.seconds = seconds_now() - viewer.started;
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
 }

@@ -33,7 +33,7 @@ void save(Viewer& viewer, const std::string& file) {
     job.request = request_of(viewer.state, false);
     job.camera = viewer.state.free ? "view" : viewer.state.camera;
     job.quality = viewer.state.quality, job.isa = viewer.options.isa;
-    job.light_units = viewer.options.load.light_units;
+    job.light_units = viewer.options.load.light_units, job.unsaved = unsaved_text(*viewer.state.session);
     viewer.thread.save(std::move(job));
     ++viewer.files_to_come;
 }
@@ -44,7 +44,7 @@ void perform(Viewer& viewer, const Action& action) {
     const auto& numbers = action.numbers;
     switch (action.verb) {
     case Verb::key:
-        if (!key_codes().contains(action.words[0]))
+        if (!key_codes().contains(plain_key(action.words[0])))
             fail(ExitCode::usage, "key", "no key '" + printable(action.words[0], 40) + "'");
         viewer.scripted.key = action.words[0], viewer.key_frames = 2;
         break;
@@ -68,6 +68,8 @@ void perform(Viewer& viewer, const Action& action) {
 }
 
 void act(Viewer& viewer, const Action& action) {
+    // A scene that hands open is no matter of the script's.
+    if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_place.clear();
     try {
         if (action.verb != Verb::brighten) viewer.state.message.clear();
         perform(viewer, action);
@@ -125,16 +127,17 @@ namespace {
 // Keys that are pressed now; those that fly go on while they are held.
 void read_keys(Viewer& viewer) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
+    if (io.WantTextInput || viewer.state.asked) return;
     for (const auto& [name, code] : key_codes()) {
-        if (!ImGui::IsKeyDown(code) || io.KeyCtrl || io.KeyAlt) continue;
+        if (!ImGui::IsKeyDown(code) || io.KeyAlt) continue;
         const bool flies = name.size() == 1 && std::string_view("wasdqe").find(name[0]) != std::string_view::npos;
         const bool repeats = name == "left" || name == "right" || name == "[" || name == "]";
-        std::optional<Action> action = action_of_key(viewer.state, name);
+        const std::string pressed = io.KeyCtrl ? (io.KeyShift ? "ctrl+shift+" : "ctrl+") + name : name;
+        std::optional<Action> action = action_of_key(viewer.state, pressed);
         if (!action) continue;
         if (ImGui::IsKeyPressed(code, repeats)) {
             act(viewer, *action);
-        } else if (flies) {
+        } else if (flies && !io.KeyCtrl) {
             for (double& metres : action->numbers) metres *= flying * viewer.frame_seconds;
             act(viewer, *action);
         }

@@ -17,14 +17,14 @@ struct Viewer {
     Window window;
     ViewState state;
     SceneLoader loader;
-    std::vector<InputTime> watched;
+    std::string title;
     double watched_at = 0, started = 0, moved_at = -1e9, input_at = -1e9, now = 0, frame_seconds = 0;
     int loads_begun = 0;
     uint64_t motions_seen = 0, posted = 0, posted_shown = 0;
     bool posted_moving = false;
     Shelf shelf;
     uint64_t picture_revision = 0; // of the newest answer, with or without a picture
-    bool new_picture = false;
+    bool new_picture = false, new_volume = false;
     PanelMemory memory;
     ScriptPlayer script;
     ScriptedInput scripted;

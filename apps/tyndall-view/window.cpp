@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -43,15 +44,21 @@ size_t hash_of(const ImDrawData& data) {
 
 const std::map<std::string, int>& key_codes() {
     static const std::map<std::string, int> codes = [] {
-        std::map<std::string, int> all{{"space", GLFW_KEY_SPACE},    {"left", GLFW_KEY_LEFT},
-                                       {"right", GLFW_KEY_RIGHT},    {"home", GLFW_KEY_HOME},
-                                       {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
-                                       {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
+        std::map<std::string, int> all{
+            {"space", GLFW_KEY_SPACE},   {"left", GLFW_KEY_LEFT},      {"right", GLFW_KEY_RIGHT},
+            {"home", GLFW_KEY_HOME},     {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
+            {"escape", GLFW_KEY_ESCAPE}, {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
         for (char c = 'a'; c <= 'z'; ++c) all[std::string(1, c)] = GLFW_KEY_A + (c - 'a');
         for (char c = '0'; c <= '9'; ++c) all[std::string(1, c)] = GLFW_KEY_0 + (c - '0');
         return all;
     }();
     return codes;
+}
+
+std::string plain_key(std::string_view key) {
+    for (const std::string_view modifier : {"ctrl+", "shift+"})
+        if (key.starts_with(modifier)) key.remove_prefix(modifier.size());
+    return std::string(key);
 }
 
 Window::Window(const std::string& title, ivec2 size) {
@@ -67,6 +74,9 @@ Window::Window(const std::string& title, ivec2 size) {
     glfwSetWindowUserPointer(window_, this);
     glfwSetWindowRefreshCallback(
         window_, [](GLFWwindow* window) { static_cast<Window*>(glfwGetWindowUserPointer(window))->stale_ = true; });
+    glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
+        if (count > 0) static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_ = files[0];
+    });
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
 
@@ -79,16 +89,18 @@ Window::Window(const std::string& title, ivec2 size) {
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
     ImGui_ImplOpenGL3_Init("#version 130");
 
-    glGenTextures(1, &texture_);
-    glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    glGenTextures(2, textures_);
+    for (const unsigned texture : textures_) {
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    }
 }
 
 Window::~Window() {
-    glDeleteTextures(1, &texture_);
+    glDeleteTextures(2, textures_);
     ImGui_ImplOpenGL3_Shutdown();
     ImGui_ImplGlfw_Shutdown();
     ImGui::DestroyContext();
@@ -96,7 +108,13 @@ Window::~Window() {
     glfwTerminate();
 }
 
-bool Window::closed() const { return glfwWindowShouldClose(window_); }
+bool Window::take_close() {
+    const bool asked = glfwWindowShouldClose(window_);
+    glfwSetWindowShouldClose(window_, GLFW_FALSE);
+    return asked;
+}
+
+std::string Window::take_dropped() { return std::exchange(dropped_, {}); }
 
 void Window::wait(double seconds) {
     if (seconds > 0)
@@ -114,7 +132,9 @@ void Window::begin_frame(const ScriptedInput& input) {
         ImGuiIO& io = ImGui::GetIO();
         io.MousePos = {input.mouse.x, input.mouse.y};
         io.MouseDown[0] = input.down;
-        for (const auto& [name, code] : key_codes()) io.KeysDown[code] = name == input.key;
+        const std::string key = plain_key(input.key);
+        for (const auto& [name, code] : key_codes()) io.KeysDown[code] = name == key;
+        io.KeyCtrl = input.key.starts_with("ctrl+"), io.KeyShift = input.key.find("shift+") != input.key.npos;
     }
     ImGui::NewFrame();
 }
@@ -139,17 +159,17 @@ void Window::swap() { glfwSwapBuffers(window_); }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::set_picture(const Image<glm::u8vec4>& codes) {
-    glBindTexture(GL_TEXTURE_2D, texture_);
+void Window::set_picture(const Image<glm::u8vec4>& codes, size_t which) {
+    glBindTexture(GL_TEXTURE_2D, textures_[which]);
     const ivec2 size = codes.size;
-    if (size == texture_size_)
+    if (size == texture_sizes_[which])
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.x, size.y, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
     else
         glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x, size.y, 0, GL_RGBA, GL_UNSIGNED_BYTE, codes.pixels.data());
-    texture_size_ = size, stale_ = true;
+    texture_sizes_[which] = size, stale_ = true;
 }
 
-void* Window::picture() const { return reinterpret_cast<void*>(static_cast<intptr_t>(texture_)); }
+void* Window::picture(size_t which) const { return reinterpret_cast<void*>(static_cast<intptr_t>(textures_[which])); }
 
 Image<glm::u8vec3> Window::pixels() const {
     ivec2 size{0};

@@ -1,4 +1,4 @@
-// A window with Dear ImGui in it, and one texture for the picture.
+// A window with Dear ImGui in it, and textures for pictures.
 #pragma once
 #include "base/image.h"
 
@@ -13,7 +13,7 @@ struct ScriptedInput {
     bool active = false;
     vec2 mouse{-1e6f}; // of the window, pixels
     bool down = false;
-    std::string key; // pressed in this frame; empty = none
+    std::string key; // pressed in this frame, "ctrl+" and "shift+" before it; empty = none
 };
 
 class Window {
@@ -24,7 +24,8 @@ public:
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    bool closed() const;
+    bool take_close();          // its closing was asked for, said once
+    std::string take_dropped(); // a file dropped on it, said once; empty = none
     // Sleeps until there is something to do, or for so long.
     void wait(double seconds);
     static void wake(); // from any thread: ends wait()
@@ -35,18 +36,22 @@ public:
     void swap();
     void set_title(const std::string& title);
 
-    void set_picture(const Image<glm::u8vec4>& codes); // call between end_frame() and draw()
-    void* picture() const;                             // texture for ImGui::Image
-    Image<glm::u8vec3> pixels() const;                 // of what was drawn
+    // There are two: the picture itself and another one. Call between end_frame() and draw().
+    void set_picture(const Image<glm::u8vec4>& codes, size_t which = 0);
+    void* picture(size_t which = 0) const; // texture for ImGui::Image
+    Image<glm::u8vec3> pixels() const;     // of what was drawn
 
 private:
     GLFWwindow* window_ = nullptr;
-    unsigned texture_ = 0;
+    unsigned textures_[2]{};
+    std::string dropped_;
     size_t drawn_ = 0;  // hash of what was drawn last
     bool stale_ = true; // the picture is another one, or the window was uncovered
-    ivec2 texture_size_{0};
+    ivec2 texture_sizes_[2]{};
 };
 
 // Names of keys as actions know them, with GLFW's numbers.
 const std::map<std::string, int>& key_codes();
+
+std::string plain_key(std::string_view key); // "z" of "ctrl+shift+z"
 }

@@ -137,25 +137,10 @@ Json json_object(std::vector<std::pair<std::string, Json>> members) {
     return value;
 }
 
-std::string bytes_text(double bytes) {
-    constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
-    size_t unit = 0;
-    while (bytes >= 1000 && unit < 4) bytes /= 1000, ++unit;
-    return formatted(unit == 0 || bytes >= 100 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
-}
-
 std::string seconds_text(double seconds) {
     if (seconds < 0.0995) return formatted("%.0f ms", seconds * 1000);
     if (seconds < 120) return formatted("%.1f s", seconds);
     if (seconds < 7200) return formatted("%.1f min", seconds / 60);
     return formatted("%.1f h", seconds / 3600);
-}
-
-std::string vector_text(vec3 v) {
-    return formatted("%.4g %.4g %.4g", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
-}
-
-std::string count_text(uint64_t count, std::string_view noun) {
-    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
 }
 }

@@ -4,6 +4,7 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/text.h"
+#include "measure/grid_report.h"
 
 #include <CLI/CLI.hpp>
 
@@ -78,9 +79,6 @@ Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts
 Json json_array(std::vector<Json> items);
 Json json_object(std::vector<std::pair<std::string, Json>> members);
 
-// "1.5 MB", "2.1 min": for people.
-std::string bytes_text(double bytes);
+// "2.1 min": for people.
 std::string seconds_text(double seconds);
-std::string vector_text(vec3 value);
-std::string count_text(uint64_t count, std::string_view noun);
 }

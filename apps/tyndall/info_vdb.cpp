@@ -3,19 +3,9 @@
 #include "info.h"
 
 #include "base/error.h"
-#include "volume/vdb.h"
 
 namespace tyndall {
 namespace {
-ivec3 voxels_across(const VdbGridInfo& grid) { return glm::max(grid.active_high - grid.active_low + 1, ivec3(0)); }
-
-// World box of the active voxels, their whole cells included.
-Box world_bounds(const VdbGridInfo& grid) {
-    const ivec3 across = voxels_across(grid);
-    if (across.x == 0 || across.y == 0 || across.z == 0) return {};
-    return transform(mat4(grid.index_to_world), Box{vec3(grid.active_low) - 0.5f, vec3(grid.active_high) + 0.5f});
-}
-
 Json grid_json(const VdbGridInfo& grid) {
     const ivec3 across = voxels_across(grid);
     std::vector<Json> matrix;
@@ -50,43 +40,9 @@ std::string metadata_lines(const std::vector<std::pair<std::string, std::string>
     return text;
 }
 
-// The linear part of a transform when it is more than a scale along the axes.
-std::string transform_line(const VdbGridInfo& grid) {
-    const dmat4& m = grid.index_to_world;
-    const bool along_axes =
-        m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
-    if (along_axes && m[0][0] > 0 && m[1][1] > 0 && m[2][2] > 0) return "";
-    return "    axes          x " + vector_text(vec3(m[0])) + "   y " + vector_text(vec3(m[1])) + "   z " +
-           vector_text(vec3(m[2])) + "\n";
-}
-
-// What was found among the values; only grids of densities are looked through.
-std::string value_lines(const VdbGridInfo& grid) {
-    const ivec3 across = voxels_across(grid);
-    const Box bounds = world_bounds(grid);
-    std::string text = formatted("    extent        %d x %d x %d voxels of %s m\n", across.x, across.y, across.z,
-                                 vector_text(grid.voxel_size).c_str());
-    text += bounds.empty()
-                ? "    world         empty\n"
-                : "    world         " + vector_text(bounds.low) + " to " + vector_text(bounds.high) + " m\n";
-    text += transform_line(grid);
-    text += formatted("    values        %g to %g, mean %g, background %g\n", static_cast<double>(grid.minimum),
-                      static_cast<double>(grid.maximum), static_cast<double>(grid.mean),
-                      static_cast<double>(grid.background));
-    if (grid.non_finite || grid.negative)
-        text += "    faults        " + std::to_string(grid.non_finite) + " not finite, " +
-                std::to_string(grid.negative) + " negative: read as 0\n";
-    return text;
-}
-
 std::string grid_text(const VdbGridInfo& grid) {
-    std::string text = "  " + printable(grid.name, 80) + ": " + printable(grid.type, 80) + ", " +
-                       (grid.grid_class.empty() ? "no class" : printable(grid.grid_class, 40)) + ", " +
-                       (grid.usable ? "usable as fog" : "not usable as fog: " + printable(grid.why_not)) + "\n";
-    text += "    active        " + count_text(grid.active_voxels, "voxel") + " in " + std::to_string(grid.leaves) +
-            " leaves and " + count_text(grid.tiles, "tile") + ", " +
-            bytes_text(static_cast<double>(grid.memory_bytes)) + "\n";
-    if (grid.usable || !world_bounds(grid).empty()) text += value_lines(grid);
+    std::string text = "  " + printable(grid.name, 80) + ": " + kind_text(grid) + "\n";
+    for (const auto& [name, value] : grid_rows(grid)) text += formatted("    %-13s %s\n", name.c_str(), value.c_str());
 
     // What stands above already, in other words, is left out.
     std::vector<std::pair<std::string, std::string>> more;

@@ -1,9 +1,8 @@
 // The drawing: panels over one axis of distance, and bars for the modes.
 #include "measure/explain_svg.h"
 
-#include "base/error.h"
 #include "base/text.h"
-#include "volume/brick_walk.h"
+#include "measure/explain_curves.h"
 
 #include <algorithm>
 
@@ -29,21 +28,6 @@ struct Panel {
     }
     double y(double value) const { return bottom - (bottom - top) * std::clamp(value / y_end, 0.0, 1.0); }
 };
-
-// The axis goes on until hardly anything is seen, and begins with the fog where that is far away.
-Stretch axis_of(const RayStory& story) {
-    constexpr double hardly = 3e-3;
-    double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
-    for (const RayStep& step : story.steps) {
-        if (step.to_eye >= hardly) continue;
-        end = step.high;
-        break;
-    }
-    if (!(end > 0)) end = 1;
-    const double fog = story.steps.empty() ? 0 : story.steps.front().low;
-    const double first = story.surfaces.empty() ? fog : std::min(fog, story.surfaces.front().distance);
-    return {first > 0.5 * end ? first - 0.05 * (end - first) : 0, end};
-}
 
 void draw_axes(const Panel& panel, const std::string& title, bool percents, bool distances, Svg& svg) {
     const double x_tick = tick_of(panel.range.length(), 10);
@@ -90,28 +74,6 @@ template<class Value> std::string curve(const RayStory& story, const Panel& pane
     return curve(story, panel, value, always, always);
 }
 
-// What a light does at each step.
-std::vector<Lighting> states_of(const RayStory& story, const LightOnRay& light) {
-    std::vector<Lighting> states;
-    size_t stretch = 0;
-    for (const RayStep& step : story.steps) {
-        while (stretch + 1 < light.stretches.size() && light.stretches[stretch].high <= step.middle()) ++stretch;
-        states.push_back(light.stretches[stretch].state);
-    }
-    return states;
-}
-
-// The lights in the order they are drawn in.
-std::vector<size_t> drawn_lights(const RayStory& story) {
-    std::vector<size_t> all(story.lights.size());
-    for (size_t l = 0; l < all.size(); ++l) all[l] = l;
-    std::ranges::stable_sort(
-        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
-    all.resize(std::min(all.size(), most_lights));
-    std::ranges::sort(all);
-    return all;
-}
-
 void draw_fog(const RayStory& story, double top, Stretch range, Svg& svg) {
     double most = 0;
     for (const RayStep& step : story.steps)
@@ -140,29 +102,9 @@ void draw_transmittance(const RayStory& story, std::span<const size_t> lights, d
     svg.path(curve(story, panel, [&](size_t s) { return story.steps[s].to_eye; }), ink, 2);
 }
 
-double arriving(const RayStep& step, vec3 source) { return luminance(source) * step.to_eye; }
-
-// Values that hardly any of the ray exceeds decide on the scale: next to a lamp they have no end.
-double scale_of(const RayStory& story, double& most) {
-    std::vector<std::pair<double, double>> values; // and lengths
-    double length = 0;
-    for (size_t i = 0; i < story.steps.size(); ++i) {
-        const RayStep& step = story.steps[i];
-        double value = arriving(step, step.glow);
-        for (const LightOnRay& light : story.lights) value = std::max(value, arriving(step, light.at[i].scattered));
-        values.push_back({value, step.high - step.low}), length += step.high - step.low;
-    }
-    std::ranges::sort(values);
-    most = values.empty() ? 0 : values.back().first;
-    double sum = 0;
-    for (const auto& [value, part] : values)
-        if ((sum += part) >= 0.97 * length && value > 0) return most > 4 * value ? 2 * value : 1.08 * most;
-    return most > 0 ? most : 1;
-}
-
 void draw_light(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
     double most = 0;
-    const double scale = scale_of(story, most);
+    const double scale = light_scale(story, most);
     const Panel panel{top, top + 150, range, scale};
     std::string title =
         "Light scattered here that arrives at the eye, nits per metre (grey: ambient light and emission)";
@@ -239,7 +181,7 @@ void draw_surfaces(const RayStory& story, double top, double bottom, Stretch ran
 
 std::string explain_svg(const RayStory& story, const StoryTitle& title) {
     const Stretch range = axis_of(story);
-    const std::vector<size_t> lights = drawn_lights(story);
+    const std::vector<size_t> lights = drawn_lights(story, most_lights);
     Svg svg;
     svg.text(16, 26, title_line(story, title), Anchor::start, "font-size='15' font-weight='bold'");
     draw_fog(story, 78, range, svg);

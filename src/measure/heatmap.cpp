@@ -62,18 +62,23 @@ Color8 heat_color(double t) {
     return color;
 }
 
+double heat_place(double value, const HeatScale& scale) {
+    const double low = scale.low, high = scale.high;
+    return scale.logarithmic ? std::log(std::max(value, low) / low) / std::log(high / low)
+                             : (value - low) / (high - low);
+}
+
+Color8 heat_color(double value, const HeatScale& scale) {
+    return std::isnan(value) ? not_a_number : heat_color(heat_place(value, scale));
+}
+
 int heat_strip_height(int width) { return (letter_height + 2) * dot_side(width); }
 
 Image<Color8> heat_map(const Image<float>& values, const HeatScale& scale) {
     const int width = values.size.x, height = values.size.y;
     Image<Color8> picture({width, height + heat_strip_height(width)});
     for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const double v = values.at(x, y), low = scale.low, high = scale.high;
-            const double t =
-                scale.logarithmic ? std::log(std::max(v, low) / low) / std::log(high / low) : (v - low) / (high - low);
-            picture.at(x, y) = std::isnan(v) ? not_a_number : heat_color(t);
-        }
+        for (int x = 0; x < width; ++x) picture.at(x, y) = heat_color(double{values.at(x, y)}, scale);
     draw_strip(picture, height, scale);
     return picture;
 }

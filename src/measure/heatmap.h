@@ -15,7 +15,12 @@ struct HeatScale {
     bool logarithmic = false; // low and high are powers of ten then
 };
 
-// Each value in its colour, NaN in bright green, which the scale does not have. Below lies a strip with the scale,
+// Where a value lies on the scale: 0 black, 1 white. And its colour; NaN is bright green, which the scale does not
+// have.
+double heat_place(double value, const HeatScale& scale);
+Color8 heat_color(double value, const HeatScale& scale);
+
+// Each value in its colour. Below lies a strip with the scale,
 // black to white, and where there is room its values in figures.
 Image<Color8> heat_map(const Image<float>& values, const HeatScale& scale);
 int heat_strip_height(int width);

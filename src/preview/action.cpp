@@ -14,11 +14,20 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::set, "set", "NAME VALUE", "change a setting, as --set does"},
         {Verb::reset, "reset", "NAME", "a setting back to its usual value; all: every one"},
         {Verb::mode, "mode", "NAME", "render with another technique"},
-        {Verb::beside, "beside", "[NAME]", "another technique in the right part of the picture; without a name: none"},
+        {Verb::beside, "beside", "[NAME]",
+         "another technique, or the reference, in the right part of the picture; without a name: none"},
         {Verb::wipe, "wipe", "x", "where that part begins, as a share of the width"},
+        {Verb::arrange, "arrange", "wipe|side", "two techniques in one picture, or in two pictures side by side"},
+        {Verb::explain, "explain", "[x] [y]",
+         "what happens on the ray of a pixel, 0 0 the upper left, and what every technique makes of it; without: "
+         "close"},
+        {Verb::volume, "volume", "on|off", "show a medium's density and what is known of its grid"},
+        {Verb::medium, "medium", "NAME", "which medium that is"},
+        {Verb::slice, "slice", "x|y|z n", "its density across an axis, at a share of its extent"},
+        {Verb::project, "project", "x|y|z maximum|mean", "its largest or mean density along an axis"},
         {Verb::quality, "quality", "NAME", "all settings as draft, preview, final or reference have them"},
         {Verb::orders, "orders", "NAME", "how many times light scatters: a number, or all"},
-        {Verb::show, "show", "NAME", "picture, fog, transmittance, depth or validity"},
+        {Verb::show, "show", "NAME", "picture, fog, transmittance, depth, validity or error: against the reference"},
         {Verb::exposure, "exposure", "ev", "brightness of the picture, in stops from the scene's"},
         {Verb::brighten, "brighten", "ev", "that many stops more"},
         {Verb::camera, "camera", "[NAME]", "a camera of the scene, back where it stands; without a name: the scene's"},
@@ -33,6 +42,18 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::play, "play", "[n]", "play on, or n frames"},
         {Verb::stop, "stop", "", "stop playing"},
         {Verb::loop, "loop", "on|off", "whether playing begins anew at the end"},
+        {Verb::edit, "edit", "PATH VALUE [n]",
+         "change the scene at this moment, as lights/lamp/intensity 400; with the same n: one step to undo"},
+        {Verb::undo, "undo", "", "take back the last edit of the scene"},
+        {Verb::redo, "redo", "", "make it again"},
+        {Verb::cancel, "cancel", "n", "take back the edits of number n for good"},
+        {Verb::save, "save", "", "write the edits into the scene file"},
+        {Verb::save_as, "save-as", "FILE", "write a scene file elsewhere and go on with that one"},
+        {Verb::select, "select", "PATH", "show what can be edited of lights/NAME, media/NAME or the scene"},
+        {Verb::tab, "tab", "NAME", "what the side shows: render or lights"},
+        {Verb::handles, "handles", "on|off", "draw the lights into the picture, to be taken hold of"},
+        {Verb::missing, "missing", "error|hold|skip",
+         "frames that a sequence of volumes lacks: said, the one before shown, or without fog"},
         {Verb::panels, "panels", "on|off", "show the panels"},
         {Verb::help, "help", "on|off", "show what keys and mouse do"},
         {Verb::key, "key", "NAME", "press a key"},
@@ -40,7 +61,9 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::wait, "wait", "NAME [n]", "until idle, for so many seconds, or for \"samples N\""},
         {Verb::snapshot, "snapshot", "FILE", "write the picture as tyndall render does: .exr or .png"},
         {Verb::screenshot, "screenshot", "FILE", "write the window as it is: .png"},
-        {Verb::quit, "quit", "", "end"},
+        {Verb::close, "close", "", "close the window as its button does: asks when there are unsaved edits"},
+        {Verb::answer, "answer", "NAME", "what is to become of them: save, discard or cancel"},
+        {Verb::quit, "quit", "", "end without asking"},
     };
     return all;
 }
@@ -94,7 +117,7 @@ void add_point(Action& action, std::string_view word, std::string_view usage) {
 void add_parameter(Action& action, std::string_view parameter, const std::string& word, std::string_view usage) {
     if (parameter == "X,Y") return add_point(action, word, usage);
     if (parameter.find('|') != parameter.npos) {
-        if (word != "on" && word != "off")
+        if (word.empty() || ("|" + std::string(parameter) + "|").find("|" + word + "|") == std::string::npos)
             refuse(action.place, "expected " + std::string(usage) + ", got '" + printable(word, 40) + "'");
         action.words.push_back(word);
     } else if (is_name(parameter)) {
@@ -143,6 +166,7 @@ Action parse_action(std::string_view text, const std::string& place) {
     }
     if (next != words.size()) refuse(place, "'" + printable(words[next], 40) + "' is one too many; expected " + usage);
     if (action.verb == Verb::wait) check_wait(action);
+    if (action.verb == Verb::explain && action.numbers.size() == 1) refuse(place, "expected explain x y, or explain");
     return action;
 }
 

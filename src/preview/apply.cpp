@@ -1,6 +1,8 @@
 // What each action does to the state.
 #include "base/error.h"
 #include "base/text.h"
+#include "preview/edit_actions.h"
+#include "preview/reference_picture.h"
 #include "preview/setting_groups.h"
 #include "preview/view_state.h"
 
@@ -23,8 +25,13 @@ void set_mode(ViewState& state, const std::string& name) {
 }
 
 void set_beside(ViewState& state, const std::string& name) {
-    state.beside = name.empty() ? "" : std::string(find_mode(name).name);
+    state.beside = name.empty() || name == reference_name ? name : std::string(find_mode(name).name);
     ++state.revision;
+}
+
+void set_arrangement(ViewState& state, const std::string& name) {
+    state.shown.side_by_side = name == "side";
+    ++state.shown_revision;
 }
 
 void set_wipe(ViewState& state, double share) {
@@ -67,6 +74,39 @@ void set_shown(ViewState& state, const std::string& name) {
     ++state.shown_revision;
 }
 
+ivec2 picture_size(const ViewState& state) { return state.size.x > 0 ? state.size : loaded_scene(state).resolution; }
+
+void set_explained(ViewState& state, const std::vector<double>& pixel) {
+    std::optional<ivec2> asked;
+    if (!pixel.empty()) {
+        const ivec2 size = picture_size(state);
+        const double x = std::floor(pixel[0]), y = std::floor(pixel[1]);
+        if (!(x >= 0 && y >= 0 && x < size.x && y < size.y))
+            fail(ExitCode::usage, "explain",
+                 formatted("%g %g lies outside the picture of %d x %d pixels", x, y, size.x, size.y));
+        asked = ivec2(static_cast<int>(x), static_cast<int>(y));
+    }
+    state.explain = asked;
+    ++state.shown_revision;
+}
+
+void set_medium(ViewState& state, const std::string& name) {
+    std::vector<std::string> names;
+    for (const MediumSource& medium : loaded_scene(state).media) names.push_back(medium.name);
+    if (!std::ranges::count(names, name))
+        fail(ExitCode::usage, "medium", "no '" + printable(name, 40) + "' here; there is " + joined(names, ", "));
+    state.volume.medium = name, state.volume_shown = true;
+    ++state.shown_revision;
+}
+
+// What is asked about is shown.
+void look_at_volume(ViewState& state, VolumeLook look, const std::string& axis, float position) {
+    state.volume.look = look, state.volume.axis = axis[0] - 'x';
+    state.volume.position = std::clamp(position, 0.0f, 1.0f);
+    state.volume_shown = true;
+    ++state.shown_revision;
+}
+
 void set_exposure(ViewState& state, double ev) {
     state.shown.exposure = static_cast<float>(std::clamp(ev, -100.0, 100.0));
     ++state.shown_revision;
@@ -83,7 +123,14 @@ void set_size(ViewState& state, double x, double y) {
     if (!scenes_own && !(x >= 1 && y >= 1 && x <= largest_side && y <= largest_side))
         fail(ExitCode::usage, "size", "expected 1 to 16384 pixels on each side, or 0 0 for the scene's");
     state.size = {static_cast<int>(x), static_cast<int>(y)};
+    state.explain.reset(); // pixels are others now
     ++state.revision;
+}
+
+void show_tab(ViewState& state, const std::string& name) {
+    if (name != "render" && name != "lights")
+        fail(ExitCode::usage, "tab", "no '" + printable(name, 40) + "'; there is render, lights");
+    state.lights_tab = name == "lights";
 }
 
 // Frames outside of the scene's range are fine: animations hold or repeat there.
@@ -109,8 +156,13 @@ bool apply(ViewState& state, const Action& action) {
     const std::string word = words.empty() ? "" : words[0];
     switch (action.verb) {
     case Verb::open:
-        state.scene_file = word, state.loading = true;
-        ++state.loads;
+        open_scene(state, action);
+        break;
+    case Verb::close:
+        close_window(state, action);
+        break;
+    case Verb::answer:
+        answer(state, word);
         break;
     case Verb::set:
         apply_setting(state.settings, word + "=" + words[1]);
@@ -127,6 +179,25 @@ bool apply(ViewState& state, const Action& action) {
         break;
     case Verb::wipe:
         set_wipe(state, numbers[0]);
+        break;
+    case Verb::arrange:
+        set_arrangement(state, word);
+        break;
+    case Verb::explain:
+        set_explained(state, numbers);
+        break;
+    case Verb::volume:
+        state.volume_shown = word == "on";
+        ++state.shown_revision;
+        break;
+    case Verb::medium:
+        set_medium(state, word);
+        break;
+    case Verb::slice:
+        look_at_volume(state, VolumeLook::slice, word, static_cast<float>(numbers[0]));
+        break;
+    case Verb::project:
+        look_at_volume(state, words[1] == "mean" ? VolumeLook::mean : VolumeLook::maximum, word, state.volume.position);
         break;
     case Verb::quality:
         set_quality(state, word);
@@ -181,11 +252,42 @@ bool apply(ViewState& state, const Action& action) {
     case Verb::loop:
         state.loop = word == "on";
         break;
+    case Verb::select:
+        state.selected = parse_thing(loaded_scene(state), word);
+        break;
+    case Verb::tab:
+        show_tab(state, word);
+        break;
+    case Verb::handles:
+        state.handles = word == "on";
+        break;
+    case Verb::missing:
+        state.missing = word == "hold" ? MissingFrame::hold : word == "skip" ? MissingFrame::skip : MissingFrame::error;
+        ++state.revision;
+        break;
     case Verb::panels:
         state.panels = word == "on";
         break;
     case Verb::help:
         state.help = word == "on";
+        break;
+    case Verb::edit:
+        edit_scene(state, word, words[1], numbers.empty() ? 0 : numbers[0]);
+        break;
+    case Verb::undo:
+        undo_edit(state);
+        break;
+    case Verb::redo:
+        redo_edit(state);
+        break;
+    case Verb::cancel:
+        cancel_drag(state, numbers[0]);
+        break;
+    case Verb::save:
+        save_scene(state, {});
+        break;
+    case Verb::save_as:
+        save_scene(state, word);
         break;
     case Verb::key:
     case Verb::drag:

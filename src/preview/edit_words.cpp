@@ -19,11 +19,19 @@ size_t index_of(const Scene& scene, Part part, std::string_view token, std::stri
     if (found.size() == 1) return found[0];
     if (found.size() > 1)
         fail(ExitCode::usage, path, "several have the name \"" + name + "\"; give its number, the first is 0");
+    if (token.starts_with('#')) token.remove_prefix(1);
     size_t index = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
     if (error == std::errc() && end == token.data() + token.size() && index < names.size()) return index;
     fail(ExitCode::usage, path,
          "there is no \"" + name + "\"; there is " + (names.empty() ? "none" : joined(names, ", ")));
+}
+
+Part part_of(std::string_view list) {
+    return list == "lights"    ? Part::light
+           : list == "media"   ? Part::medium
+           : list == "cameras" ? Part::camera
+                               : Part::scene;
 }
 
 std::vector<float> numbers_in(std::string_view text, std::string_view path) {
@@ -55,15 +63,21 @@ vec3 parsed_value(const Property& property, std::string_view text, std::string_v
 }
 }
 
+Thing parse_thing(const Scene& scene, std::string_view path) {
+    if (path == "scene") return {Part::scene, 0};
+    const size_t slash = path.find('/');
+    const Part part = part_of(path.substr(0, slash));
+    if (part == Part::scene || slash == path.npos)
+        fail(ExitCode::usage, path, "expected lights/NAME, media/NAME, cameras/NAME or scene");
+    return {part, index_of(scene, part, path.substr(slash + 1), path)};
+}
+
 Edit parse_edit(const Scene& scene, std::string_view path, std::string_view value, double seconds) {
     Edit edit;
     edit.seconds = seconds;
     const size_t first = path.find('/'), second = path.find('/', first + 1);
     const std::string_view list = path.substr(0, first);
-    edit.part = list == "lights"    ? Part::light
-                : list == "media"   ? Part::medium
-                : list == "cameras" ? Part::camera
-                                    : Part::scene;
+    edit.part = part_of(list);
     edit.property = path;
     if (edit.part != Part::scene) {
         if (first == path.npos || second == path.npos)

@@ -31,6 +31,11 @@ std::optional<Action> action_of_key(const ViewState& state, std::string_view key
     if (key == "[") return number(Verb::brighten, -0.5);
     if (key == "]") return number(Verb::brighten, 0.5);
     if (key == "home" && state.scene) return Action{Verb::camera, {state.camera}, {}, {}};
+    if (key == "ctrl+z") return Action{Verb::undo, {}, {}, {}};
+    if (key == "ctrl+shift+z" || key == "ctrl+y") return Action{Verb::redo, {}, {}, {}};
+    if (key == "ctrl+s") return Action{Verb::save, {}, {}, {}};
+    if (key == "t") return Action{Verb::tab, {state.lights_tab ? "render" : "lights"}, {}, {}};
+    if (key == "g") return Action{Verb::handles, {toggled(state.handles)}, {}, {}};
     if (key == "tab") return Action{Verb::panels, {toggled(state.panels)}, {}, {}};
     if (key == "f1") return Action{Verb::help, {toggled(state.help)}, {}, {}};
     if (key == "l") return Action{Verb::loop, {toggled(state.loop)}, {}, {}};
@@ -52,13 +57,19 @@ const std::vector<KeyInfo>& key_list() {
         {"shift + drag, middle", "shift"},
         {"right button", "look around; with W A S D Q E: fly"},
         {"wheel", "nearer, further"},
+        {"shift + click", "explain a pixel: what happens on its ray"},
         {"home", "back to the scene's camera"},
         {"1 ... 8", "technique"},
-        {"V", "picture, fog, transmittance, depth, validity"},
+        {"V", "picture, fog, transmittance, depth, validity, error"},
         {"[  ]", "darker, brighter by half a stop"},
         {"space", "play, stop"},
         {"left, right", "one frame"},
         {"L", "loop"},
+        {"T", "lights and fog, or rendering"},
+        {"G", "lights in the picture, to be moved"},
+        {"ctrl + Z", "undo an edit of the scene"},
+        {"ctrl + shift + Z", "redo it; ctrl + Y as well"},
+        {"ctrl + S", "save the scene"},
         {"P", "write the picture (EXR)"},
         {"tab", "panels"},
         {"F1", "this list"},

@@ -1,32 +1,34 @@
 // Pictures of one request, each better than the one before: a quick small one while things move, then a whole one of
-// the stand-in mode, then rounds of samples of the mode asked for, averaged.
+// the stand-in mode, then rounds of samples of the mode asked for, averaged; in turns with those of the mode beside and
+// of the reference, when they are shown.
 #pragma once
+#include "preview/frame_store.h"
 #include "preview/pace.h"
-#include "preview/request.h"
+#include "preview/ray_question.h"
+#include "preview/reference_picture.h"
+#include "preview/volume_picture.h"
 
 #include <map>
 #include <optional>
 
 namespace tyndall {
-// What the rounds of a mode have come to.
-struct Rounds {
-    std::shared_ptr<const Prepared> prepared; // from the snapshot
-    Layers layers;
-    int samples = 0, rounds = 0;
-    double sample_seconds = 0; // of the last round
-};
-
 // What lasts from picture to picture.
 struct Painter {
-    std::shared_ptr<const Scene> scene; // of the snapshot
+    std::shared_ptr<const Scene> scene;          // of the snapshot,
+    std::shared_ptr<const EditableParts> edited; // and the edits in it
     Snapshot snapshot;
-    History history; // of quick pictures
+    FrameStore store; // of this scene's frames
+    History history;  // of quick pictures
     std::map<std::string, Pace> paces;
     int ticks = 0; // quick pictures and stand-ins so far
     bool begun = false;
     Request request; // of the newest picture
     bool quick = false, stood_in = false;
-    Rounds rounds[2];     // of the mode, whose layers may be those of a quick picture, and of the mode beside
+    Rounds rounds[2]; // of the mode, whose layers may be those of a quick picture, and of the mode beside
+    ReferencePicture reference;
+    std::shared_ptr<const RayAnswer> ray;
+    std::shared_ptr<const VolumePicture> volume;
+    KnownVolumes known_volumes;
     ShownPicture picture; // all but its codes
 };
 

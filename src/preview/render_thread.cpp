@@ -119,6 +119,7 @@ void RenderThread::run() {
             std::optional<ShownPicture> picture = paint(painter_, *current, cancel_);
             const std::scoped_lock lock(mutex_);
             unfinished_ = !picture ? false : !picture->finished;
+            if (!picture && current->moving && counts_.quick > 0) counts_.quick_seconds += seconds_since(start);
             if (picture) {
                 ++counts_.pictures;
                 if (picture->quick) count_quick(*picture, seconds_since(start), counts_);

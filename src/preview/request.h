@@ -1,27 +1,47 @@
 // What the interface asks for, and the pictures it gets.
 #pragma once
 #include "base/error.h"
+#include "preview/editable_parts.h"
 #include "preview/tone.h"
 #include "render/sequence.h"
 
 #include <memory>
+#include <optional>
 
 namespace tyndall {
+struct RayAnswer;
+struct VolumePicture;
+
+// What of a medium's density is to be seen.
+enum class VolumeLook { slice, maximum, mean };
+struct VolumeQuestion {
+    std::string medium; // empty = the first
+    VolumeLook look = VolumeLook::slice;
+    int axis = 2;          // across which, or along which
+    float position = 0.5f; // of a slice, as a share of the medium's extent
+
+    bool operator==(const VolumeQuestion&) const = default;
+};
+
 struct Request {
-    std::shared_ptr<const Scene> scene;
-    uint64_t revision = 0;       // another number: the picture is another one
-    uint64_t shown_revision = 0; // another number: the same picture is shown in another way
-    bool moving = false;         // the next change is near: quick pictures only
+    std::shared_ptr<Scene> scene;                // only the thread that renders touches it, and puts `edited` into it
+    std::shared_ptr<const EditableParts> edited; // null: the scene as it is
+    uint64_t revision = 0;                       // another number: the picture is another one
+    uint64_t shown_revision = 0;                 // another number: the same picture is shown in another way
+    bool moving = false;                         // the next change is near: quick pictures only
     int frame = 1;
+    std::optional<int> next_frame; // that will be asked for, while playing
     Camera camera;
     ivec2 size{640, 360};
     std::string mode = "march";
     std::string stand_in = "froxel"; // mode of quick pictures when `mode` is march or path; empty = the same
-    std::string beside;              // mode of the right part of still pictures; empty = none
+    std::string beside;              // mode of the right part of still pictures, or reference; empty = none
     Settings settings;
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     Shown shown;
+    std::optional<ivec2> explain; // a pixel whose ray is asked about
+    std::optional<VolumeQuestion> volume;
     int most_samples = 64;            // per pixel, after which a picture is finished
     double wanted_seconds = 1.0 / 30; // of quick pictures
 };
@@ -35,10 +55,27 @@ struct StageTimes {
     double total() const { return load + prepare + render + tone; }
 };
 
+// Of the reference that a picture is held against.
+struct ReferenceFacts {
+    std::string what; // "exact march, light scattered once"
+    int samples = 0;  // per pixel so far
+    bool finished = false;
+    double change = -1; // by the step from quality final to the exact march; negative: not made yet
+    double noise = -1;  // standard error of its fog light, a share of the mean; negative: not known yet
+};
+
+// How far a picture is from its reference, as shares of the reference's mean.
+struct ErrorFigures {
+    double worst = 0, picture = 0, fog = 0; // root mean squares; worst of both, `rmse_rel` of tyndall compare
+    double bias = 0;                        // of the picture: above 0 it is too bright
+    double noise = -1;                      // of worst, as a root mean square; negative: not known yet
+};
+
 struct ShownPicture {
     uint64_t revision = 0;
     int frame = 1;
     Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays
+    int across = 1;           // pictures side by side in them
     ivec2 wanted{0};          // size of the whole picture
     std::string mode;         // that made it, perhaps a stand-in
     std::string beside;       // that made its right part; empty = it is all of one mode
@@ -47,6 +84,10 @@ struct ShownPicture {
     int samples = 0;          // per pixel so far; of two modes, the fewer
     StageTimes times;         // of its last round of samples
     uint64_t non_finite = 0;
+    std::optional<ReferenceFacts> reference;
+    std::optional<ErrorFigures> errors, errors_beside; // of both techniques, where the errors are shown
+    std::shared_ptr<const RayAnswer> ray;              // as far as it is known
+    std::shared_ptr<const VolumePicture> volume;
     std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures
     std::vector<std::string> notes;
     std::string error; // why there is no picture
@@ -59,4 +100,7 @@ const std::string& quick_mode(const Request& request);
 // What tyndall render would be told to make the finished picture.
 RenderJob job_of(const Request& request);
 View view_of(const Request& request);
+
+// Puts the edits of the request into its scene: before anything is read from it.
+void stage(const Request& request);
 }

@@ -1,6 +1,7 @@
 #include "preview/save_picture.h"
 
 #include "base/error.h"
+#include "base/file.h"
 #include "render/check_job.h"
 #include "render/png.h"
 #include "render/provenance.h"
@@ -17,6 +18,7 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     render.quality = job.quality, render.isa = job.isa, render.light_units = job.light_units;
     render.png = kind == ".png";
     const Mode& mode = find_mode(request.mode);
+    stage(request);
     const View view = view_of(request);
     check_job(*request.scene, render, mode);
     render.camera = job.camera;
@@ -29,7 +31,10 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     const Layers layers = render_frame(mode, view, snapshot, request.settings, options, stats);
     if (kind == ".png") return write_png(job.file, stored_color(layers, render.exr), request.shown.exposure);
     FileHashes files;
-    const std::string hash = frame_hash(*request.scene, render, view, files);
-    write_exr(job.file, layers, provenance_of(*request.scene, render, view, hash, stats), render.exr);
+    std::string hash = frame_hash(*request.scene, render, view, files);
+    if (!job.unsaved.empty()) hash = content_hash(hash + job.unsaved);
+    Provenance provenance = provenance_of(*request.scene, render, view, hash, stats);
+    if (!job.unsaved.empty()) provenance.attributes["tyndall:unsavedEdits"] = job.unsaved;
+    write_exr(job.file, layers, provenance, render.exr);
 }
 }

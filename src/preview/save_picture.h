@@ -10,6 +10,7 @@ struct SaveJob {
     Quality quality = Quality::preview;
     std::string isa;
     LightUnits light_units = LightUnits::spec;
+    std::string unsaved; // edits that the scene's files do not have; noted in the header
 };
 
 struct Saved {
@@ -20,8 +21,8 @@ struct Saved {
 };
 
 // Renders all samples of the settings, without what pictures before left behind, and writes the file: bit for bit that
-// of tyndall render for the same scene, frame, camera, size, mode, settings and seed. What stands still may be shared
-// with `previous`, when that is of the same scene. Throws Error.
+// of tyndall render for the same scene, frame, camera, size, mode, settings and seed, but for `unsaved`. What stands
+// still may be shared with `previous`, when that is of the same scene. Throws Error.
 void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,
                   const std::function<void(double)>& progress);
 }

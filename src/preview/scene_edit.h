@@ -24,7 +24,18 @@ std::vector<Edit> apply(Scene& scene, const Edit& edit);
 // An edit that `apply` returned, made once more on what it was made on: nothing is checked.
 void apply_again(Scene& scene, const Edit& edit);
 
-// "lights/lamp/intensity", "media/0/g", "exposure" and "400", "0.9 0.8 0.7", "on": names or numbers from 0; ~1 stands
-// for a slash in a name, ~0 for ~. One number for a vector or colour means all three. Throws Error (usage).
+// One of the things that edits change.
+struct Thing {
+    Part part = Part::light;
+    size_t index = 0;
+    bool operator==(const Thing&) const = default;
+};
+
+// "lights/lamp", "media/0", "scene". Throws Error (usage).
+Thing parse_thing(const Scene& scene, std::string_view path);
+
+// "lights/lamp/intensity", "media/0/g", "exposure" and "400", "0.9 0.8 0.7", "on": names or numbers from 0, with a #
+// before a number that is a name as well; ~1 stands for a slash in a name, ~0 for ~. One number for a vector or colour
+// means all three. Throws Error (usage).
 Edit parse_edit(const Scene& scene, std::string_view path, std::string_view value, double seconds);
 }

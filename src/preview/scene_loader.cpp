@@ -12,15 +12,15 @@ LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) 
     try {
         using FileClock = std::filesystem::file_time_type::clock;
         const auto begun = FileClock::now();
-        auto scene = std::make_shared<const Scene>(load_scene(file, options));
-        std::vector<InputTime> inputs = input_times(*scene);
-        for (InputTime& input : inputs)
+        auto session = std::make_shared<SceneSession>(open_session(file, options));
+        for (InputTime& input : session->inputs)
             if (input.written >= begun && input.written <= FileClock::now()) input.written = {};
-        return {file, std::move(scene), std::move(inputs), {}, ExitCode::ok};
+        auto stage = std::make_shared<Scene>(session->scene);
+        return {file, std::move(session), std::move(stage), {}, ExitCode::ok};
     } catch (const Error& error) {
-        return {file, nullptr, {}, error.what(), error.code};
+        return {file, nullptr, nullptr, error.what(), error.code};
     } catch (const std::bad_alloc&) {
-        return {file, nullptr, {}, file.string() + ": out of memory", ExitCode::out_of_memory};
+        return {file, nullptr, nullptr, file.string() + ": out of memory", ExitCode::out_of_memory};
     }
 }
 }

@@ -1,7 +1,7 @@
 // Scene files read beside everything else, and read again when one of their files has changed.
 #pragma once
 #include "base/error.h"
-#include "preview/input_times.h"
+#include "preview/scene_session.h"
 
 #include <functional>
 #include <future>
@@ -11,8 +11,8 @@
 namespace tyndall {
 struct LoadedScene {
     std::filesystem::path file;
-    std::shared_ptr<const Scene> scene; // null when it could not be read
-    std::vector<InputTime> inputs;      // its files; one that was written meanwhile counts as changed
+    std::shared_ptr<SceneSession> session; // null when it could not be read; files written meanwhile count as changed
+    std::shared_ptr<Scene> stage;          // a copy of its scene for the thread that renders
     std::string error;
     ExitCode code = ExitCode::ok;
 };

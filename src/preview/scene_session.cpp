@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text.h"
 #include "preview/scene_text.h"
 
 namespace tyndall {
@@ -16,15 +17,6 @@ bool is_model(const std::filesystem::path& file) {
     return extension_of(file) == ".gltf" || extension_of(file) == ".glb";
 }
 
-EditableParts parts_of(const Scene& scene) {
-    return {scene.lights, scene.media, scene.cameras, scene.exposure, scene.ambient, scene.background};
-}
-
-void put_back(const EditableParts& parts, Scene& scene) {
-    scene.lights = parts.lights, scene.media = parts.media, scene.cameras = parts.cameras;
-    scene.exposure = parts.exposure, scene.ambient = parts.ambient, scene.background = parts.background;
-}
-
 std::vector<Edit> edits_in_force(const SceneSession& session) {
     std::vector<Edit> edits;
     for (size_t i = 0; i < session.done; ++i)
@@ -34,7 +26,7 @@ std::vector<Edit> edits_in_force(const SceneSession& session) {
 
 // The scene with the first steps only.
 void go_to(SceneSession& session, size_t steps) {
-    put_back(session.before, session.scene);
+    put_parts(session.before, session.scene);
     session.done = steps;
     for (const Edit& each : edits_in_force(session)) apply_again(session.scene, each);
 }
@@ -65,6 +57,11 @@ SceneSession read_session(const std::filesystem::path& file, const LoadOptions& 
         return session;
     }
     return read_scene_session(file, options);
+}
+
+std::string line_of(const Scene& scene, const Edit& edit) {
+    return formatted("%s/%s = %.9g %.9g %.9g at %.9g s\n", place_of(scene, edit.part, edit.index).c_str(),
+                     edit.property.c_str(), edit.value.x, edit.value.y, edit.value.z, edit.seconds);
 }
 
 // What was meant by an edit, to be found again in a scene read anew: the n-th thing of a name.
@@ -132,7 +129,7 @@ void note_saved(SceneSession& session, std::string text) {
 SceneSession open_session(const std::filesystem::path& file, const LoadOptions& options) {
     SceneSession session = read_session(file, options);
     session.options = options;
-    session.before = parts_of(session.scene);
+    session.before = editable_parts(session.scene);
     session.inputs = input_times(session.scene);
     return session;
 }
@@ -163,8 +160,24 @@ bool redo(SceneSession& session) {
     return true;
 }
 
+bool take_back(SceneSession& session, uint64_t drag) {
+    if (drag == 0 || session.done == 0 || session.steps[session.done - 1].drag != drag) return false;
+    undo(session);
+    session.steps.resize(session.done);
+    return true;
+}
+
 bool has_unsaved_changes(const SceneSession& session) {
     return session.done != session.saved || session.kept != session.saved;
+}
+
+std::string unsaved_text(const SceneSession& session) {
+    std::string text;
+    const size_t first = std::min(session.kept, session.done);
+    if (first < session.saved) text = formatted("without the last %zu steps that were saved\n", session.saved - first);
+    for (size_t i = first; i < session.done; ++i)
+        for (const Edit& each : session.steps[i].edits) text += line_of(session.scene, each);
+    return text;
 }
 
 void save(SceneSession& session) {
@@ -199,7 +212,10 @@ void save_as(SceneSession& session, const std::filesystem::path& file) {
 
 std::vector<std::string> reload(SceneSession& session) {
     session.inputs = input_times(session.scene);
-    SceneSession fresh = open_session(session.scene.file, session.options);
+    return go_on_with(session, open_session(session.scene.file, session.options));
+}
+
+std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh) {
     std::vector<std::string> lost;
     const size_t first = std::min(session.kept, session.done);
     if (first < session.saved) lost.push_back("what was undone since saving is back, as the file has it");

@@ -1,20 +1,11 @@
 // A scene that is open for editing: what the file said, the edits made since, undo, saving, and reloading when files
 // change on disk. Whoever shows the scene makes new snapshots after every change, not out of those before a reload.
 #pragma once
+#include "preview/editable_parts.h"
 #include "preview/input_times.h"
 #include "preview/scene_edit.h"
 
 namespace tyndall {
-// What edits can change, apart from the rest of a scene, which may be large.
-struct EditableParts {
-    std::vector<LightSource> lights;
-    std::vector<MediumSource> media;
-    std::vector<CameraSource> cameras;
-    Keyed<float> exposure;
-    Keyed<vec3> ambient;
-    Background background;
-};
-
 // Edits that are undone together: one drag.
 struct EditStep {
     std::vector<Edit> edits;
@@ -44,6 +35,11 @@ void edit(SceneSession& session, const Edit& edit, uint64_t drag = 0);
 
 bool undo(SceneSession& session); // false when there is nothing
 bool redo(SceneSession& session);
+
+// Ends a drag as if it had never begun: its step is undone and cannot be done again. False when the last step is not
+// that drag's.
+bool take_back(SceneSession& session, uint64_t drag);
+
 bool has_unsaved_changes(const SceneSession& session);
 
 // Writes the edits into the scene file, atomically. Throws Error: usage (there is no scene file yet), refused (the file
@@ -57,4 +53,10 @@ void save_as(SceneSession& session, const std::filesystem::path& file);
 // gone. Steps that were saved can no longer be undone. Throws Error and leaves scene and edits alone when the files
 // cannot be read; `inputs` then knows the new times, so that the next change is noticed.
 std::vector<std::string> reload(SceneSession& session);
+
+// The same with what was read elsewhere meanwhile; for interfaces that do not wait for files.
+std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh);
+
+// The edits that no file has yet, one a line; empty when there are none. A line more when something saved was undone.
+std::string unsaved_text(const SceneSession& session);
 }

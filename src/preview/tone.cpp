@@ -66,7 +66,7 @@ template<class Pixel> Image<glm::u8vec4> coded(const Layers& layers, const Pixel
 }
 
 const std::vector<std::string>& shown_layer_names() {
-    static const std::vector<std::string> names{"picture", "fog", "transmittance", "depth", "validity"};
+    static const std::vector<std::string> names{"picture", "fog", "transmittance", "depth", "validity", "error"};
     return names;
 }
 
@@ -74,6 +74,7 @@ Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown) {
     const float gain = std::exp2(shown.exposure);
     switch (shown.layer) {
     case ShownLayer::picture:
+    case ShownLayer::error:
         break;
     case ShownLayer::fog:
         return coded(layers, [&](int x, int y) { return gain * layers.inscatter.at(x, y); });

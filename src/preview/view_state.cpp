@@ -3,12 +3,31 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "preview/edit_actions.h"
+#include "preview/missing_frames.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall {
 namespace {
-double seconds_of(const ViewState& state) { return moment_of(*state.scene, state.frame).seconds; }
+bool is_there(const ViewState& state) {
+    return state.scene && state.selected.index < count_of(*state.scene, state.selected.part);
+}
+
+std::string selected_name(const ViewState& state) {
+    return is_there(state) ? name_of(*state.scene, state.selected.part, state.selected.index) : "";
+}
+
+// What was selected may stand elsewhere in the list now.
+void select_by_name(ViewState& state, const std::string& name) {
+    for (size_t i = 0; i < count_of(*state.scene, state.selected.part); ++i) {
+        if (name_of(*state.scene, state.selected.part, i) != name) continue;
+        state.selected.index = i;
+        return;
+    }
+    state.selected = {};
+}
 
 void go_to(ViewState& state, int frame) { apply(state, {Verb::frame, {}, {static_cast<double>(frame)}, {}}); }
 }
@@ -18,18 +37,39 @@ const Scene& loaded_scene(const ViewState& state) {
     return *state.scene;
 }
 
-void take_scene(ViewState& state, std::shared_ptr<const Scene> scene) {
+void take_scene(ViewState& state, LoadedScene loaded) {
+    const Scene& scene = loaded.session->scene;
     const auto has_name = [&](const CameraSource& camera) { return camera.name == state.camera; };
     if (!state.scene)
-        find_camera(*scene, state.camera);
-    else if (!std::ranges::any_of(scene->cameras, has_name))
+        find_camera(scene, state.camera);
+    else if (!std::ranges::any_of(scene.cameras, has_name))
         state.camera.clear();
-    const bool same_file = state.scene && state.scene->file == scene->file;
-    state.scene = std::move(scene);
-    ++state.revision;
+    const bool same_file = state.scene && state.scene->file == scene.file;
+    const bool again = std::exchange(state.reloading, false);
+    if (again && !same_file) return; // meanwhile it was saved as another file
+    const std::string selected = selected_name(state);
+    if (again) {
+        std::vector<std::string> lost = go_on_with(*state.session, std::move(*loaded.session));
+        if (!lost.empty()) state.message = "read again; lost: " + joined(lost, "; "), state.message_is_error = true;
+    } else {
+        state.session = std::move(loaded.session);
+    }
+    state.scene = {state.session, &state.session->scene};
+    state.stage = std::move(loaded.stage);
+    state.gaps = missing_frames(*state.scene);
+    show_edits(state);
+    select_by_name(state, selected);
     if (same_file) return;
     state.free = false, state.playing = false;
+    state.explain.reset();
+    state.volume.medium.clear();
     state.frame = state.scene->first_frame;
+}
+
+Camera camera_now(const ViewState& state) {
+    if (state.free) return state.view.camera;
+    const Scene& scene = loaded_scene(state);
+    return camera_at(scene, find_camera(scene, state.camera), seconds_of(state));
 }
 
 Viewpoint viewpoint(const ViewState& state) {
@@ -47,32 +87,40 @@ std::string camera_json(const Viewpoint& view) {
 
 void advance(ViewState& state, double now, uint64_t shown_revision) {
     if (!state.playing || !state.scene || shown_revision != state.revision || now < state.next_frame_at) return;
-    const Scene& scene = *state.scene;
-    const double period = 1 / scene.frame_rate;
+    const double period = 1 / state.scene->frame_rate;
     const bool on_time = state.next_frame_at > now - period;
     state.next_frame_at = (on_time ? state.next_frame_at : now) + period;
-    if (state.frames_to_play > 0 && --state.frames_to_play == 0) {
+    const std::optional<int> next = next_frame(state);
+    if (state.frames_to_play > 0 && --state.frames_to_play == 0)
         state.playing = false;
-    } else if (state.frame < scene.last_frame) {
-        go_to(state, state.frame + 1);
-    } else if (state.loop && scene.last_frame > scene.first_frame) {
-        go_to(state, scene.first_frame);
-    } else if (!state.loop || state.frames_to_play == 0) {
+    else if (next)
+        go_to(state, *next);
+    else if (!state.loop || state.frames_to_play == 0)
         state.playing = false;
-    }
+}
+
+std::optional<int> next_frame(const ViewState& state) {
+    const Scene& scene = loaded_scene(state);
+    if (state.frame < scene.last_frame) return state.frame + 1;
+    if (state.loop && scene.last_frame > scene.first_frame) return scene.first_frame;
+    return {};
 }
 
 Request request_of(const ViewState& state, bool moving) {
     Request request;
-    request.scene = state.scene;
+    request.scene = state.stage, request.edited = state.parts;
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;
-    request.camera = viewpoint(state).camera;
+    if (state.playing) request.next_frame = next_frame(state);
+    request.camera = camera_now(state);
     request.size = state.size.x > 0 ? state.size : state.scene->resolution;
     request.mode = state.mode, request.stand_in = state.stand_in, request.beside = state.beside;
     request.settings = state.settings, request.seed = state.seed, request.missing = state.missing;
     request.shown = state.shown;
+    const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
+    if (state.explain && inside(*state.explain)) request.explain = state.explain;
+    if (state.volume_shown) request.volume = state.volume;
     request.shown.exposure += state.scene->exposure.at(seconds_of(state));
     request.most_samples = state.most_samples;
     request.wanted_seconds = 1 / state.wanted_rate;

@@ -1,7 +1,7 @@
 // A small scene in memory: fog, a sun, a plane and two cameras.
 #pragma once
 #include "base/error.h"
-#include "preview/request.h"
+#include "preview/view_state.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ inline CameraSource camera_source(const char* name, vec3 position, vec3 target) 
     return camera;
 }
 
-inline std::shared_ptr<const Scene> small_scene(const std::filesystem::path& file = "small.json") {
+inline std::shared_ptr<Scene> small_scene(const std::filesystem::path& file = "small.json") {
     Scene scene;
     scene.file = file;
     scene.resolution = {64, 40};
@@ -68,10 +68,19 @@ inline std::shared_ptr<const Scene> small_scene(const std::filesystem::path& fil
     scene.meshes = {mesh}, scene.materials = {material};
     scene.nodes = {Node{}};
     scene.instances = {{0, 0}};
-    return std::make_shared<const Scene>(std::move(scene));
+    return std::make_shared<Scene>(std::move(scene));
 }
 
-inline Request request_for(std::shared_ptr<const Scene> scene, const char* mode = "march") {
+// A scene that no file was read for, as if it had been.
+inline LoadedScene loaded(const Scene& scene) {
+    auto session = std::make_shared<SceneSession>();
+    session->scene = scene, session->before = editable_parts(scene);
+    auto stage = std::make_shared<Scene>(scene);
+    return {scene.file, std::move(session), std::move(stage), {}, ExitCode::ok};
+}
+inline void take_scene(ViewState& state, const std::shared_ptr<Scene>& scene) { take_scene(state, loaded(*scene)); }
+
+inline Request request_for(std::shared_ptr<Scene> scene, const char* mode = "march") {
     Request request;
     request.scene = std::move(scene);
     request.revision = 1;

@@ -146,7 +146,7 @@ TEST(Painter, MistakesOfTheSceneAreSaidAndThePainterGoesOn) {
     Painter painter;
     Scene broken = *small_scene();
     broken.lights[0].direction = Keyed<vec3>(vec3(0));
-    const auto picture = paint(painter, request_for(std::make_shared<const Scene>(broken)), never);
+    const auto picture = paint(painter, request_for(std::make_shared<Scene>(broken)), never);
     ASSERT_TRUE(picture);
     EXPECT_NE(picture->error.find("its direction has no length"), std::string::npos) << picture->error;
     EXPECT_EQ(static_cast<int>(picture->code), static_cast<int>(ExitCode::refused));
@@ -199,7 +199,7 @@ TEST(SavePicture, FilesAreThoseOfRender) {
     std::ofstream(file) << "{}";
     Scene copy = *small_scene(file);
     copy.inputs = {file};
-    const auto scene = std::make_shared<const Scene>(copy);
+    const auto scene = std::make_shared<Scene>(copy);
     for (const char* mode : {"march", "froxel", "path"}) {
         SaveJob save;
         save.request = request_for(scene, mode);
@@ -227,7 +227,7 @@ TEST(SavePicture, RefusesOtherKindsAndTheScenesOwnFiles) {
     copy.inputs = {directory.path / "plate.png"};
     std::ofstream(copy.inputs[0]) << "x";
     SaveJob save;
-    save.request = request_for(std::make_shared<const Scene>(copy));
+    save.request = request_for(std::make_shared<Scene>(copy));
     save.file = directory.path / "a.jpg";
     error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
     save.file = copy.inputs[0];

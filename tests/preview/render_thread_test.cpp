@@ -110,12 +110,12 @@ TEST(SceneLoader, ReadsBesideAndSaysWhatWentWrong) {
     loader.start(TYNDALL_SOURCE_DIR "/scenes/window.json", {}, [&] { ++done; }); // forgets the first
     std::optional<LoadedScene> loaded;
     ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
-    ASSERT_TRUE(loaded->scene);
-    EXPECT_EQ(loaded->scene->file.filename(), "window.json");
+    ASSERT_TRUE(loaded->session);
+    EXPECT_EQ(loaded->session->scene.file.filename(), "window.json");
     EXPECT_FALSE(loader.loading());
     loader.start("/nowhere.json", {});
     ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
-    EXPECT_FALSE(loaded->scene);
+    EXPECT_FALSE(loaded->session);
     EXPECT_EQ(static_cast<int>(loaded->code), static_cast<int>(ExitCode::unreadable));
     EXPECT_TRUE(comes([&] { return done == 2; }));
 }
@@ -132,9 +132,9 @@ TEST(SceneLoader, FilesAreKnownAsTheyWereRead) {
         loader.start(file, {});
         ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
         ASSERT_EQ(loaded->error, "");
-        EXPECT_TRUE(changed_inputs(loaded->inputs).empty());
+        EXPECT_TRUE(changed_inputs(loaded->session->inputs).empty());
         std::filesystem::last_write_time(file, written + 1s);
-        EXPECT_EQ(changed_inputs(loaded->inputs).size(), 1u);
+        EXPECT_EQ(changed_inputs(loaded->session->inputs).size(), 1u);
     }
 }
 }

@@ -17,15 +17,15 @@ void act(ViewState& state, const char* line) { apply(state, parse_action(line));
 
 TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {
     ViewState state = state_with_scene();
-    for (const char* line :
-         {"mode cone", "beside froxel", "beside", "set march.nodes 7", "reset march.nodes", "quality draft",
-          "camera side", "orbit 1 2", "turn 1 2", "pan 0.1 0", "dolly 0.9", "fly 0 0 1", "size 20 10", "frame 3"}) {
+    for (const char* line : {"mode cone", "beside froxel", "beside reference", "beside", "set march.nodes 7",
+                             "reset march.nodes", "quality draft", "camera side", "orbit 1 2", "turn 1 2", "pan 0.1 0",
+                             "dolly 0.9", "fly 0 0 1", "size 20 10", "frame 3"}) {
         const uint64_t before = state.revision, shown = state.shown_revision;
         act(state, line);
         EXPECT_GT(state.revision, before) << line;
         EXPECT_EQ(state.shown_revision, shown) << line;
     }
-    for (const char* line : {"exposure 1", "brighten 0.5", "show fog", "wipe 0.3"}) {
+    for (const char* line : {"exposure 1", "brighten 0.5", "arrange side", "show error", "show fog", "wipe 0.3"}) {
         const uint64_t before = state.revision, shown = state.shown_revision;
         act(state, line);
         EXPECT_EQ(state.revision, before) << line;
@@ -38,7 +38,8 @@ TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {
 TEST(ViewState, MistakesChangeNothing) {
     ViewState state = state_with_scene();
     for (const char* line : {"mode marsh", "beside marsh", "set march.nodes 99", "set march.nods 4", "reset nodes",
-                             "quality best", "show fogs", "camera back", "dolly 0", "size 0 10", "orders 0"}) {
+                             "quality best", "show fogs", "camera back", "dolly 0", "size 0 10", "orders 0", "tab fog",
+                             "select fog", "select lights/moon"}) {
         const uint64_t before = state.revision;
         error_text(ExitCode::usage, [&] { act(state, line); });
         EXPECT_EQ(state.revision, before) << line;
@@ -125,6 +126,16 @@ TEST(ViewState, KeysAreActions) {
     EXPECT_FALSE(state.free);
     apply(state, *action_of_key(state, "right"));
     EXPECT_EQ(state.frame, 2);
+    apply(state, *action_of_key(state, "t"));
+    EXPECT_TRUE(state.lights_tab);
+    apply(state, *action_of_key(state, "g"));
+    EXPECT_FALSE(state.handles);
+    apply(state, parse_action("edit ambient 1"));
+    apply(state, *action_of_key(state, "ctrl+z"));
+    EXPECT_EQ(state.scene->ambient.at(0), vec3(0));
+    for (const char* key : {"ctrl+y", "ctrl+shift+z"}) EXPECT_EQ(action_of_key(state, key)->verb, Verb::redo);
+    EXPECT_EQ(action_of_key(state, "ctrl+s")->verb, Verb::save);
+    EXPECT_FALSE(action_of_key(state, "ctrl+w"));
     const auto write = action_of_key(state, "p");
     ASSERT_TRUE(write);
     EXPECT_EQ(write->verb, Verb::snapshot);

@@ -1,0 +1,27 @@
+// Curves over an axis of distances, drawn by ImGui.
+#pragma once
+#include "volume/brick_walk.h"
+
+#include <imgui.h>
+
+#include <span>
+#include <string>
+
+namespace tyndall {
+// Values 0..y_end over a range of distances, from the lower left to the upper right.
+struct Plot {
+    ImVec2 low{0, 0}, high{0, 0}; // upper left, lower right
+    Stretch range;
+    double y_end = 1;
+
+    float x(double distance) const;
+    float y(double value) const;
+    ImVec2 at(double distance, double value) const { return {x(distance), y(value)}; }
+};
+
+// Lines and figures at round values; percents: of a share.
+void draw_grid(const Plot& plot, bool percents);
+void draw_distances(const Plot& plot, float top);
+
+void draw_words(ImVec2 at, const ImVec4& color, const std::string& text);
+}

@@ -1,0 +1,182 @@
+#include "property_controls.h"
+
+#include "base/text.h"
+#include "lights_panel.h"
+#include "preview/edit_actions.h"
+#include "theme.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr float label_share = 0.4f;
+constexpr float highest_sun = 89.9f; // degrees: beyond it the bearing would be lost
+constexpr double slow = 0.002;       // of a vector's usual range, for a pixel of dragging
+
+bool is_degrees(const Property& property) { return std::string_view(property.unit) == "degrees"; }
+
+std::string number_format(const Property& property, float value) {
+    if (!std::isfinite(value)) return "no end";
+    if (is_degrees(property)) return "%.3g\u00b0";
+    return std::string("%.3g") + (*property.unit ? " " : "") + property.unit;
+}
+
+// How far a slider goes stays as it is while it is held.
+SliderRange held_range(const Property& property, float value, const std::string& path, const EditMemory& memory) {
+    return memory.held == path ? memory.range : slider_range(property, value);
+}
+
+bool edit_number(const Property& property, const SliderRange& range, vec3& value) {
+    return ImGui::SliderFloat("##value", &value.x, static_cast<float>(range.low), static_cast<float>(range.high),
+                              number_format(property, value.x).c_str(),
+                              range.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+}
+
+bool edit_vector(const Property& property, vec3& value) {
+    const float speed = static_cast<float>(slow) * (property.slider_high - property.slider_low);
+    return ImGui::DragFloat3("##value", &value.x, speed, 0, 0, is_degrees(property) ? "%.1f" : "%.2f");
+}
+
+float encoded(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f; // sRGB
+}
+float decoded(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
+
+// A patch as it looks, which opens a palette, and the linear numbers. Colours brighter than a screen are picked by
+// their shade.
+bool edit_color(vec3& value) {
+    const float bright = std::max(max_component(value), 1.0f);
+    const float side = ImGui::GetFrameHeight();
+    if (ImGui::ColorButton("##patch", shown_color(value), ImGuiColorEditFlags_NoTooltip, {side, side}))
+        ImGui::OpenPopup("palette");
+    bool changed = false;
+    if (ImGui::BeginPopup("palette")) {
+        float codes[3] = {encoded(value.x / bright), encoded(value.y / bright), encoded(value.z / bright)};
+        ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
+        if (ImGui::ColorPicker3("##picker", codes, ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs)) {
+            value = bright * vec3(decoded(codes[0]), decoded(codes[1]), decoded(codes[2]));
+            changed = true;
+        }
+        ImGui::EndPopup();
+    }
+    ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+    ImGui::SetNextItemWidth(-1);
+    return ImGui::DragFloat3("##value", &value.x, 0.005f, 0, 0, "%.3g") || changed;
+}
+
+bool edit_value(const Property& property, const SliderRange& range, vec3& value) {
+    ImGui::SetNextItemWidth(-1);
+    switch (property.kind) {
+    case ValueKind::number:
+        return edit_number(property, range, value);
+    case ValueKind::vector:
+        return edit_vector(property, value);
+    case ValueKind::color:
+        return edit_color(value);
+    case ValueKind::toggle:
+        break;
+    }
+    bool on = value.x != 0;
+    const bool changed = ImGui::Checkbox("##value", &on);
+    value.x = on;
+    return changed;
+}
+
+void explain(const Property& property, const std::string& path, bool keyed) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
+    ImGui::TextUnformatted(words_of(property).help);
+    if (keyed) ImGui::TextColored(accent, "Animated: a change sets a key at this moment.");
+    std::string more = path;
+    if (*property.unit) more += std::string(", ") + property.unit;
+    ImGui::TextDisabled("%s", more.c_str());
+    if (property.kind != ValueKind::toggle) ImGui::TextDisabled("ctrl-click: type a value");
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+// The mark of a value with keys, as timelines have it, left of what changes it.
+void draw_diamond(float right, float middle) {
+    const float r = 0.3f * ImGui::GetFontSize(), x = right - 2 * r;
+    ImGui::GetWindowDrawList()->AddQuadFilled({x, middle - r}, {x + r, middle}, {x, middle + r}, {x - r, middle},
+                                              ImGui::GetColorU32(accent));
+}
+
+// The reason without the place, which is where it is shown.
+void note_refusal(const ViewState& state, Part part, const std::string& path, EditMemory& memory) {
+    memory.refused.clear();
+    if (state.message.empty() || !state.message_is_error) return;
+    const std::string prefix = path + ": ";
+    const bool here = state.message.starts_with(prefix);
+    memory.refused = path, memory.why = in_words(part, here ? state.message.substr(prefix.size()) : state.message);
+}
+
+// What is changed by the same grip of the mouse is one step; typed values stand alone.
+uint64_t drag_now(const EditMemory& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
+
+// A label on the left; returns whether the mouse is on it.
+bool draw_label(const char* text, bool keyed) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(text);
+    const bool hovered = ImGui::IsItemHovered();
+    const float column = label_share * ImGui::GetWindowWidth();
+    const float middle = 0.5f * (ImGui::GetItemRectMin().y + ImGui::GetItemRectMax().y);
+    if (keyed) draw_diamond(ImGui::GetWindowPos().x + column, middle);
+    ImGui::SameLine(column);
+    ImGui::SetNextItemWidth(-1);
+    return hovered;
+}
+}
+
+ImVec4 shown_color(vec3 linear) {
+    const vec3 color = linear / std::max(max_component(linear), 1.0f);
+    return {encoded(color.x), encoded(color.y), encoded(color.z), 1};
+}
+
+void draw_property(const ViewState& state, const Property& property, size_t index, EditMemory& memory, const Act& act) {
+    const Scene& scene = *state.scene;
+    const double seconds = seconds_of(state);
+    vec3 value = value_at(scene, property, index, seconds);
+    const bool keyed = is_keyed(scene, property, index);
+    const std::string path = place_of(scene, property.part, index) + "/" + property.name;
+
+    ImGui::PushID(property.name);
+    bool hovered = draw_label(words_of(property).label, keyed);
+    const SliderRange range = held_range(property, value.x, path, memory);
+    ImGui::BeginGroup();
+    const bool changed = edit_value(property, range, value);
+    ImGui::EndGroup();
+    if (ImGui::IsItemActivated()) memory.held = path, memory.range = range;
+    if (changed) {
+        act(action_of(scene, {property.part, index, property.name, value, seconds}, drag_now(memory)));
+        note_refusal(state, property.part, path, memory);
+    }
+    hovered |= ImGui::IsItemHovered() && !ImGui::IsItemActive() && !ImGui::IsPopupOpen("palette");
+    if (hovered) explain(property, path, keyed);
+    if (memory.refused == path) {
+        ImGui::PushStyleColor(ImGuiCol_Text, trouble);
+        ImGui::TextWrapped("%s", memory.why.c_str());
+        ImGui::PopStyleColor();
+    }
+    ImGui::PopID();
+}
+
+void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memory, const Act& act) {
+    const double seconds = seconds_of(state);
+    const vec3 direction = light_place(*state.scene, light, seconds).direction;
+    SunPlace place = sun_place(direction);
+    const auto slider = [&](const char* label, const char* help, float& value, float low, float high) {
+        ImGui::PushID(label);
+        bool hovered = draw_label(label, false);
+        const bool changed = ImGui::SliderFloat("##value", &value, low, high, "%.1f\u00b0");
+        hovered |= ImGui::IsItemHovered() && !ImGui::IsItemActive();
+        if (hovered) ImGui::SetTooltip("%s", help);
+        ImGui::PopID();
+        if (changed)
+            act(action_of(*state.scene, {Part::light, light, "direction", direction_from(place), seconds},
+                          drag_now(memory)));
+    };
+    slider("height", "Of the sun above the horizon", place.height, -10, highest_sun);
+    slider("bearing", "The side the sun stands on: 0 is +z, 90 is +x", place.bearing, 0, 360);
+}
+}

@@ -1,0 +1,17 @@
+// What edits can change of a scene, apart from the rest of it, which may be large.
+#pragma once
+#include "scene/scene.h"
+
+namespace tyndall {
+struct EditableParts {
+    std::vector<LightSource> lights;
+    std::vector<MediumSource> media;
+    std::vector<CameraSource> cameras;
+    Keyed<float> exposure;
+    Keyed<vec3> ambient;
+    Background background;
+};
+
+EditableParts editable_parts(const Scene& scene);
+void put_parts(const EditableParts& parts, Scene& scene);
+}
