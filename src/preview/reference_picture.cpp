@@ -150,7 +150,7 @@ std::string error_text(const ErrorFigures& errors) {
 std::string reference_text(const ReferenceFacts& facts) {
     std::string text = "reference: " + facts.what;
     text += formatted("  \u00b7  %d %s  \u00b7  ", facts.samples, facts.samples == 1 ? "sample" : "samples");
-    if (facts.noise < 0) return text + "a first look";
+    if (facts.noise < 0) return text + "noise not known yet";
     text += "noise of its fog " + percent_text(facts.noise);
     return facts.finished ? text + formatted("  \u00b7  %s from quality final", percent_text(facts.change).c_str())
                           : text + ", the exact one to come";

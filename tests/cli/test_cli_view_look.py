@@ -17,7 +17,8 @@ class Looking(ViewerTest):
         super().setUp()
         self.write("triangle.bin", TRIANGLE)
         self.write("triangle.gltf", gltf())
-        self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-8"))
+        self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-8", lights=[
+            {"name": "lamp", "type": "point", "position": [0.5, 1.2, 0.5], "intensity": 20}]))
 
     def shots(self, lines, *options):
         """Rows of the window after each of the lists of lines."""
@@ -32,8 +33,8 @@ class Looking(ViewerTest):
         plain, error, side, ray, volume, again = self.shots(
             [["mode cone"], ["show error"], ["show picture", "beside reference", "arrange side"],
              ["beside", "explain 10 10"], ["explain", "slice y 0.5"], ["volume off"]], "--res", "64x40")
-        for other in (error, side, ray, volume):
-            self.assertTrue(area(plain) != area(other))
+        for name, other in {"error": error, "side": side, "ray": ray, "volume": volume}.items():
+            self.assertTrue(area(plain) != area(other), name)
         # The strip below the picture: curves and figures, or a slice, where the picture ended before.
         for strip in (ray, volume):
             self.assertGreater(len({row[3 * x:3 * x + 3] for row in strip[460:720] for x in range(20, 900, 3)}), 20)
