@@ -19,7 +19,7 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
 WINDOW = (1280, 800)
-KEYS = ["space", "left", "right", "home", "tab", "f1", "[", "]", *"12345678lvpwsadqe"]
+KEYS = ["space", "left", "right", "home", "tab", "f1", "[", "]", "ctrl+z", "ctrl+y", "ctrl+s", *"12345678lvpwsadqegt"]
 LARGEST = {"pixel.samples": 16}  # what else would only take long
 GROWTH = 1.15  # of the most memory, from the second third of the time to the last
 
@@ -31,11 +31,16 @@ def copies_of_scenes(directory):
     return [directory / "scenes" / f"{name}.json" for name in SCENES]
 
 
+def media_of(scene):
+    return [medium["name"] for medium in json.loads(scene.read_text())["media"]]
+
+
 class Actions:
     """Lines of a script; each asks nothing that the viewer would refuse."""
 
     def __init__(self, seed, scenes, program):
         self.random, self.scenes, self.frames = random.Random(seed), scenes, 0
+        self.media = media_of(scenes[0])
         table = json.loads(subprocess.run([program, "modes", "--json"], capture_output=True, check=True).stdout)
         self.modes = [mode["name"] for mode in table["modes"]]
         self.rows = table["settings"]
@@ -50,11 +55,12 @@ class Actions:
         words = getattr(self, verb.replace("-", "_"))()
         if verb == "orders":
             return f"mode march\norders {words[0]}"  # few modes follow light on
-        return " ".join([verb, *(f'"{word}"' if " " in str(word) else str(word) for word in words)])
+        after = "\nwait samples 1" if verb == "open" else ""  # what follows means the new one
+        return " ".join([verb, *(f'"{word}"' if " " in str(word) else str(word) for word in words)]) + after
 
     def weight(self, verb):
         return {"quit": 0, "open": 0.3, "snapshot": 0.1, "screenshot": 0.2, "size": 0.3, "set": 4, "drag": 6, "key": 4,
-                "play": 0.5, "save": 0.3, "save-as": 0.2, "edit": 4}.get(verb, 1)
+                "play": 0.5, "save": 0.3, "save-as": 0.2, "edit": 4, "undo": 2, "close": 0, "answer": 0}.get(verb, 1)
 
     def number(self, low, high):
         return round(self.random.uniform(low, high), 3)
@@ -69,7 +75,9 @@ class Actions:
         return self.random.choice(self.rows)
 
     def open(self):
-        return [self.random.choice(self.scenes)]
+        scene = self.random.choice(self.scenes)
+        self.media = media_of(scene)
+        return [scene]
 
     def set(self):
         row = self.row()
@@ -87,7 +95,45 @@ class Actions:
         return [self.random.choice(self.modes)]
 
     def beside(self):
-        return self.random.choice([[], [self.random.choice(self.modes)]])
+        return self.random.choice([[], ["reference"], [self.random.choice(self.modes)]])
+
+    def arrange(self):
+        return [self.random.choice(["wipe", "side"])]
+
+    def explain(self):
+        return self.random.choice([[], [self.random.randint(0, 20), self.random.randint(0, 20)]])
+
+    def medium(self):
+        return [self.random.choice(self.media)]
+
+    def slice(self):
+        return [self.random.choice("xyz"), self.number(0, 1)]
+
+    def project(self):
+        return [self.random.choice("xyz"), self.random.choice(["maximum", "mean"])]
+
+    def edit(self):
+        path, value = self.random.choice([
+            ("exposure", self.number(-2, 2)), ("ambient", f"{self.number(0, 0.1)} 0.02 0.03"),
+            ("lights/0/intensity", self.number(0.1, 500)), ("lights/0/color", f"1 {self.number(0, 1)} 0.5"),
+            ("media/0/extinction", self.number(0.01, 3)), ("media/0/g", self.number(-0.8, 0.8))])
+        return [path, value, *self.random.choice([[], [self.random.randint(1, 9)]])]
+
+    def cancel(self):
+        return [self.random.randint(1, 9)]
+
+    def save_as(self):
+        self.frames += 1
+        return [self.scenes[0].parent / f"other_{self.frames}.json"]
+
+    def select(self):
+        return [self.random.choice(["lights/0", "media/0", "scene"])]
+
+    def tab(self):
+        return [self.random.choice(["render", "lights"])]
+
+    def missing(self):
+        return [self.random.choice(["error", "hold", "skip"])]
 
     def wipe(self):
         return [self.number(0, 1)]
@@ -99,15 +145,12 @@ class Actions:
         return [self.random.choice([1, 1, 2, 3])]
 
     def show(self):
-        return [self.random.choice(["picture", "fog", "transmittance", "depth", "validity"])]
+        return [self.random.choice(["picture", "fog", "transmittance", "depth", "validity", "error"])]
 
     def exposure(self):
         return [self.number(-4, 4)]
 
     brighten = exposure
-
-    def camera(self):
-        return []
 
     def orbit(self):
         return self.pair(-40, 40)
@@ -135,10 +178,11 @@ class Actions:
     def play(self):
         return [self.random.randint(1, 8)]
 
-    def stop(self):
+    def nothing(self):
         return []
 
-    loop = panels = help = switch
+    stop = undo = redo = save = camera = close = answer = nothing
+    loop = panels = help = handles = volume = switch
 
     def key(self):
         return [self.random.choice(KEYS)]

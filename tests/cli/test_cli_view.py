@@ -9,6 +9,7 @@ import time
 import unittest
 import zlib
 
+import random_actions
 from program import SANITIZED, SOURCE, TRIANGLE, TYNDALL, ProgramTest, gltf, run, scene
 
 VIEWER = pathlib.Path(TYNDALL).parent / "tyndall-view"
@@ -233,6 +234,14 @@ class CommandLine(ViewerTest):
         self.check_refusal(run("view", "missing.json", "--res", "64x36"), 4, "missing.json")
         self.check_refusal(run("view", "missing.json", "--res", "64"), 2, "--res")
         self.assertIn("view", run("--help").stdout)
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Chance(ViewerTest):
+    def test_actions_by_chance_end_well(self):
+        code, said, _ = random_actions.run(TYNDALL, 20 if SANITIZED else 8, 1, self.directory)
+        self.assertEqual(code, 0, said)
+        self.assertIn("pictures: first after", said)
 
 
 if __name__ == "__main__":
