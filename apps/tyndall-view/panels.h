@@ -30,6 +30,12 @@ using Act = std::function<void(const Action&)>; // does an action; errors become
 
 void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act);
 
+// The page "Rendering" of the side.
+void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act);
+
+// Frames and playing.
+void draw_time(const ViewState& state, const Act& act);
+
 // The technique's own settings and those it shares, as sliders.
 void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);
 

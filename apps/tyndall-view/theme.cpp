@@ -65,4 +65,13 @@ void apply_theme(float scale) {
     colors[ImGuiCol_TextSelectedBg] = tinted(0.35f);
     colors[ImGuiCol_NavHighlight] = tinted(0.6f);
 }
+
+void tooltip(const std::string& text) {
+    if (!ImGui::IsItemHovered()) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
 }

@@ -85,6 +85,8 @@ class Actions:
             return [row["name"], self.random.choice(row["choices"])]
         high = LARGEST.get(row["name"], row["high"])
         low, high = max(row["low"], -100), min(high, 100)
+        if "," in row["values"]["preview"]:
+            return [row["name"], ",".join(str(self.number(max(low, 0), min(high, 2))) for _ in range(3))]
         value = low + (high - low) * self.random.random() ** 3
         return [row["name"], round(value) if row["integer"] else f"{max(value, low):.4g}"]
 
