@@ -1,13 +1,10 @@
-#include "fixtures.h"
+#include "painting.h"
 #include "preview/missing_frames.h"
-#include "preview/painter.h"
 #include "preview/view_state.h"
 #include "volume/vdb.h"
 
 namespace tyndall::test {
 namespace {
-std::atomic<bool> never{false};
-
 // Drifting noise: other fog at every frame.
 std::shared_ptr<Scene> noise_scene() {
     Scene scene = *small_scene();

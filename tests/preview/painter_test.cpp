@@ -1,6 +1,5 @@
 #include "base/parallel.h"
-#include "fixtures.h"
-#include "preview/painter.h"
+#include "painting.h"
 #include "preview/save_picture.h"
 #include "render/png.h"
 
@@ -9,20 +8,6 @@
 
 namespace tyndall::test {
 namespace {
-std::atomic<bool> never{false};
-
-// All pictures until there is none to come.
-std::vector<ShownPicture> paint_all(Painter& painter, const Request& request) {
-    std::vector<ShownPicture> pictures;
-    while (auto picture = paint(painter, request, never)) {
-        EXPECT_EQ(picture->error, "");
-        pictures.push_back(std::move(*picture));
-        if (pictures.size() > 50) ADD_FAILURE() << "there is no end";
-        if (pictures.size() > 50 || pictures.back().finished) break;
-    }
-    return pictures;
-}
-
 // The codes of one render with so many samples.
 Image<glm::u8vec4> rendered(const Request& request, int samples) {
     flush_denormals();

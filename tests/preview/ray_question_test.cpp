@@ -1,29 +1,15 @@
 #include "base/parallel.h"
-#include "fixtures.h"
 #include "measure/explain_curves.h"
-#include "preview/painter.h"
+#include "painting.h"
 #include "preview/view_state.h"
 
 namespace tyndall::test {
 namespace {
-std::atomic<bool> never{false};
-
 Request ray_request() {
     flush_denormals();
     Request request = request_for(small_scene(), "cone");
     request.most_samples = 2, request.explain = ivec2(32, 20);
     return request;
-}
-
-std::vector<ShownPicture> paint_all(Painter& painter, const Request& request) {
-    std::vector<ShownPicture> pictures;
-    while (auto picture = paint(painter, request, never)) {
-        EXPECT_EQ(picture->error, "");
-        pictures.push_back(std::move(*picture));
-        if (pictures.size() > 50) ADD_FAILURE() << "there is no end";
-        if (pictures.size() > 50) break;
-    }
-    return pictures;
 }
 }
 

@@ -1,12 +1,9 @@
 #include "base/parallel.h"
-#include "fixtures.h"
-#include "preview/painter.h"
+#include "painting.h"
 #include "render/candidates.h"
 
 namespace tyndall::test {
 namespace {
-std::atomic<bool> never{false};
-
 Request error_request(const char* mode) {
     flush_denormals();
     Request request = request_for(small_scene(), mode);

@@ -1,14 +1,11 @@
 #include "base/parallel.h"
-#include "fixtures.h"
 #include "measure/heatmap.h"
-#include "preview/painter.h"
+#include "painting.h"
 #include "preview/view_state.h"
 #include "volume/vdb.h"
 
 namespace tyndall::test {
 namespace {
-std::atomic<bool> never{false};
-
 VolumePicture asked(const Request& request) {
     flush_denormals();
     const Snapshot snapshot = make_snapshot(*request.scene, moment_of(*request.scene, request.frame));
