@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr const char* title = "Unsaved changes";
+constexpr const char* title = "Before this closes";
 
 // A scene that no scene file says yet needs a name first.
 void save_and_go(const ViewState& state, const EditMemory& memory, const Act& act) {
@@ -16,19 +16,34 @@ void save_and_go(const ViewState& state, const EditMemory& memory, const Act& ac
     if (!state.message_is_error) act({Verb::answer, {"save"}, {}, {}});
 }
 
-void draw_buttons(const ViewState& state, const EditMemory& memory, const Act& act) {
+void draw_buttons(const ViewState& state, bool unsaved, const EditMemory& memory, const Act& act) {
     const float width = 6.5f * ImGui::GetFontSize();
-    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
-    const bool save = ImGui::Button("Save", {width, 0});
-    ImGui::PopStyleColor();
+    if (unsaved) {
+        ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
+        if (ImGui::Button("Save", {width, 0})) save_and_go(state, memory, act);
+        ImGui::PopStyleColor();
+        ImGui::SameLine();
+    }
+    if (ImGui::Button(unsaved ? "Discard" : "Stop it", {width, 0})) act({Verb::answer, {"discard"}, {}, {}});
     ImGui::SameLine();
-    const bool discard = ImGui::Button("Discard", {width, 0});
-    ImGui::SameLine();
-    const bool cancel = ImGui::Button("Cancel", {width, 0});
-    if (save) save_and_go(state, memory, act);
-    if (discard) act({Verb::answer, {"discard"}, {}, {}});
-    if (cancel || ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
+    if (ImGui::Button("Cancel", {width, 0}) || ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
         act({Verb::answer, {"cancel"}, {}, {}});
+}
+
+// What would be lost.
+void draw_losses(const ViewState& state, bool unsaved, EditMemory& memory) {
+    const std::string name = printable(state.scene->file.filename().string(), 60);
+    if (unsaved) ImGui::Text("%s has edits that are not saved.", name.c_str());
+    if (unsaved && !state.session->has_file) {
+        propose_name(state, memory);
+        ImGui::TextDisabled("There is no scene file yet; save it as");
+        ImGui::SetNextItemWidth(-1);
+        ImGui::InputText("##file", &memory.file_name);
+    }
+    if (state.job && state.asked->verb == Verb::close) {
+        ImGui::Text("%s is not done: it ends with the window.", printable(state.job->name, 80).c_str());
+        ImGui::TextDisabled("Finished frames stay.");
+    }
 }
 }
 
@@ -44,21 +59,16 @@ void draw_question(const ViewState& state, EditMemory& memory, const Act& act) {
         ImGui::EndPopup();
         return;
     }
-    const std::string name = printable(state.scene->file.filename().string(), 60);
-    ImGui::Text("%s has edits that are not saved.", name.c_str());
-    if (!state.session->has_file) {
-        propose_name(state, memory);
-        ImGui::TextDisabled("There is no scene file yet; save it as");
-        ImGui::SetNextItemWidth(-1);
-        ImGui::InputText("##file", &memory.file_name);
-    }
+    const bool unsaved = has_unsaved_changes(*state.session);
+    if (!unsaved && !state.job) act({Verb::answer, {"discard"}, {}, {}}); // the job has ended meanwhile
+    draw_losses(state, unsaved, memory);
     if (state.message_is_error && !state.message.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, trouble);
         ImGui::TextWrapped("%s", state.message.c_str());
         ImGui::PopStyleColor();
     }
     ImGui::Dummy({0, 0.3f * ImGui::GetFontSize()});
-    draw_buttons(state, memory, act);
+    draw_buttons(state, unsaved, memory, act);
     ImGui::EndPopup();
 }
 }

@@ -36,7 +36,8 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
     const float side = state.panels ? std::min(23 * type, 0.5f * whole.x) : 0;
-    const float bar = state.panels ? ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().WindowPadding.y : 0;
+    const float row = ImGui::GetFrameHeight(), rows = state.job ? 2 * row + ImGui::GetStyle().ItemSpacing.y : row;
+    const float bar = state.panels ? rows + 2 * ImGui::GetStyle().WindowPadding.y : 0;
     const float strip = state.panels ? inspector_height(state, whole.y) : 0;
 
     ImGui::SetNextWindowPos({0, 0});
@@ -60,6 +61,7 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         ImGui::SetNextWindowPos({0, whole.y - bar});
         ImGui::SetNextWindowSize({whole.x - side, bar});
         ImGui::Begin("time", nullptr, fixed);
+        if (state.job) draw_job(*state.job, act);
         draw_time(state, act);
         ImGui::End();
         ImGui::SetNextWindowPos({whole.x - side, 0});

@@ -18,11 +18,24 @@ struct Shelf {
     double seconds = 0; // since the last interface frame
 };
 
+// The name of a file to write: the usual one until it is typed over.
+struct FileField {
+    std::string name;
+    bool edited = false;
+};
+
+// What is to be written.
+struct WriteMemory {
+    FileField picture, sequence, fog;
+    std::string frames, fog_frames; // empty = all of the scene's
+    std::string medium;             // to bake
+    bool pngs = true;
+};
+
 // What panels remember by themselves.
 struct PanelMemory {
     std::string held_row;  // a setting that was put back; its slider is dead until the mouse is up
-    std::string file_name; // to write
-    bool file_name_edited = false;
+    WriteMemory write;
     EditMemory edits;
 };
 
@@ -35,6 +48,10 @@ void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
 
 // Frames and playing.
 void draw_time(const ViewState& state, const Act& act);
+
+// Files to write, and the job that writes some.
+void draw_writing(const ViewState& state, WriteMemory& memory, const Act& act);
+void draw_job(const JobStatus& job, const Act& act);
 
 // The technique's own settings and those it shares, as sliders.
 void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);

@@ -1,10 +1,8 @@
-// The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times, writing.
+// The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
 #include "base/text.h"
 #include "panels.h"
 #include "preview/reference_picture.h"
 #include "theme.h"
-
-#include <imgui_stdlib.h>
 
 namespace tyndall {
 namespace {
@@ -153,19 +151,6 @@ void draw_times(const Shelf& shelf) {
     ImGui::Separator();
     row("picture", times.total());
 }
-
-void draw_saving(ViewState& state, PanelMemory& memory, const Act& act) {
-    heading("Write");
-    if (!memory.file_name_edited) memory.file_name = usual_file_name(state);
-    ImGui::SetNextItemWidth(-1);
-    if (ImGui::InputText("##file", &memory.file_name)) memory.file_name_edited = true;
-    if (ImGui::Button("Write picture")) {
-        act({Verb::snapshot, {memory.file_name}, {}, {}});
-        memory.file_name_edited = false;
-    }
-    tooltip("The whole picture with " + std::to_string(state.settings.pixel.samples) +
-            " samples a pixel, as tyndall render writes it: .exr for light, .png for looking at");
-}
 }
 
 void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
@@ -177,6 +162,6 @@ void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     draw_remarks(state, shelf);
     draw_settings(state, memory, act);
     draw_times(shelf);
-    draw_saving(state, memory, act);
+    draw_writing(state, memory.write, act);
 }
 }

@@ -82,6 +82,15 @@ void take_pictures(Viewer& viewer) {
     viewer.shelf.saving = viewer.thread.saving();
 }
 
+void take_job(Viewer& viewer) {
+    viewer.state.job = viewer.jobs.status();
+    const std::optional<JobResult> result = viewer.jobs.take_result();
+    if (!result) return;
+    const bool failed = result->code != ExitCode::ok;
+    if (failed && !viewer.script.finished()) fail(result->code, viewer.job_place, result->message);
+    tell(viewer, result->message, failed);
+}
+
 void post_request(Viewer& viewer) {
     ViewState& state = viewer.state;
     if (!state.scene) return;
@@ -130,6 +139,7 @@ void run_frame(Viewer& viewer) {
     take_loaded(viewer);
     watch_files(viewer);
     take_pictures(viewer);
+    take_job(viewer);
     advance(viewer.state, viewer.now, viewer.picture_revision);
     follow_script(viewer);
     move_scripted_mouse(viewer);

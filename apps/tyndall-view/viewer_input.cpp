@@ -38,6 +38,27 @@ void save(Viewer& viewer, const std::string& file) {
     ++viewer.files_to_come;
 }
 
+void start_job(Viewer& viewer, FileJob job) {
+    viewer.jobs.start(std::move(job));
+    viewer.state.job = viewer.jobs.status();
+    viewer.job_place = viewer.script_place;
+}
+
+std::string word_of(const Action& action, size_t number) {
+    return number < action.words.size() ? action.words[number] : "";
+}
+
+RenderFiles frames_of(const Viewer& viewer, const Action& action) {
+    return render_files(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2) == "png",
+                        viewer.options.isa);
+}
+
+void copy_command(Viewer& viewer, const RenderFiles& files) {
+    const std::string command = command_of(viewer.state, files);
+    ImGui::SetClipboardText(command.c_str());
+    tell(viewer, "copied: " + command, false);
+}
+
 // Does an action of any kind. Throws Error.
 void perform(Viewer& viewer, const Action& action) {
     if (apply(viewer.state, action)) return;
@@ -56,6 +77,18 @@ void perform(Viewer& viewer, const Action& action) {
         break;
     case Verb::screenshot:
         viewer.screenshot = action.words[0];
+        break;
+    case Verb::render:
+        start_job(viewer, frames_of(viewer, action));
+        break;
+    case Verb::bake:
+        start_job(viewer, bake_files(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2)));
+        break;
+    case Verb::stop_job:
+        viewer.jobs.stop();
+        break;
+    case Verb::copy_command:
+        copy_command(viewer, frames_of(viewer, action));
         break;
     case Verb::quit:
         viewer.quit = true;
@@ -89,6 +122,7 @@ ScriptFacts facts_of(const Viewer& viewer) {
     const auto& picture = viewer.shelf.picture;
     if (picture && picture->revision == viewer.state.revision && picture->mode == viewer.state.mode && !picture->quick)
         facts.samples = picture->samples;
+    facts.job = viewer.state.job.has_value();
     facts.busy =
         viewer.drag.frame >= 0 || viewer.key_frames > 0 || viewer.files_to_come > 0 || !viewer.screenshot.empty();
     return facts;

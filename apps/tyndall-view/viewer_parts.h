@@ -1,6 +1,7 @@
 // The parts of the viewer, and what hands and scripts do to them.
 #pragma once
 #include "interface_times.h"
+#include "preview/job_thread.h"
 #include "panels.h"
 #include "viewer.h"
 #include "window.h"
@@ -33,13 +34,15 @@ struct Viewer {
     std::string script_place; // of the action being done
     std::string screenshot;   // to take after this frame
     std::string file_place;   // of the snapshot being written for a script
+    std::string job_place;    // of its job
     int files_to_come = 0;
     bool quit = false;
     InterfaceTimes times;
+    JobThread jobs;
     RenderThread thread; // ends before all else
 
     explicit Viewer(const ViewerOptions& given)
-        : options(given), window("Tyndall", given.window), state(given.state), thread(Window::wake) {}
+        : options(given), window("Tyndall", given.window), state(given.state), jobs(Window::wake), thread(Window::wake) {}
 };
 
 double seconds_now(); // of a clock

@@ -2,8 +2,8 @@
 #include "volume/bake.h"
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/output.h"
 #include "common.h"
-#include "output.h"
 
 namespace tyndall {
 namespace {

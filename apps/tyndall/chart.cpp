@@ -2,10 +2,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/isa.h"
+#include "base/output.h"
 #include "base/text.h"
 #include "common.h"
 #include "measure/chart_report.h"
-#include "output.h"
 
 #include <algorithm>
 

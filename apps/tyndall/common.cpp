@@ -137,10 +137,4 @@ Json json_object(std::vector<std::pair<std::string, Json>> members) {
     return value;
 }
 
-std::string seconds_text(double seconds) {
-    if (seconds < 0.0995) return formatted("%.0f ms", seconds * 1000);
-    if (seconds < 120) return formatted("%.1f s", seconds);
-    if (seconds < 7200) return formatted("%.1f min", seconds / 60);
-    return formatted("%.1f h", seconds / 3600);
-}
 }

@@ -4,7 +4,6 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/text.h"
-#include "measure/grid_report.h"
 
 #include <CLI/CLI.hpp>
 
@@ -78,7 +77,4 @@ Json json_of(const std::vector<std::string>& texts);
 Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts);
 Json json_array(std::vector<Json> items);
 Json json_object(std::vector<std::pair<std::string, Json>> members);
-
-// "2.1 min": for people.
-std::string seconds_text(double seconds);
 }

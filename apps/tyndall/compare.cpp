@@ -1,9 +1,9 @@
 // tyndall compare: how far pictures are from a reference.
 #include "base/error.h"
 #include "base/frames.h"
+#include "base/output.h"
 #include "compare_report.h"
 #include "measure/heatmap.h"
-#include "output.h"
 #include "render/png.h"
 
 namespace tyndall {

@@ -2,9 +2,9 @@
 #include "measure/explain.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/output.h"
 #include "common.h"
 #include "explain_json.h"
-#include "output.h"
 #include "render/provenance.h"
 #include "render_options.h"
 

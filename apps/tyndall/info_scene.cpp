@@ -1,6 +1,7 @@
 // tyndall info: glTF files and scenes.
 #include "common.h"
 #include "info.h"
+#include "measure/grid_report.h"
 #include "light_units.h"
 
 #include "base/error.h"

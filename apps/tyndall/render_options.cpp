@@ -4,7 +4,7 @@
 #include "automatic.h"
 #include "base/error.h"
 #include "base/frames.h"
-#include "output.h"
+#include "base/output.h"
 #include "render/to_target.h"
 
 namespace tyndall {

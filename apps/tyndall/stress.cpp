@@ -1,7 +1,7 @@
 // tyndall stress: the stability suite, mode by case.
 #include "base/error.h"
 #include "base/file.h"
-#include "output.h"
+#include "base/output.h"
 #include "stress_report.h"
 
 #include <chrono>

@@ -70,6 +70,11 @@ void Progress::set(double done) {
     print(false);
 }
 
+double Progress::share() const {
+    const std::lock_guard lock(mutex_);
+    return total_ > 0 ? done_ / total_ : finished_ ? 1 : 0;
+}
+
 void Progress::line(std::string_view text) {
     if (style_ == ProgressStyle::silent) return;
     const std::lock_guard lock(mutex_);

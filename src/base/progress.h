@@ -15,12 +15,13 @@ public:
     Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr = false);
     ~Progress();
     void set(double done);            // absolute, 0..total; a smaller value than before is ignored
+    double share() const;             // done of the total
     void line(std::string_view text); // a human line (a frame finished) that does not break the bar
     void finish();
 
 private:
     void print(bool last);
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
     ProgressStyle style_;
     std::string what_;
     double total_, done_ = 0;

@@ -44,6 +44,32 @@ std::string joined(const std::vector<std::string>& words, std::string_view separ
     return result;
 }
 
+std::string seconds_text(double seconds) {
+    if (seconds < 0.0995) return formatted("%.0f ms", seconds * 1000);
+    if (seconds < 120) return formatted("%.1f s", seconds);
+    if (seconds < 7200) return formatted("%.1f min", seconds / 60);
+    return formatted("%.1f h", seconds / 3600);
+}
+
+std::string bytes_text(double bytes) {
+    constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
+    size_t unit = 0;
+    while (bytes >= 1000 && unit < 4) bytes /= 1000, ++unit;
+    return formatted(unit == 0 || bytes >= 100 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
+}
+
+std::string count_text(uint64_t count, std::string_view noun) {
+    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
+}
+
+std::string quoted_for_shell(std::string_view word) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
+    if (!word.empty() && word.find_first_not_of(plain) == word.npos) return std::string(word);
+    std::string text = "'";
+    for (const char letter : word) text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    return text + "'";
+}
+
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
     const std::string_view start = name.substr(0, 64);
     const auto nearer = [&](const std::string& a, const std::string& b) {

@@ -1,5 +1,6 @@
 // Small helpers for messages that name things.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,14 @@ namespace tyndall {
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
+
+// "2.1 min", "1.5 MB", "2 leaves": for people.
+std::string seconds_text(double seconds);
+std::string bytes_text(double bytes);
+std::string count_text(uint64_t count, std::string_view noun);
+
+// A word as a POSIX shell reads it back: as it is, or in single quotes.
+std::string quoted_for_shell(std::string_view word);
 
 // The candidate with the fewest edits (insert, delete, replace, swap of neighbours) from `name`; the first on a tie.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);

@@ -4,19 +4,8 @@
 #include "base/text.h"
 
 namespace tyndall {
-std::string bytes_text(double bytes) {
-    constexpr const char* units[] = {"B", "kB", "MB", "GB", "TB"};
-    size_t unit = 0;
-    while (bytes >= 1000 && unit < 4) bytes /= 1000, ++unit;
-    return formatted(unit == 0 || bytes >= 100 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
-}
-
 std::string vector_text(vec3 v) {
     return formatted("%.4g %.4g %.4g", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
-}
-
-std::string count_text(uint64_t count, std::string_view noun) {
-    return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
 }
 
 ivec3 voxels_across(const VdbGridInfo& grid) { return glm::max(grid.active_high - grid.active_low + 1, ivec3(0)); }

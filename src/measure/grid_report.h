@@ -3,10 +3,8 @@
 #include "volume/vdb.h"
 
 namespace tyndall {
-// "1.5 MB", "0.1 0.2 0.3", "2 leaves": for people.
-std::string bytes_text(double bytes);
+// "0.1 0.2 0.3": for people.
 std::string vector_text(vec3 value);
-std::string count_text(uint64_t count, std::string_view noun);
 
 ivec3 voxels_across(const VdbGridInfo& grid);
 

@@ -58,9 +58,14 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::help, "help", "on|off", "show what keys and mouse do"},
         {Verb::key, "key", "NAME", "press a key"},
         {Verb::drag, "drag", "X,Y X,Y", "move the mouse from one point of the window to another, left button down"},
-        {Verb::wait, "wait", "NAME [n]", "until idle, for so many seconds, or for \"samples N\""},
+        {Verb::wait, "wait", "NAME [n]", "until idle, for a job to end, for so many seconds, or for \"samples N\""},
         {Verb::snapshot, "snapshot", "FILE", "write the picture as tyndall render does: .exr or .png"},
         {Verb::screenshot, "screenshot", "FILE", "write the window as it is: .png"},
+        {Verb::render, "render", "FILE [RANGE] [exr|png]",
+         "frames to files as tyndall render does, out.####.exr, while the viewer goes on; png: pictures as well"},
+        {Verb::bake, "bake", "NAME FILE [RANGE]", "a medium grown from a recipe to out.####.vdb, as tyndall bake does"},
+        {Verb::stop_job, "stop-job", "", "end that: finished frames stay, and are kept when it is asked for again"},
+        {Verb::copy_command, "copy-command", "FILE [RANGE] [exr|png]", "to the clipboard: the command line that renders the same frames"},
         {Verb::close, "close", "", "close the window as its button does: asks when there are unsaved edits"},
         {Verb::answer, "answer", "NAME", "what is to become of them: save, discard or cancel"},
         {Verb::quit, "quit", "", "end without asking"},
@@ -132,8 +137,8 @@ void check_wait(const Action& action) {
     const std::string& what = action.words[0];
     const bool samples = what == "samples";
     if (samples != (action.numbers.size() == 1))
-        refuse(action.place, "expected wait idle, wait SECONDS or wait samples N");
-    if (what != "idle" && !samples && number(what, action.place, "wait idle, wait SECONDS or wait samples N") < 0)
+        refuse(action.place, "expected wait idle, wait job, wait SECONDS or wait samples N");
+    if (what != "idle" && what != "job" && !samples && number(what, action.place, "wait idle, wait job, wait SECONDS or wait samples N") < 0)
         refuse(action.place, "seconds cannot be negative");
 }
 }

@@ -55,6 +55,10 @@ enum class Verb {
     wait,
     snapshot,
     screenshot,
+    render,
+    bake,
+    stop_job,
+    copy_command,
     close,
     answer,
     quit

@@ -294,6 +294,10 @@ bool apply(ViewState& state, const Action& action) {
     case Verb::wait:
     case Verb::snapshot:
     case Verb::screenshot:
+    case Verb::render:
+    case Verb::bake:
+    case Verb::stop_job:
+    case Verb::copy_command:
     case Verb::quit:
         return false;
     }

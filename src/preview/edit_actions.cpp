@@ -98,7 +98,7 @@ void open_scene(ViewState& state, const Action& action) {
 }
 
 void close_window(ViewState& state, const Action& action) {
-    if (is_unsaved(state))
+    if (is_unsaved(state) || state.job)
         state.asked = action;
     else
         state.leaving = true;

@@ -15,8 +15,8 @@ void cancel_drag(ViewState& state, double drag);
 // Into its own file when none is given. Throws Error.
 void save_scene(ViewState& state, const std::filesystem::path& file);
 
-// Hands are asked before unsaved edits are lost, scripts only when they close the window: `asked` then waits for an
-// answer: save, discard or cancel. Throws Error: usage (of another answer, or without a question), and as saving does,
+// Hands are asked before unsaved edits are lost, scripts only when they close the window, which also ends a job: `asked`
+// then waits for an answer: save, discard or cancel. Throws Error: usage (of another answer, or without a question), and as saving does,
 // and goes on asking.
 void open_scene(ViewState& state, const Action& action);
 void close_window(ViewState& state, const Action& action);

@@ -1,7 +1,6 @@
 #include "preview/save_picture.h"
 
 #include "base/error.h"
-#include "base/file.h"
 #include "render/check_job.h"
 #include "render/png.h"
 #include "render/provenance.h"
@@ -16,6 +15,7 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     RenderJob render = job_of(request);
     render.output = std::filesystem::path(job.file).replace_extension(".exr").string();
     render.quality = job.quality, render.isa = job.isa, render.light_units = job.light_units;
+    render.unsaved = job.unsaved;
     render.png = kind == ".png";
     const Mode& mode = find_mode(request.mode);
     stage(request);
@@ -31,10 +31,8 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     const Layers layers = render_frame(mode, view, snapshot, request.settings, options, stats);
     if (kind == ".png") return write_png(job.file, stored_color(layers, render.exr), request.shown.exposure);
     FileHashes files;
-    std::string hash = frame_hash(*request.scene, render, view, files);
-    if (!job.unsaved.empty()) hash = content_hash(hash + job.unsaved);
-    Provenance provenance = provenance_of(*request.scene, render, view, hash, stats);
-    if (!job.unsaved.empty()) provenance.attributes["tyndall:unsavedEdits"] = job.unsaved;
+    const std::string hash = frame_hash(*request.scene, render, view, files);
+    const Provenance provenance = provenance_of(*request.scene, render, view, hash, stats);
     write_exr(job.file, layers, provenance, render.exr);
 }
 }

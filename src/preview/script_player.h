@@ -8,6 +8,7 @@ struct ScriptFacts {
     double now = 0;    // seconds of a clock
     bool idle = false; // what was asked for is shown, and will not get better
     int samples = 0;   // of the picture of the state's revision; 0 while it is not the mode asked for
+    bool job = false;  // one that writes files runs
     bool busy = false; // a drag, a file or a key is not done yet
 };
 

@@ -8,6 +8,14 @@
 #include <optional>
 
 namespace tyndall {
+// How far a job is that writes files.
+struct JobStatus {
+    std::string name; // "render out.####.exr"
+    int frames = 1;
+    double share = 0, seconds_left = -1; // negative: not known yet
+    bool stopping = false;
+};
+
 struct ViewState {
     std::filesystem::path scene_file; // asked for last
     int loads = 0;                    // times a scene was asked for
@@ -46,7 +54,8 @@ struct ViewState {
     bool panels = true, help = false;
     bool lights_tab = false;     // what the side shows: lights and fog, or rendering
     bool handles = true;         // lights are drawn in the picture while the side shows them
-    std::optional<Action> asked; // would lose unsaved edits: waits for an answer
+    std::optional<JobStatus> job; // that runs
+    std::optional<Action> asked; // would lose unsaved edits or end a job: waits for an answer
     bool leaving = false;        // the window is to close
     Thing selected;              // its properties are shown; may be beyond the end
     std::string file_error;      // why the scene's files, as they are now, cannot be read
@@ -56,7 +65,7 @@ struct ViewState {
     uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow
 };
 
-// Does an action; false when it is one for the window (key, drag, wait, snapshot, screenshot, quit). Throws Error.
+// Does an action; false when it is one for the window (key, drag, wait, files, quit). Throws Error.
 bool apply(ViewState& state, const Action& action);
 
 // Throws Error (usage) before the first one.

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/frames.h"
+#include "base/text.h"
 #include "modes/style.h"
 #include "render/to_target.h"
 
@@ -84,19 +86,17 @@ std::string joined_layers(const ExrOptions& options) {
     return text.empty() ? "none" : text;
 }
 
-std::string command_text(const RenderJob& job, const View& view) {
-    std::string text = "tyndall render " + job.scene_file.filename().string() + " -o out.####.exr --frames " +
-                       std::to_string(view.frame) + " --mode " + job.mode + " --quality " +
-                       std::string(name_of(job.quality)) + " --res " + pair_text(view.size, "x") + " --seed " +
-                       std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
+// All that tyndall render is told but scene, output, frames and picture size.
+std::string option_text(const RenderJob& job) {
+    std::string text = " --seed " + std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
     if (job.exr.full_float) text += " --float";
     if (job.target_error > 0) text += " --target-error " + number(job.target_error);
     if (job.time_budget > 0) text += " --time-budget " + number(job.time_budget);
     if (job.history > 0) text += " --history " + std::to_string(job.history);
     if (!job.isa.empty()) text += " --isa " + job.isa;
-    if (!job.camera.empty()) text += " --camera \"" + job.camera + "\"";
-    if (view.crop_low != view.crop_high)
-        text += " --crop " + pair_text(view.crop_low, ",") + "," + pair_text(view.crop_high, ",");
+    if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
+    if (job.crop_low != job.crop_high)
+        text += " --crop " + pair_text(job.crop_low, ",") + "," + pair_text(job.crop_high, ",");
     constexpr const char* missing[] = {"error", "hold", "skip"};
     if (job.missing != MissingFrame::error) text += std::string(" --missing ") + missing[static_cast<int>(job.missing)];
     constexpr const char* units[] = {"spec", "unitless", "raw"};
@@ -108,6 +108,22 @@ std::string command_text(const RenderJob& job, const View& view) {
         if (row.get(job.settings) != row.get(usual)) text += " --set " + row.name + "=" + row.get(job.settings);
     return text;
 }
+
+std::string mode_text(const RenderJob& job) {
+    return " --mode " + job.mode + " --quality " + std::string(name_of(job.quality));
+}
+
+std::string command_text(const RenderJob& job, const View& view) {
+    return "tyndall render " + quoted_for_shell(job.scene_file.filename().string()) + " -o out.####.exr --frames " +
+           std::to_string(view.frame) + mode_text(job) + " --res " + pair_text(view.size, "x") + option_text(job);
+}
+}
+
+std::string command_line(const RenderJob& job) {
+    std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o " +
+                       quoted_for_shell(job.output) + " --frames " + format_frames(job.frames) + mode_text(job);
+    if (job.resolution.x > 0) text += " --res " + pair_text(job.resolution, "x");
+    return text + option_text(job) + (job.png ? " --png" : "");
 }
 
 bool has_goal(const RenderJob& job) { return job.target_error > 0 || job.time_budget > 0; }
@@ -136,6 +152,7 @@ std::string frame_hash(const Scene& scene, const RenderJob& job, const View& vie
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
     text += job.exr.full_float ? "float\n" : "half\n";
     text += scene_text(scene, files) + fog_text(scene, job, view.frame, files) + light_text(scene, seconds);
+    if (!job.unsaved.empty()) text += "edits=" + job.unsaved + "\n";
     return content_hash(text);
 }
 
@@ -173,6 +190,7 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
         attributes["tyndall:timeBudget"] = number(job.time_budget);
         attributes["tyndall:timeUsed"] = number(stats.goal_seconds);
     }
+    if (!job.unsaved.empty()) attributes["tyndall:unsavedEdits"] = job.unsaved;
     if (!job.plan.empty()) attributes["tyndall:plan"] = job.plan;
     std::string limits;
     for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;

@@ -30,6 +30,7 @@ struct RenderJob {
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
     std::vector<std::string> limits_said;
+    std::string unsaved;                  // edits that the scene's files do not have; for hash and header
     std::string plan;                     // why this mode, when it was chosen for the scene; for the header
     std::shared_ptr<const Choice> choice; // of the first frame's candidate, when already made
 };

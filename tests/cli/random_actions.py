@@ -31,8 +31,9 @@ def copies_of_scenes(directory):
     return [directory / "scenes" / f"{name}.json" for name in SCENES]
 
 
-def media_of(scene):
-    return [medium["name"] for medium in json.loads(scene.read_text())["media"]]
+def media_of(scene, kind=None):
+    media = json.loads(scene.read_text())["media"]
+    return [medium["name"] for medium in media if kind in (None, medium["type"])]
 
 
 class Actions:
@@ -40,7 +41,7 @@ class Actions:
 
     def __init__(self, seed, scenes, program):
         self.random, self.scenes, self.frames = random.Random(seed), scenes, 0
-        self.media = media_of(scenes[0])
+        self.media, self.grown = media_of(scenes[0]), media_of(scenes[0], "noise")
         table = json.loads(subprocess.run([program, "modes", "--json"], capture_output=True, check=True).stdout)
         self.modes = [mode["name"] for mode in table["modes"]]
         self.rows = table["settings"]
@@ -60,7 +61,8 @@ class Actions:
 
     def weight(self, verb):
         return {"quit": 0, "open": 0.3, "snapshot": 0.1, "screenshot": 0.2, "size": 0.3, "set": 4, "drag": 6, "key": 4,
-                "play": 0.5, "save": 0.3, "save-as": 0.2, "edit": 4, "undo": 2, "close": 0, "answer": 0}.get(verb, 1)
+                "play": 0.5, "save": 0.3, "save-as": 0.2, "edit": 4, "undo": 2, "render": 0.1, "bake": 0.1 if self.grown else 0,
+                "stop-job": 0.3, "copy-command": 0, "close": 0, "answer": 0}.get(verb, 1)
 
     def number(self, low, high):
         return round(self.random.uniform(low, high), 3)
@@ -76,7 +78,7 @@ class Actions:
 
     def open(self):
         scene = self.random.choice(self.scenes)
-        self.media = media_of(scene)
+        self.media, self.grown = media_of(scene), media_of(scene, "noise")
         return [scene]
 
     def set(self):
@@ -183,7 +185,7 @@ class Actions:
     def nothing(self):
         return []
 
-    stop = undo = redo = save = camera = close = answer = nothing
+    stop = undo = redo = save = camera = close = answer = stop_job = copy_command = nothing
     loop = panels = help = handles = volume = switch
 
     def key(self):
@@ -202,6 +204,16 @@ class Actions:
 
     def screenshot(self):
         return ["window.png"]
+
+    def frames_of_job(self):
+        first = self.random.randint(1, 20)
+        return f"{first}-{first + self.random.randint(0, 3)}"
+
+    def render(self):
+        return ["frames.####.exr", self.frames_of_job(), self.random.choice(["exr", "png"])]
+
+    def bake(self):
+        return [self.random.choice(self.grown), "fog.####.vdb", self.frames_of_job()]
 
 
 def script(actions, seconds):

@@ -1,4 +1,4 @@
-#include "output.h"
+#include "base/output.h"
 
 #include "base/error.h"
 #include "base/file.h"

@@ -1,0 +1,155 @@
+#include "preview/file_job.h"
+
+#include "base/frames.h"
+#include "base/output.h"
+#include "base/text.h"
+#include "preview/scene_session.h"
+#include "render/provenance.h"
+#include "volume/bake.h"
+
+#include <algorithm>
+#include <new>
+
+namespace tyndall {
+namespace {
+std::vector<int> frames_of(const Scene& scene, const std::string& range) {
+    if (!range.empty()) return parse_frames(range);
+    std::vector<int> frames;
+    for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame) frames.push_back(frame);
+    return frames;
+}
+
+// The camera moved by hand, as one of the scene's under a name that none has.
+std::string add_camera(Scene& scene, const Viewpoint& view) {
+    CameraSource source;
+    source.name = "view";
+    const auto taken = [&](const CameraSource& camera) { return camera.name == source.name; };
+    while (std::ranges::any_of(scene.cameras, taken)) source.name += "'";
+    const Camera& camera = view.camera;
+    source.position = {camera.position}, source.target = {view.target()}, source.up = {camera.up};
+    source.vertical_fov = {camera.vertical_fov}, source.ortho_height = camera.ortho_height;
+    source.near = camera.near, source.far = camera.far;
+    scene.cameras.push_back(source);
+    return source.name;
+}
+
+std::string frames_done(int done, int of) { return formatted("%d of %s", done, count_text(of, "frame").c_str()); }
+
+JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+    const RenderJob& job = files.job;
+    const RenderReport report = render_sequence(*files.scene, job, progress, cancel);
+    const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(job.frames.size());
+    if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + job.output};
+    const int kept = static_cast<int>(std::ranges::count_if(report.frames, &FrameReport::kept));
+    std::string text = count_text(done - kept, "frame") + " rendered in " + seconds_text(report.seconds);
+    if (kept > 0) text += formatted(", %d kept", kept);
+    text += ": " + job.output;
+    for (const std::string& note : report.notes) text += "; " + note;
+    if (report.non_finite == 0) return {text};
+    return {text + "; " + count_text(report.non_finite, "sample") + " were not finite numbers and were left out",
+            ExitCode::non_finite};
+}
+
+JobResult bake_fog(const BakeFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+    BakeOptions options;
+    options.resume = true, options.cancel = &cancel;
+    const BakeReport report = bake(files.recipe, files.output, files.frames, options, progress);
+    const int done = report.written + report.kept;
+    if (report.cancelled)
+        return {"stopped: " + frames_done(done, static_cast<int>(files.frames.size())) +
+                " are finished: " + files.output};
+    std::string text = count_text(report.written, "frame") + " baked in " + seconds_text(report.seconds);
+    if (report.kept > 0) text += formatted(", %d kept", report.kept);
+    return {text + ": " + files.output};
+}
+}
+
+RenderFiles render_files(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                         const std::string& isa) {
+    const Scene& shown = loaded_scene(state);
+    RenderJob job;
+    job.frames = frames_of(shown, range);
+    check_pattern(output, ".exr", job.frames.size() > 1, "render");
+    auto scene = std::make_shared<Scene>(shown);
+    job.scene_file = scene->file, job.output = output;
+    job.mode = state.mode, job.quality = state.quality, job.settings = state.settings;
+    job.camera = state.free ? add_camera(*scene, state.view) : state.camera;
+    job.resolution = state.size, job.seed = state.seed, job.missing = state.missing;
+    job.exposure = state.shown.exposure, job.light_units = state.session->options.light_units, job.isa = isa;
+    job.png = png, job.resume = true;
+    job.unsaved = unsaved_text(*state.session);
+    return {std::move(scene), std::move(job)};
+}
+
+std::vector<std::string> bakeable_media(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const MediumSource& medium : scene.media)
+        if (medium.recipe) names.push_back(medium.name);
+    return names;
+}
+
+BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
+                     const std::string& range) {
+    const Scene& scene = loaded_scene(state);
+    const auto found = std::ranges::find(scene.media, medium, &MediumSource::name);
+    if (found == scene.media.end() || !found->recipe) {
+        const std::vector<std::string> names = bakeable_media(scene);
+        fail(ExitCode::usage, "bake",
+             "no medium '" + printable(medium, 40) + "' that is grown from a recipe; " +
+                 (names.empty() ? "there is none here" : "there is " + joined(names, ", ")));
+    }
+    BakeFiles files{*found->recipe, output, frames_of(scene, range)};
+    check_pattern(output, ".vdb", files.frames.size() > 1, "bake");
+    if (found->voxel_size > 0) files.recipe.voxel_size = found->voxel_size;
+    files.recipe.frame_rate = scene.frame_rate;
+    return files;
+}
+
+std::string command_of(const ViewState& state, const RenderFiles& files) {
+    const bool saved = state.session->has_file ? files.job.unsaved.empty() : !has_unsaved_changes(*state.session);
+    if (!saved) fail(ExitCode::usage, "copy-command", "no file has the edits yet: save the scene first");
+    if (state.free)
+        fail(ExitCode::usage, "copy-command",
+             "no file has the camera moved by hand: copy it into the scene, or go back to one of the scene's (home)");
+    return command_line(files.job);
+}
+
+std::string name_of(const FileJob& job) {
+    if (const auto* files = std::get_if<RenderFiles>(&job)) return "render " + files->job.output;
+    return "bake " + std::get<BakeFiles>(job).output;
+}
+
+int frame_count(const FileJob& job) {
+    const auto* files = std::get_if<RenderFiles>(&job);
+    return static_cast<int>(files ? files->job.frames.size() : std::get<BakeFiles>(job).frames.size());
+}
+
+JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel) {
+    const auto* files = std::get_if<RenderFiles>(&job);
+    try {
+        OutputPlaces places;
+        if (files) {
+            places.check(files->job.output, files->job.frames, "render");
+            return render(*files, progress, cancel);
+        }
+        const BakeFiles& fog = std::get<BakeFiles>(job);
+        places.check(fog.output, fog.frames, "bake");
+        return bake_fog(fog, progress, cancel);
+    } catch (const Error& error) {
+        return {error.what(), error.code};
+    } catch (const std::bad_alloc&) {
+        return {"out of memory", ExitCode::out_of_memory};
+    }
+}
+
+std::string usual_sequence_name(const ViewState& state) {
+    return state.scene_file.stem().string() + "." + state.mode + ".####.exr";
+}
+
+std::string usual_bake_name(const std::string& medium) {
+    std::string name = medium;
+    std::ranges::replace_if(
+        name, [](unsigned char letter) { return !std::isalnum(letter) && letter != '-'; }, '_');
+    return name + ".####.vdb";
+}
+}
