@@ -18,8 +18,29 @@ void mark_gaps(const ViewState& state) {
                                                   ImGui::GetColorU32(trouble));
     }
     if (!state.gaps.empty())
-        tooltip(formatted("%zu frames lack a volume file (red); the action \"missing hold\" shows the one before",
-                          state.gaps.size()));
+        tooltip(formatted("%zu frames lack a volume file (red)", state.gaps.size()));
+}
+
+// What is shown for them.
+void draw_gaps(const ViewState& state, const Act& act) {
+    if (state.gaps.empty()) return;
+    struct Way {
+        MissingFrame missing;
+        const char *word, *doc;
+    };
+    constexpr Way ways[] = {{MissingFrame::error, "error", "missing frames: error"},
+                            {MissingFrame::hold, "hold", "missing frames: hold the one before"},
+                            {MissingFrame::skip, "skip", "missing frames: skip the fog"}};
+    ImGui::SetNextItemWidth(5.5f * ImGui::GetFontSize());
+    const Way& now = *std::ranges::find(ways, state.missing, &Way::missing);
+    const bool open = ImGui::BeginCombo("##gaps", now.word);
+    if (!open) tooltip(now.doc);
+    if (open) {
+        for (const Way& way : ways)
+            if (ImGui::Selectable(way.doc, &way == &now)) act({Verb::missing, {way.word}, {}, {}});
+        ImGui::EndCombo();
+    }
+    ImGui::SameLine();
 }
 }
 
@@ -42,6 +63,7 @@ void draw_time(const ViewState& state, const Act& act) {
     if (ImGui::Checkbox("loop", &loop)) act({Verb::loop, {loop ? "on" : "off"}, {}, {}});
     ImGui::SameLine();
 
+    draw_gaps(state, act);
     const std::string moment = formatted("%.2f s", moment_of(scene, state.frame).seconds);
     int frame = state.frame;
     ImGui::SetNextItemWidth(-ImGui::CalcTextSize("0000.00 s").x - ImGui::GetStyle().ItemSpacing.x);

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/json_pointer.h"
 #include "base/text.h"
+#include "preview/verb_actions.h"
 
 #include <algorithm>
 #include <utility>
@@ -132,4 +133,25 @@ Action action_of(const Scene& scene, const Edit& edit, uint64_t drag) {
     if (drag > 0) action.numbers.push_back(static_cast<double>(drag));
     return action;
 }
+
+namespace {
+constexpr VerbAction table[] = {
+    {Verb::open, open_scene},
+    {Verb::close, close_window},
+    {Verb::answer, [](ViewState& state, const Action& action) { answer(state, action.words[0]); }},
+    {Verb::select,
+     [](ViewState& state, const Action& action) { state.selected = parse_thing(loaded_scene(state), action.words[0]); }},
+    {Verb::edit,
+     [](ViewState& state, const Action& action) {
+         edit_scene(state, action.words[0], action.words[1], action.numbers.empty() ? 0 : action.numbers[0]);
+     }},
+    {Verb::undo, [](ViewState& state, const Action&) { undo_edit(state); }},
+    {Verb::redo, [](ViewState& state, const Action&) { redo_edit(state); }},
+    {Verb::cancel, [](ViewState& state, const Action& action) { cancel_drag(state, action.numbers[0]); }},
+    {Verb::save, [](ViewState& state, const Action&) { save_scene(state, {}); }},
+    {Verb::save_as, [](ViewState& state, const Action& action) { save_scene(state, action.words[0]); }},
+};
+}
+
+std::span<const VerbAction> scene_actions() { return table; }
 }
