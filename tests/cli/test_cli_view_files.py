@@ -1,0 +1,91 @@
+"""Files in the viewer: jobs that write sequences, and recipes and volumes that change under it."""
+import subprocess
+import time
+import unittest
+
+from program import TRIANGLE, gltf, recipe, scene
+from test_cli_view import XVFB, ViewerTest
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Jobs(ViewerTest):
+    def setUp(self):
+        super().setUp()
+        self.write("triangle.bin", TRIANGLE)
+        self.write("triangle.gltf", gltf())
+        self.write("dust.json", recipe())
+        self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-3", media=[
+            {"name": "dust", "type": "noise", "recipe": "dust.json"}]))
+
+    def same(self, one, other):
+        return self.path(one).read_bytes() == self.path(other).read_bytes()
+
+    def test_sequences_are_those_of_render_and_bake(self):
+        self.view(self.film, ["wait samples 1", "set pixel.samples 2", "size 48 27",
+                              f"render {self.path('a.####.exr')} 2-3 png", f"bake dust {self.path('a.####.vdb')} 1-2",
+                              "wait job", f"screenshot {self.path('window.png')}"])
+        self.succeed("render", self.film, "-o", self.path("b.####.exr"), "--frames", "2-3", "--res", "48x27",
+                     "--samples", 2, "--png", "-q")
+        self.succeed("bake", self.path("dust.json"), "-o", self.path("b.####.vdb"), "--frames", "1-2", "-q")
+        for name in ("0002.exr", "0003.exr", "0002.png", "0003.png", "0001.vdb", "0002.vdb"):
+            self.assertTrue(self.same(f"a.{name}", f"b.{name}"), name)
+        self.assertFalse(self.path("a.0001.exr").exists())
+
+    def test_a_job_stops_and_its_mistakes_end_scripts(self):
+        told = self.view(self.film, ["wait samples 1", "set pixel.samples 4096", "mode path",
+                                     f"render {self.path('a.####.exr')} 1-900", "wait 0.3", "stop-job", "wait job",
+                                     "mode march", "reset all", f"render {self.path('b.####.exr')} 1", "wait job"])
+        self.assertNotIn("error", told)
+        self.assertTrue(self.path("b.0001.exr").exists())
+        self.assertFalse(self.path("a.0900.exr").exists())
+        for line, code in (("render out.exr", 2), ("render out.####.exr 3-", 2), ("bake fog out.####.vdb", 2),
+                           (f"render {self.film}/a.####.exr", 5)):
+            told = self.view(self.film, ["wait samples 1", line, "wait job"], code=code)
+            self.assertIn("script.txt:2", told, line)
+
+    def test_the_window_stays_for_a_job_until_told_otherwise(self):
+        self.view(self.film, ["wait samples 1", "set pixel.samples 4096", "mode path",
+                              f"render {self.path('a.####.exr')} 1-900", "close", "wait 0.3",
+                              f"screenshot {self.path('asked.png')}", "answer discard", "wait 60"], timeout=50)
+        self.assertTrue(self.path("asked.png").exists())
+        self.assertFalse(list(self.path(".").glob("*.tmp*")))
+
+
+@unittest.skipUnless(XVFB, "xvfb-run is not installed")
+class Reloading(ViewerTest):
+    def changed(self, film, change):
+        """Pictures before and after the change of a file, each as render has it."""
+        lines = ["wait samples 1", f"snapshot {self.path('a.exr')}", "wait 4", f"snapshot {self.path('b.exr')}", "quit"]
+        script = self.write("script.txt", "\n".join(lines))
+        self.succeed("render", film, "-o", self.path("before.exr"), "-q", "--frames", 1)
+        process = subprocess.Popen(self.command(film, "--script", script, "--samples", 2), text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment())
+        for _ in range(600):
+            if self.path("a.exr").exists():
+                break
+            time.sleep(0.1)
+        change()
+        errors = process.communicate(timeout=120)[1]
+        self.assertEqual(self.exit_code(), 0, errors)
+        self.succeed("render", film, "-o", self.path("after.exr"), "-q", "--frames", 1)
+        pictures = [self.path(name).read_bytes() for name in ("before.exr", "a.exr", "after.exr", "b.exr")]
+        self.assertTrue(pictures[0] == pictures[1])
+        self.assertTrue(pictures[2] == pictures[3])
+        self.assertTrue(pictures[0] != pictures[2])
+
+    def test_a_recipe_that_changes_is_grown_anew(self):
+        self.write("dust.json", recipe())
+        film = self.write("scene.json", scene(media=[{"name": "dust", "type": "noise", "recipe": "dust.json"}]))
+        self.changed(film, lambda: self.write("dust.json", recipe(density={"threshold": 0.2, "gain": 5})))
+
+    def test_a_volume_that_changes_is_read_again(self):
+        self.write("one.json", recipe())
+        self.write("other.json", recipe(density={"threshold": 0.2, "gain": 5}))
+        bake = lambda name: self.succeed("bake", self.path(name), "-o", self.path("fog.vdb"), "-q")
+        bake("one.json")
+        film = self.write("scene.json", scene(media=[{"name": "fog", "type": "vdb", "file": "fog.vdb"}]))
+        self.changed(film, lambda: bake("other.json"))
+
+
+if __name__ == "__main__":
+    unittest.main()
