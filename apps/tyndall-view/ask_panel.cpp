@@ -12,42 +12,47 @@ constexpr const char* title = "Before this closes";
 
 // A scene that no scene file says yet needs a name first.
 void save_and_go(const ViewState& state, const EditMemory& memory, const Act& act) {
-    if (!state.session->has_file) act({Verb::save_as, {memory.file_name}, {}, {}});
-    if (!state.message_is_error) act({Verb::answer, {"save"}, {}, {}});
+    if (!state.session->has_file) {
+        act({Verb::save_as, {memory.file_name}, {}, {}});
+        if (state.message_is_error) return;
+    }
+    act({Verb::answer, {"save"}, {}, {}});
 }
 
-void draw_buttons(const ViewState& state, bool unsaved, const EditMemory& memory, const Act& act) {
+void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const EditMemory& memory,
+                  const Act& act) {
     const float width = 6.5f * ImGui::GetFontSize();
     if (unsaved) {
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
-        if (ImGui::Button("Save", {width, 0})) save_and_go(state, memory, act);
+        const bool replaces = !state.session->has_file && memory.file_exists;
+        if (ImGui::Button(replaces ? "Replace" : "Save", {width, 0})) save_and_go(state, memory, act);
         ImGui::PopStyleColor();
         ImGui::SameLine();
     }
-    if (ImGui::Button(unsaved ? "Discard" : "Stop it", {width, 0})) act({Verb::answer, {"discard"}, {}, {}});
+    if (ImGui::Button(unsaved ? "Discard" : ends_job ? "Stop it" : "Close", {width, 0})) act({Verb::answer, {"discard"}, {}, {}});
     ImGui::SameLine();
     if (ImGui::Button("Cancel", {width, 0}) || ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
         act({Verb::answer, {"cancel"}, {}, {}});
 }
 
 // What would be lost.
-void draw_losses(const ViewState& state, bool unsaved, EditMemory& memory) {
+void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory& memory) {
     const std::string name = printable(state.scene->file.filename().string(), 60);
     if (unsaved) ImGui::Text("%s has edits that are not saved.", name.c_str());
     if (unsaved && !state.session->has_file) {
         propose_name(state, memory);
         ImGui::TextDisabled("There is no scene file yet; save it as");
         ImGui::SetNextItemWidth(-1);
-        ImGui::InputText("##file", &memory.file_name);
+        if (ImGui::InputText("##file", &memory.file_name)) memory.file_exists = is_taken(memory.file_name);
     }
-    if (state.job && state.asked->verb == Verb::close) {
+    if (ends_job) {
         ImGui::Text("%s is not done: it ends with the window.", printable(state.job->name, 80).c_str());
         ImGui::TextDisabled("Finished frames stay.");
     }
 }
 }
 
-void draw_question(const ViewState& state, EditMemory& memory, const Act& act) {
+void draw_question(const ViewState& state, const Shelf& shelf, EditMemory& memory, const Act& act) {
     if (state.asked && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(title, nullptr,
@@ -59,16 +64,18 @@ void draw_question(const ViewState& state, EditMemory& memory, const Act& act) {
         ImGui::EndPopup();
         return;
     }
-    const bool unsaved = has_unsaved_changes(*state.session);
-    if (!unsaved && !state.job) act({Verb::answer, {"discard"}, {}, {}}); // the job has ended meanwhile
-    draw_losses(state, unsaved, memory);
+    const bool unsaved = has_unsaved_changes(*state.session), ends_job = state.job && state.asked->verb == Verb::close;
+    // The job has ended meanwhile, and nobody has to be told why.
+    if (!unsaved && !ends_job && !shelf.news_is_error) act({Verb::answer, {"discard"}, {}, {}});
+    draw_losses(state, unsaved, ends_job, memory);
+    if (!unsaved && !shelf.news.empty()) ImGui::TextWrapped("%s", shelf.news.c_str());
     if (state.message_is_error && !state.message.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, trouble);
         ImGui::TextWrapped("%s", state.message.c_str());
         ImGui::PopStyleColor();
     }
     ImGui::Dummy({0, 0.3f * ImGui::GetFontSize()});
-    draw_buttons(state, unsaved, memory, act);
+    draw_buttons(state, unsaved, ends_job, memory, act);
     ImGui::EndPopup();
 }
 }

@@ -1,7 +1,7 @@
-// The question that comes before unsaved edits would be lost.
+// The question that comes before unsaved edits would be lost or a job ended.
 #pragma once
 #include "panels.h"
 
 namespace tyndall {
-void draw_question(const ViewState& state, EditMemory& memory, const Act& act);
+void draw_question(const ViewState& state, const Shelf& shelf, EditMemory& memory, const Act& act);
 }

@@ -169,6 +169,7 @@ bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place,
     const Zoom zoom{{place.low.x, place.low.y}, place.height() / static_cast<float>(size.y)};
     const float type = ImGui::GetFontSize(), length = 4.7f * type / zoom.scale, reach = 0.75f * type / zoom.scale;
     const vec2 pixel = zoom.back(io.MousePos);
+    if (!has_camera(state)) return memory.has_mouse;
     const Camera camera = camera_now(state);
 
     const std::vector<LightIcon> icons = icons_in_view(state, size, 3 * type / zoom.scale);

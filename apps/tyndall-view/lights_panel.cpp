@@ -47,11 +47,6 @@ void draw_steps(const ViewState& state, const Act& act) {
         ImGui::TextDisabled("saved");
 }
 
-bool is_taken(const std::filesystem::path& file) {
-    std::error_code ignored;
-    return std::filesystem::exists(file, ignored);
-}
-
 // "lantern" of lantern_12.
 std::string without_number(const std::string& name) {
     const size_t last = name.find_last_not_of("0123456789");
@@ -143,6 +138,11 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     }
     ImGui::PopID();
 }
+}
+
+bool is_taken(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::exists(file, ignored);
 }
 
 void propose_name(const ViewState& state, EditMemory& memory) {

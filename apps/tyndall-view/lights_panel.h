@@ -6,6 +6,9 @@
 namespace tyndall {
 void draw_lights(const ViewState& state, EditMemory& memory, const Act& act);
 
+// Whether a file is there that would be written over.
+bool is_taken(const std::filesystem::path& file);
+
 // A name to save the scene as, for each scene once.
 void propose_name(const ViewState& state, EditMemory& memory);
 

@@ -75,6 +75,6 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         ImGui::End();
     }
     if (state.help) draw_help(act);
-    draw_question(state, memory.edits, act);
+    draw_question(state, shelf, memory.edits, act);
 }
 }

@@ -13,6 +13,8 @@ struct Shelf {
     std::vector<Limit> limits;                   // of the mode, as far as they are known
     std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
     double saving = -1;                          // share of a file that is being written
+    std::string news;                            // of work that goes on beside the interface
+    bool news_is_error = false;
     std::shared_ptr<const VolumePicture> volume; // the same
     void *texture = nullptr, *volume_texture = nullptr;
     double seconds = 0; // since the last interface frame
@@ -26,6 +28,7 @@ struct FileField {
 
 // What is to be written.
 struct WriteMemory {
+    std::filesystem::path scene; // that the rest is about
     FileField picture, sequence, fog;
     std::string frames, fog_frames; // empty = all of the scene's
     std::string medium;             // to bake

@@ -79,8 +79,8 @@ struct Words {
     ImVec4 color;
 };
 
-// Words side by side on a dark band, so that they can be read on any picture.
-void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
+// Words side by side on a dark band, so that they can be read on any picture. Returns its height.
+float draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float pad = 0.4f * ImGui::GetFontSize(), gap = words.size() > 1 ? 2.5f * pad : 0;
     ImVec2 extent{0, 0};
@@ -95,6 +95,7 @@ void draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
                       width);
         x += ImGui::CalcTextSize(one.text.c_str(), nullptr, false, width).x + gap;
     }
+    return extent.y + pad;
 }
 
 // The line between two techniques, which the mouse can take along, and their names.
@@ -179,12 +180,29 @@ std::string status_line(const ViewState& state, const ShownPicture& picture) {
     return text + "  \u00b7  " + std::string(name_of(mode.accuracy));
 }
 
+namespace {
+// What goes on beside the picture, one band below the other.
+void draw_messages(const ViewState& state, const Shelf& shelf, ImVec2 at, float width) {
+    const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
+    const auto band = [&](const std::string& message, const ImVec4& color) {
+        if (!message.empty()) at.y += draw_band(at, {{message, color}}, width) + 0.2f * ImGui::GetFontSize();
+    };
+    if (shelf.saving >= 0) band(formatted("writing, %.0f %%", 100 * shelf.saving), accent);
+    if (state.job && !state.panels)
+        band(formatted("%s, %.0f %%", state.job->name.c_str(), 100 * state.job->share), accent);
+    band(state.file_error, trouble);
+    band(state.message, state.message_is_error ? trouble : text);
+    band(shelf.news, shelf.news_is_error ? trouble : text);
+    if (state.scene) band(missing_text(*state.scene, state.frame, state.missing), trouble);
+}
+}
+
 void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const Act& act) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
     if (!shelf.picture || space.x < 8 || space.y < 8) {
-        if (state.message.empty() && state.file_error.empty())
+        if (state.message.empty() && state.file_error.empty() && shelf.news.empty())
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
         const ivec2 wanted = shelf.picture->wanted;
@@ -211,15 +229,6 @@ void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const
         draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
         draw_errors(place, bottom - line - 0.5f * type, state, *shelf.picture);
     }
-    const ImVec2 above{corner.x + 0.5f * type, corner.y + 0.5f * type};
-    if (shelf.saving >= 0)
-        draw_band(above, {{formatted("writing, %.0f %%", 100 * shelf.saving), accent}}, space.x - 2 * type);
-    else if (!state.file_error.empty())
-        draw_band(above, {{state.file_error, trouble}}, space.x - 2 * type);
-    else if (!state.message.empty())
-        draw_band(above, {{state.message, state.message_is_error ? trouble : text_color}}, space.x - 2 * type);
-    else if (state.scene)
-        if (const std::string gap = missing_text(*state.scene, state.frame, state.missing); !gap.empty())
-            draw_band(above, {{gap, trouble}}, space.x - 2 * type);
+    draw_messages(state, shelf, {corner.x + 0.5f * type, corner.y + 0.5f * type}, space.x - 2 * type);
 }
 }

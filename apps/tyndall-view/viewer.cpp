@@ -1,6 +1,7 @@
 // The frames of the interface.
 #include "../tyndall/common.h"
 #include "base/error.h"
+#include "preview/edit_actions.h"
 #include "preview/volume_picture.h"
 #include "render/png.h"
 #include "viewer_parts.h"
@@ -22,7 +23,9 @@ void take_loaded(Viewer& viewer) {
     state.loading = false;
     if (loaded->session) {
         state.file_error.clear();
+        state.message.clear();
         take_scene(state, std::move(*loaded));
+        if (!state.message.empty()) announce(viewer, std::exchange(state.message, {}), true);
         return;
     }
     // The last good picture stays, unless there is none or a script asked for this scene.
@@ -31,7 +34,7 @@ void take_loaded(Viewer& viewer) {
     if (std::exchange(state.reloading, false))
         state.file_error = loaded->error;
     else
-        tell(viewer, loaded->error, true);
+        announce(viewer, loaded->error, true);
 }
 
 // Reads the scene again when one of its files has changed.
@@ -41,9 +44,8 @@ void watch_files(Viewer& viewer) {
     viewer.watched_at = viewer.now;
     if (changed_inputs(state.session->inputs).empty()) return;
     state.session->inputs = input_times(*state.scene); // of a broken file too: the next change counts
-    state.scene_file = state.scene->file, state.loading = state.reloading = true;
     viewer.script_place.clear();
-    ++state.loads;
+    reload_scene(state);
 }
 
 void show_title(Viewer& viewer) {
@@ -60,7 +62,7 @@ void take_pictures(Viewer& viewer) {
         viewer.picture_revision = picture->revision;
         if (!picture->error.empty()) {
             if (!viewer.script.finished()) fail(picture->code, viewer.script_place, picture->error);
-            tell(viewer, picture->error, true);
+            announce(viewer, picture->error, true);
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
@@ -75,20 +77,21 @@ void take_pictures(Viewer& viewer) {
         --viewer.files_to_come;
         if (!saved->error.empty() && !viewer.script.finished()) fail(saved->code, viewer.file_place, saved->error);
         if (saved->error.empty())
-            tell(viewer, formatted("wrote %s in %.2f s", saved->file.c_str(), saved->seconds), false);
+            announce(viewer, formatted("wrote %s in %.2f s", saved->file.c_str(), saved->seconds), false);
         else
-            tell(viewer, saved->error, true);
+            announce(viewer, saved->error, true);
     }
     viewer.shelf.saving = viewer.thread.saving();
 }
 
 void take_job(Viewer& viewer) {
-    viewer.state.job = viewer.jobs.status();
     const std::optional<JobResult> result = viewer.jobs.take_result();
+    viewer.state.job = viewer.jobs.status();
+    if (viewer.now > viewer.news_until) viewer.shelf.news.clear();
     if (!result) return;
     const bool failed = result->code != ExitCode::ok;
     if (failed && !viewer.script.finished()) fail(result->code, viewer.job_place, result->message);
-    tell(viewer, result->message, failed);
+    announce(viewer, result->message, failed);
 }
 
 void post_request(Viewer& viewer) {
@@ -102,8 +105,10 @@ void post_request(Viewer& viewer) {
     viewer.posted = state.revision, viewer.posted_shown = state.shown_revision, viewer.posted_moving = moving;
     try {
         viewer.thread.post(request_of(state, moving));
-    } catch (const Error& error) {
+    } catch (const Error& error) { // a camera that looks nowhere at this frame
+        if (!viewer.script.finished()) fail(error.code, viewer.script_place, error.what());
         tell(viewer, error.what(), true);
+        viewer.picture_revision = state.revision; // there will be no picture
     }
 }
 
@@ -125,7 +130,7 @@ void take_screenshot(Viewer& viewer) {
 
 // What was done to the window as a whole.
 void take_wishes(Viewer& viewer) {
-    if (viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
+    if (viewer.files_to_come == 0 && viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
     if (const std::string file = viewer.window.take_dropped(); !file.empty()) act(viewer, {Verb::open, {file}, {}, {}});
 }
 
@@ -171,6 +176,7 @@ void run_viewer(const ViewerOptions& options) {
     viewer.started = viewer.now = seconds_now();
     while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
     viewer.times.seconds = seconds_now() - viewer.started;
+    viewer.window.hide(); // what is being made takes a moment to end
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
 }
 }

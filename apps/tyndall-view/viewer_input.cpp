@@ -11,6 +11,7 @@ namespace tyndall {
 namespace {
 constexpr double settle = 0.15; // seconds after a motion until pictures count as still
 constexpr int drag_frames = 12;
+constexpr double reading = 8;  // seconds that news stay
 constexpr double flying = 25; // key presses a second that holding a key counts as
 }
 
@@ -21,6 +22,11 @@ double seconds_now() {
 
 void tell(Viewer& viewer, const std::string& message, bool is_error) {
     viewer.state.message = message, viewer.state.message_is_error = is_error;
+}
+
+void announce(Viewer& viewer, const std::string& news, bool is_error) {
+    viewer.shelf.news = news, viewer.shelf.news_is_error = is_error;
+    viewer.news_until = viewer.now + reading;
 }
 
 bool is_moving(const Viewer& viewer) { return viewer.now < viewer.moved_at + settle || viewer.state.playing; }
@@ -48,13 +54,13 @@ std::string word_of(const Action& action, size_t number) {
     return number < action.words.size() ? action.words[number] : "";
 }
 
-RenderFiles frames_of(const Viewer& viewer, const Action& action) {
-    return render_files(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2) == "png",
+RenderJob sequence_of(const Viewer& viewer, const Action& action) {
+    return sequence_job(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2) == "png",
                         viewer.options.isa);
 }
 
-void copy_command(Viewer& viewer, const RenderFiles& files) {
-    const std::string command = command_of(viewer.state, files);
+void copy_command(Viewer& viewer, const RenderJob& job) {
+    const std::string command = command_of(viewer.state, job);
     ImGui::SetClipboardText(command.c_str());
     tell(viewer, "copied: " + command, false);
 }
@@ -79,7 +85,7 @@ void perform(Viewer& viewer, const Action& action) {
         viewer.screenshot = action.words[0];
         break;
     case Verb::render:
-        start_job(viewer, frames_of(viewer, action));
+        start_job(viewer, render_files(viewer.state, sequence_of(viewer, action)));
         break;
     case Verb::bake:
         start_job(viewer, bake_files(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2)));
@@ -88,7 +94,7 @@ void perform(Viewer& viewer, const Action& action) {
         viewer.jobs.stop();
         break;
     case Verb::copy_command:
-        copy_command(viewer, frames_of(viewer, action));
+        copy_command(viewer, sequence_of(viewer, action));
         break;
     case Verb::quit:
         viewer.quit = true;
@@ -104,9 +110,9 @@ void act(Viewer& viewer, const Action& action) {
     // A scene that hands open is no matter of the script's.
     if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_place.clear();
     try {
-        if (action.verb != Verb::brighten) viewer.state.message.clear();
+        tell(viewer, {}, false);
         perform(viewer, action);
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
         tell(viewer, error.what(), true);
     }
 }
@@ -158,6 +164,16 @@ void move_scripted_mouse(Viewer& viewer) {
 }
 
 namespace {
+// Nothing when the camera looks nowhere.
+std::optional<Action> key_action(Viewer& viewer, const std::string& key) {
+    try {
+        return action_of_key(viewer.state, key);
+    } catch (const Error& error) {
+        tell(viewer, error.what(), true);
+        return {};
+    }
+}
+
 // Keys that are pressed now; those that fly go on while they are held.
 void read_keys(Viewer& viewer) {
     const ImGuiIO& io = ImGui::GetIO();
@@ -167,7 +183,7 @@ void read_keys(Viewer& viewer) {
         const bool flies = name.size() == 1 && std::string_view("wasdqe").find(name[0]) != std::string_view::npos;
         const bool repeats = name == "left" || name == "right" || name == "[" || name == "]";
         const std::string pressed = io.KeyCtrl ? (io.KeyShift ? "ctrl+shift+" : "ctrl+") + name : name;
-        std::optional<Action> action = action_of_key(viewer.state, pressed);
+        std::optional<Action> action = key_action(viewer, pressed);
         if (!action) continue;
         if (ImGui::IsKeyPressed(code, repeats)) {
             act(viewer, *action);

@@ -20,6 +20,7 @@ struct Viewer {
     SceneLoader loader;
     std::string title;
     double watched_at = 0, started = 0, moved_at = -1e9, input_at = -1e9, now = 0, frame_seconds = 0;
+    double news_until = 0;
     int loads_begun = 0;
     uint64_t motions_seen = 0, posted = 0, posted_shown = 0;
     bool posted_moving = false;
@@ -46,7 +47,10 @@ struct Viewer {
 };
 
 double seconds_now(); // of a clock
-void tell(Viewer& viewer, const std::string& message, bool is_error);
+void tell(Viewer& viewer, const std::string& message, bool is_error); // until the next action
+
+// What came about by itself: it stays long enough to be read.
+void announce(Viewer& viewer, const std::string& news, bool is_error);
 
 // Whether more changes are likely at once.
 bool is_moving(const Viewer& viewer);

@@ -28,6 +28,7 @@ public:
     std::string take_dropped(); // a file dropped on it, said once; empty = none
     // Sleeps until there is something to do, or for so long.
     void wait(double seconds);
+    void hide();
     static void wake(); // from any thread: ends wait()
     void begin_frame(const ScriptedInput& input);
     void end_frame(); // the frame's drawing is complete, but not on the screen

@@ -88,13 +88,15 @@ void draw_bake(const ViewState& state, WriteMemory& memory, const Act& act) {
     draw_name("##fog", usual_bake_name(memory.medium), memory.fog);
     draw_range("##fog frames", *state.scene, memory.fog_frames);
     ImGui::SameLine();
-    if (job_button("Bake fog", state, "\"" + memory.medium + "\" to VDB files, as tyndall bake makes them of its recipe"))
+    if (job_button("Bake fog", state,
+                   "\"" + memory.medium + "\" to VDB files, as tyndall bake makes them of its recipe"))
         act({Verb::bake, {memory.medium, memory.fog.name, memory.fog_frames}, {}, {}});
 }
 }
 
 void draw_writing(const ViewState& state, WriteMemory& memory, const Act& act) {
     if (!state.scene || !ImGui::CollapsingHeader("write files", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (memory.scene != state.scene->file) memory = {state.scene->file, {}, {}, {}, {}, {}, {}, memory.pngs};
     draw_picture_file(state, memory, act);
     ImGui::Separator();
     draw_sequence(state, memory, act);
@@ -110,7 +112,12 @@ void draw_job(const JobStatus& job, const Act& act) {
         text += ", " + seconds_text(job.seconds_left) + " left";
     const float button = ImGui::CalcTextSize("Stop").x + 4 * ImGui::GetStyle().FramePadding.x;
     ImGui::ProgressBar(static_cast<float>(job.share),
-                       {-button - ImGui::GetStyle().ItemSpacing.x, ImGui::GetFrameHeight()}, text.c_str());
+                       {-button - ImGui::GetStyle().ItemSpacing.x, ImGui::GetFrameHeight()}, "");
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax(), pad = ImGui::GetStyle().FramePadding;
+    ImGui::PushClipRect(low, high, true); // not as a label, which would end at ##
+    ImGui::GetWindowDrawList()->AddText({low.x + 2 * pad.x, low.y + pad.y}, ImGui::GetColorU32(ImGuiCol_Text),
+                                        text.c_str());
+    ImGui::PopClipRect();
     tooltip(text);
     ImGui::SameLine();
     ImGui::BeginDisabled(job.stopping);

@@ -7,10 +7,6 @@
 
 namespace tyndall {
 namespace {
-std::string seconds_text(double seconds) {
-    return formatted(seconds < 1 ? "%.0f ms" : "%.3g s", seconds < 1 ? 1000 * seconds : seconds);
-}
-
 // Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
 Term history_term(const View& view, const Snapshot& snapshot, const Contender& chosen, double error,
                   const TermControl& control) {

@@ -11,6 +11,7 @@ namespace tyndall {
 const std::vector<VerbInfo>& verbs() {
     static const std::vector<VerbInfo> all{
         {Verb::open, "open", "FILE", "show another scene"},
+        {Verb::reload, "reload", "", "read all files again; unsaved edits stay (files that change are read by themselves)"},
         {Verb::set, "set", "NAME VALUE", "change a setting, as --set does"},
         {Verb::reset, "reset", "NAME", "a setting back to its usual value; all: every one"},
         {Verb::mode, "mode", "NAME", "render with another technique"},
@@ -65,8 +66,9 @@ const std::vector<VerbInfo>& verbs() {
          "frames to files as tyndall render does, out.####.exr, while the viewer goes on; png: pictures as well"},
         {Verb::bake, "bake", "NAME FILE [RANGE]", "a medium grown from a recipe to out.####.vdb, as tyndall bake does"},
         {Verb::stop_job, "stop-job", "", "end that: finished frames stay, and are kept when it is asked for again"},
-        {Verb::copy_command, "copy-command", "FILE [RANGE] [exr|png]", "to the clipboard: the command line that renders the same frames"},
-        {Verb::close, "close", "", "close the window as its button does: asks when there are unsaved edits"},
+        {Verb::copy_command, "copy-command", "FILE [RANGE] [exr|png]",
+         "to the clipboard: the command line that renders the same frames"},
+        {Verb::close, "close", "", "close the window as its button does: asks when edits are unsaved or a job runs"},
         {Verb::answer, "answer", "NAME", "what is to become of them: save, discard or cancel"},
         {Verb::quit, "quit", "", "end without asking"},
     };
@@ -136,9 +138,10 @@ void add_parameter(Action& action, std::string_view parameter, const std::string
 void check_wait(const Action& action) {
     const std::string& what = action.words[0];
     const bool samples = what == "samples";
+    constexpr const char* usage = "wait idle, wait job, wait SECONDS or wait samples N";
     if (samples != (action.numbers.size() == 1))
-        refuse(action.place, "expected wait idle, wait job, wait SECONDS or wait samples N");
-    if (what != "idle" && what != "job" && !samples && number(what, action.place, "wait idle, wait job, wait SECONDS or wait samples N") < 0)
+        refuse(action.place, std::string("expected ") + usage);
+    if (what != "idle" && what != "job" && !samples && number(what, action.place, usage) < 0)
         refuse(action.place, "seconds cannot be negative");
 }
 }

@@ -10,6 +10,7 @@
 namespace tyndall {
 enum class Verb {
     open,
+    reload,
     set,
     reset,
     mode,

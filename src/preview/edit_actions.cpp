@@ -12,6 +12,7 @@ namespace tyndall {
 namespace {
 SceneSession& open_one(ViewState& state) {
     loaded_scene(state);
+    if (state.loading && !state.reloading) fail(ExitCode::usage, "viewer", "another scene is being read");
     return *state.session;
 }
 
@@ -98,6 +99,13 @@ void open_scene(ViewState& state, const Action& action) {
     load(state, action.words[0]);
 }
 
+void reload_scene(ViewState& state) {
+    const Scene& scene = loaded_scene(state);
+    if (state.loading) return;
+    state.scene_file = scene.file, state.loading = state.reloading = true;
+    ++state.loads;
+}
+
 void close_window(ViewState& state, const Action& action) {
     if (is_unsaved(state) || state.job)
         state.asked = action;
@@ -137,10 +145,13 @@ Action action_of(const Scene& scene, const Edit& edit, uint64_t drag) {
 namespace {
 constexpr VerbAction table[] = {
     {Verb::open, open_scene},
+    {Verb::reload, [](ViewState& state, const Action&) { reload_scene(state); }},
     {Verb::close, close_window},
     {Verb::answer, [](ViewState& state, const Action& action) { answer(state, action.words[0]); }},
     {Verb::select,
-     [](ViewState& state, const Action& action) { state.selected = parse_thing(loaded_scene(state), action.words[0]); }},
+     [](ViewState& state, const Action& action) {
+         state.selected = parse_thing(loaded_scene(state), action.words[0]);
+     }},
     {Verb::edit,
      [](ViewState& state, const Action& action) {
          edit_scene(state, action.words[0], action.words[1], action.numbers.empty() ? 0 : action.numbers[0]);

@@ -15,10 +15,11 @@ void cancel_drag(ViewState& state, double drag);
 // Into its own file when none is given. Throws Error.
 void save_scene(ViewState& state, const std::filesystem::path& file);
 
-// Hands are asked before unsaved edits are lost, scripts only when they close the window, which also ends a job: `asked`
-// then waits for an answer: save, discard or cancel. Throws Error: usage (of another answer, or without a question), and as saving does,
-// and goes on asking.
+// Hands are asked before unsaved edits are lost, scripts only when they close the window, which ends a job as well:
+// `asked` then waits for an answer: save, discard or cancel. Throws Error: usage (of another answer, or without a
+// question), and as saving does, and goes on asking.
 void open_scene(ViewState& state, const Action& action);
+void reload_scene(ViewState& state); // from its files, in the background; unsaved edits stay
 void close_window(ViewState& state, const Action& action);
 void answer(ViewState& state, const std::string& word);
 

@@ -40,6 +40,7 @@ JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>
     const RenderReport report = render_sequence(*files.scene, job, progress, cancel);
     const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(job.frames.size());
     if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + job.output};
+    progress.finish();
     const int kept = static_cast<int>(std::ranges::count_if(report.frames, &FrameReport::kept));
     std::string text = count_text(done - kept, "frame") + " rendered in " + seconds_text(report.seconds);
     if (kept > 0) text += formatted(", %d kept", kept);
@@ -58,26 +59,31 @@ JobResult bake_fog(const BakeFiles& files, Progress& progress, std::atomic<bool>
     if (report.cancelled)
         return {"stopped: " + frames_done(done, static_cast<int>(files.frames.size())) +
                 " are finished: " + files.output};
+    progress.finish();
     std::string text = count_text(report.written, "frame") + " baked in " + seconds_text(report.seconds);
     if (report.kept > 0) text += formatted(", %d kept", report.kept);
     return {text + ": " + files.output};
 }
 }
 
-RenderFiles render_files(const ViewState& state, const std::string& output, const std::string& range, bool png,
-                         const std::string& isa) {
-    const Scene& shown = loaded_scene(state);
+RenderJob sequence_job(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                       const std::string& isa) {
+    const Scene& scene = loaded_scene(state);
     RenderJob job;
-    job.frames = frames_of(shown, range);
+    job.frames = frames_of(scene, range);
     check_pattern(output, ".exr", job.frames.size() > 1, "render");
-    auto scene = std::make_shared<Scene>(shown);
-    job.scene_file = scene->file, job.output = output;
-    job.mode = state.mode, job.quality = state.quality, job.settings = state.settings;
-    job.camera = state.free ? add_camera(*scene, state.view) : state.camera;
+    job.scene_file = scene.file, job.output = output;
+    job.mode = state.mode, job.quality = state.quality, job.settings = state.settings, job.camera = state.camera;
     job.resolution = state.size, job.seed = state.seed, job.missing = state.missing;
     job.exposure = state.shown.exposure, job.light_units = state.session->options.light_units, job.isa = isa;
     job.png = png, job.resume = true;
     job.unsaved = unsaved_text(*state.session);
+    return job;
+}
+
+RenderFiles render_files(const ViewState& state, RenderJob job) {
+    auto scene = std::make_shared<Scene>(loaded_scene(state));
+    if (state.free) job.camera = add_camera(*scene, state.view);
     return {std::move(scene), std::move(job)};
 }
 
@@ -91,8 +97,9 @@ std::vector<std::string> bakeable_media(const Scene& scene) {
 BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
                      const std::string& range) {
     const Scene& scene = loaded_scene(state);
-    const auto found = std::ranges::find(scene.media, medium, &MediumSource::name);
-    if (found == scene.media.end() || !found->recipe) {
+    const auto found =
+        std::ranges::find_if(scene.media, [&](const MediumSource& one) { return one.recipe && one.name == medium; });
+    if (found == scene.media.end()) {
         const std::vector<std::string> names = bakeable_media(scene);
         fail(ExitCode::usage, "bake",
              "no medium '" + printable(medium, 40) + "' that is grown from a recipe; " +
@@ -102,16 +109,22 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
     check_pattern(output, ".vdb", files.frames.size() > 1, "bake");
     if (found->voxel_size > 0) files.recipe.voxel_size = found->voxel_size;
     files.recipe.frame_rate = scene.frame_rate;
+    const double seconds = moment_of(scene, files.frames.front()).seconds;
+    files.recipe.extinction = found->extinction.at(seconds), files.recipe.albedo = found->albedo.at(seconds);
+    files.recipe.g = found->g.at(seconds);
     return files;
 }
 
-std::string command_of(const ViewState& state, const RenderFiles& files) {
-    const bool saved = state.session->has_file ? files.job.unsaved.empty() : !has_unsaved_changes(*state.session);
-    if (!saved) fail(ExitCode::usage, "copy-command", "no file has the edits yet: save the scene first");
+std::string command_of(const ViewState& state, RenderJob job) {
+    const Scene& scene = loaded_scene(state);
+    if (!job.unsaved.empty() || (!state.session->has_file && scene.file.extension() == ".vdb"))
+        fail(ExitCode::usage, "copy-command", "no scene file has what is shown: save the scene first");
     if (state.free)
         fail(ExitCode::usage, "copy-command",
              "no file has the camera moved by hand: copy it into the scene, or go back to one of the scene's (home)");
-    return command_line(files.job);
+    job.scene_file = std::filesystem::absolute(job.scene_file);
+    job.output = std::filesystem::absolute(job.output).string();
+    return command_line(job);
 }
 
 std::string name_of(const FileJob& job) {
@@ -139,11 +152,13 @@ JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& can
         return {error.what(), error.code};
     } catch (const std::bad_alloc&) {
         return {"out of memory", ExitCode::out_of_memory};
+    } catch (const std::exception& error) {
+        return {error.what(), ExitCode::internal};
     }
 }
 
 std::string usual_sequence_name(const ViewState& state) {
-    return state.scene_file.stem().string() + "." + state.mode + ".####.exr";
+    return loaded_scene(state).file.stem().string() + "." + state.mode + ".####.exr";
 }
 
 std::string usual_bake_name(const std::string& medium) {

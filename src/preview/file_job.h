@@ -22,10 +22,14 @@ using FileJob = std::variant<RenderFiles, BakeFiles>;
 
 // The frames of a range, the scene's when it is empty, as the state shows them; those that are already there and right
 // are kept. Throws Error (usage: before the first scene, of range and pattern).
-RenderFiles render_files(const ViewState& state, const std::string& output, const std::string& range, bool png,
-                         const std::string& isa);
+RenderJob sequence_job(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                       const std::string& isa);
 
-// The fog of a medium that is grown from a recipe, with its edits. Throws Error (usage).
+// With a scene of its own, and with the camera moved by hand as one of that.
+RenderFiles render_files(const ViewState& state, RenderJob job);
+
+// The fog of a medium that is grown from a recipe, with its edits; its optics, for the files' metadata, are those of
+// the first frame. Throws Error (usage).
 BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
                      const std::string& range);
 
@@ -33,7 +37,7 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
 std::vector<std::string> bakeable_media(const Scene& scene);
 
 // The command line that does the same. Throws Error (usage) when the scene's files do not have what is shown.
-std::string command_of(const ViewState& state, const RenderFiles& files);
+std::string command_of(const ViewState& state, RenderJob job);
 
 // How a job ended.
 struct JobResult {

@@ -37,6 +37,7 @@ std::optional<JobStatus> JobThread::status() const {
 
 std::optional<JobResult> JobThread::take_result() {
     const std::scoped_lock lock(mutex_);
+    if (result_) progress_ = nullptr;
     return std::exchange(result_, std::nullopt);
 }
 
@@ -45,7 +46,7 @@ void JobThread::run(const FileJob& job) {
     JobResult result = run_job(job, *progress_, cancel_);
     {
         const std::scoped_lock lock(mutex_);
-        progress_ = nullptr, result_ = std::move(result);
+        result_ = std::move(result);
     }
     if (news_) news_();
 }

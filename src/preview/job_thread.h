@@ -21,8 +21,8 @@ public:
     // No frame is begun any more, and those being rendered are given up.
     void stop();
 
+    std::optional<JobResult> take_result();  // of a job that has ended, once; until then it counts as running
     std::optional<JobStatus> status() const; // of the job that runs
-    std::optional<JobResult> take_result();  // of one that ended, once
 
 private:
     void run(const FileJob& job);

@@ -37,6 +37,7 @@ std::optional<Action> action_of_key(const ViewState& state, std::string_view key
     if (key == "t") return Action{Verb::tab, {state.lights_tab ? "render" : "lights"}, {}, {}};
     if (key == "g") return Action{Verb::handles, {toggled(state.handles)}, {}, {}};
     if (key == "tab") return Action{Verb::panels, {toggled(state.panels)}, {}, {}};
+    if (key == "f5") return Action{Verb::reload, {}, {}, {}};
     if (key == "f1") return Action{Verb::help, {toggled(state.help)}, {}, {}};
     if (key == "l") return Action{Verb::loop, {toggled(state.loop)}, {}, {}};
     if (key == "v") return show_next(state);
@@ -72,6 +73,7 @@ const std::vector<KeyInfo>& key_list() {
         {"ctrl + S", "save the scene"},
         {"P", "write the picture (EXR)"},
         {"tab", "panels"},
+        {"F5", "read the files again"},
         {"F1", "this list"},
     };
     return list;

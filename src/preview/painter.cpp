@@ -179,6 +179,8 @@ std::optional<ShownPicture> paint(Painter& painter, const Request& request, std:
         return failed(request, error.what(), error.code);
     } catch (const std::bad_alloc&) {
         return failed(request, "out of memory", ExitCode::out_of_memory);
+    } catch (const std::exception& error) {
+        return failed(request, error.what(), ExitCode::internal);
     }
 }
 }

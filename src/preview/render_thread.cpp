@@ -65,7 +65,7 @@ std::optional<Saved> RenderThread::take_saved() {
 
 bool RenderThread::idle() const {
     const std::scoped_lock lock(mutex_);
-    return !pending_ && !unfinished_ && !working_ && saves_.empty();
+    return !pending_ && !unfinished_ && !working_ && !picture_ && saves_.empty();
 }
 
 double RenderThread::saving() const { return saving_; }
@@ -86,6 +86,8 @@ void RenderThread::make_file(SaveJob job) {
         saved.error = error.what(), saved.code = error.code;
     } catch (const std::bad_alloc&) {
         saved.error = "out of memory", saved.code = ExitCode::out_of_memory;
+    } catch (const std::exception& error) {
+        saved.error = error.what(), saved.code = ExitCode::internal;
     }
     saved.seconds = seconds_since(start);
     saving_ = -1;

@@ -34,7 +34,7 @@ public:
     std::shared_ptr<const ShownPicture> take_picture();
     std::optional<Saved> take_saved();
 
-    bool idle() const;     // nothing is being made or will be
+    bool idle() const;     // nothing is being made or will be, and everything was taken
     double saving() const; // share done of the file being written; negative: none is
     PictureCounts counts() const;
 

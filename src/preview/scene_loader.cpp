@@ -21,6 +21,8 @@ LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) 
         return {file, nullptr, nullptr, error.what(), error.code};
     } catch (const std::bad_alloc&) {
         return {file, nullptr, nullptr, file.string() + ": out of memory", ExitCode::out_of_memory};
+    } catch (const std::exception& error) {
+        return {file, nullptr, nullptr, file.string() + ": " + error.what(), ExitCode::internal};
     }
 }
 }

@@ -177,7 +177,9 @@ std::string unsaved_text(const SceneSession& session) {
     if (first < session.saved) text = formatted("without the last %zu steps that were saved\n", session.saved - first);
     for (size_t i = first; i < session.done; ++i)
         for (const Edit& each : session.steps[i].edits) text += line_of(session.scene, each);
-    return text;
+    // Lines may name two things alike, and what was undone is not in them.
+    if (text.empty()) return text;
+    return text + "scene " + content_hash(edited_text(session.text, session.scene, edits_in_force(session))) + "\n";
 }
 
 void save(SceneSession& session) {

@@ -57,6 +57,7 @@ std::vector<std::string> reload(SceneSession& session);
 // The same with what was read elsewhere meanwhile; for interfaces that do not wait for files.
 std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh);
 
-// The edits that no file has yet, one a line; empty when there are none. A line more when something saved was undone.
+// The edits that no file has yet, one a line, and a hash of the scene with them; empty when there are none. A line more
+// when something saved was undone.
 std::string unsaved_text(const SceneSession& session);
 }

@@ -207,9 +207,8 @@ std::string new_volume_text(const std::filesystem::path& vdb) {
 }
 
 std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
-    if (std::filesystem::weakly_canonical(std::filesystem::absolute(from)) ==
-        std::filesystem::weakly_canonical(std::filesystem::absolute(to)))
-        return text;
+    std::error_code error; // folders that are not there, or not to be looked into, are different ones
+    if (std::filesystem::equivalent(from, to, error)) return text;
     const auto move = [&](const std::string& pointer, bool must_be_there) {
         const auto span = find_json(text, pointer);
         if (!span || text[span->begin] != '"') return;

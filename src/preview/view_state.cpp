@@ -56,6 +56,7 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     }
     state.scene = {state.session, &state.session->scene};
     state.stage = std::move(loaded.stage);
+    state.scene_file = state.scene->file;
     state.gaps = missing_frames(*state.scene);
     show_edits(state);
     select_by_name(state, selected);
@@ -64,6 +65,14 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     state.explain.reset();
     state.volume.medium.clear();
     state.frame = state.scene->first_frame;
+}
+
+bool has_camera(const ViewState& state) {
+    try {
+        return camera_now(state).vertical_fov > 0;
+    } catch (const Error&) {
+        return false;
+    }
 }
 
 Camera camera_now(const ViewState& state) {
@@ -128,6 +137,7 @@ Request request_of(const ViewState& state, bool moving) {
 }
 
 std::string usual_file_name(const ViewState& state) {
-    return state.scene_file.stem().string() + "." + state.mode + frame_name(".####", state.frame) + ".exr";
+    const std::filesystem::path& file = state.scene ? state.scene->file : state.scene_file;
+    return file.stem().string() + "." + state.mode + frame_name(".####", state.frame) + ".exr";
 }
 }

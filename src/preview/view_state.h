@@ -55,7 +55,7 @@ struct ViewState {
     bool lights_tab = false;     // what the side shows: lights and fog, or rendering
     bool handles = true;         // lights are drawn in the picture while the side shows them
     std::optional<JobStatus> job; // that runs
-    std::optional<Action> asked; // would lose unsaved edits or end a job: waits for an answer
+    std::optional<Action> asked;  // would lose edits or end a job: waits for an answer
     bool leaving = false;        // the window is to close
     Thing selected;              // its properties are shown; may be beyond the end
     std::string file_error;      // why the scene's files, as they are now, cannot be read
@@ -75,6 +75,9 @@ const Scene& loaded_scene(const ViewState& state);
 // again by itself; the message tells which of them were lost. Throws Error (usage) when the first one lacks the camera.
 void take_scene(ViewState& state, LoadedScene loaded);
 
+// Whether there is one at this frame: a camera may look nowhere there.
+bool has_camera(const ViewState& state);
+
 // The camera pictures are made with, and the point before it, for which all of the scene may have to be looked at.
 Camera camera_now(const ViewState& state);
 Viewpoint viewpoint(const ViewState& state);
@@ -91,7 +94,7 @@ std::optional<int> next_frame(const ViewState& state);
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);
 
-// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, [ and ];
+// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, f5, [ and ];
 // with "ctrl+" and "shift+" before, in this order.
 std::optional<Action> action_of_key(const ViewState& state, std::string_view key);
 

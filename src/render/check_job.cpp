@@ -22,6 +22,13 @@ void check_picture(const Scene& scene, const RenderJob& job) {
 }
 
 // Names, directories and leftovers.
+// Without links and dots, as far as the file system lets one look.
+std::filesystem::path plain_path(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::filesystem::path plain = std::filesystem::weakly_canonical(path, error);
+    return error ? path : plain;
+}
+
 void check_outputs(const Scene& scene, const RenderJob& job) {
     if (job.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
     if (std::filesystem::path(job.output).extension() != ".exr")
@@ -30,13 +37,13 @@ void check_outputs(const Scene& scene, const RenderJob& job) {
         fail(ExitCode::usage, printable(job.output), "several frames need a place for the number, as in name.####.exr");
 
     std::set<std::filesystem::path> inputs, directories;
-    for (const std::filesystem::path& input : scene.inputs) inputs.insert(std::filesystem::weakly_canonical(input));
+    for (const std::filesystem::path& input : scene.inputs) inputs.insert(plain_path(input));
     for (const int frame : job.frames) {
         const std::string exr = frame_name(job.output, frame);
         std::vector<std::filesystem::path> outputs{exr};
         if (job.png) outputs.push_back(png_name(exr));
         for (const std::filesystem::path& output : outputs) {
-            if (inputs.contains(std::filesystem::weakly_canonical(output)))
+            if (inputs.contains(plain_path(output)))
                 fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be written over");
             check_output(output);
             directories.insert(output.has_parent_path() ? output.parent_path() : ".");

@@ -195,12 +195,13 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     std::vector<FrameStats> block_stats(static_cast<size_t>(block_count));
     std::atomic<int64_t> done = 0;
     parallel_for(block_count, [&](int64_t b) {
-        if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
         const ivec2 low = (first + ivec2(b % blocks.x, b / blocks.x)) * block_side;
         const ivec2 high = glm::min(low + block_side, view.size);
         for (int y = low.y; y < high.y; y += tile_side)
-            for (int x = low.x; x < high.x; x += tile_side)
+            for (int x = low.x; x < high.x; x += tile_side) {
+                if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
                 render_tile(task, {x, y}, layers, block_stats[static_cast<size_t>(b)]);
+            }
         if (options.progress) options.progress(static_cast<double>(++done) / static_cast<double>(block_count));
     });
 

@@ -104,8 +104,10 @@ std::string option_text(const RenderJob& job) {
         text += std::string(" --light-units ") + units[static_cast<int>(job.light_units)];
 
     const Settings usual = settings_for(job.quality);
+    // How many samples are usual depends on the mode: they are always said.
     for (const SettingRow& row : setting_rows())
-        if (row.get(job.settings) != row.get(usual)) text += " --set " + row.name + "=" + row.get(job.settings);
+        if (row.get(job.settings) != row.get(usual) || (row.name == "pixel.samples" && !has_goal(job)))
+            text += " --set " + row.name + "=" + row.get(job.settings);
     return text;
 }
 
@@ -123,7 +125,10 @@ std::string command_line(const RenderJob& job) {
     std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o " +
                        quoted_for_shell(job.output) + " --frames " + format_frames(job.frames) + mode_text(job);
     if (job.resolution.x > 0) text += " --res " + pair_text(job.resolution, "x");
-    return text + option_text(job) + (job.png ? " --png" : "");
+    text += option_text(job);
+    if (job.png) text += " --png";
+    if (job.png && job.exposure != 0) text += " --exposure " + number(job.exposure);
+    return text;
 }
 
 bool has_goal(const RenderJob& job) { return job.target_error > 0 || job.time_budget > 0; }

@@ -18,8 +18,8 @@ struct FileHashes {
 // Directories do not count. Throws Error (unreadable).
 std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files);
 
-// The command that makes all of a job's frames, ready for a shell. What stands in no file is not in it: unsaved edits, a
-// camera moved by hand.
+// The command that makes all of a job's frames, ready for a shell. What stands in no file is not in it: unsaved edits,
+// a camera moved by hand.
 std::string command_line(const RenderJob& job);
 
 // How to make the frame again.

@@ -126,6 +126,7 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             if (pipeline.job.resume && keep(pipeline, work)) {
                 work.report.load_seconds = seconds_since(start);
                 report_frame(pipeline, work);
+                pipeline.progress.set(static_cast<double>(work.index) + 1);
                 continue;
             }
             work.report.load_seconds = seconds_since(start);

@@ -1,4 +1,4 @@
-"""Actions by chance for the viewer: every verb of its scripts, keys, drags over panels and picture, on copies of scenes.
+"""Actions by chance for the viewer: every verb of scripts, keys, drags over panels and picture, on copies of scenes.
 
     python3 tests/cli/random_actions.py build/asan/tyndall --minutes 30 --seed 1
 
@@ -19,7 +19,7 @@ import time
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
 WINDOW = (1280, 800)
-KEYS = ["space", "left", "right", "home", "tab", "f1", "[", "]", "ctrl+z", "ctrl+y", "ctrl+s", *"12345678lvpwsadqegt"]
+KEYS = ["space", "left", "right", "home", "tab", "f1", "f5", "[", "]", "ctrl+z", "ctrl+y", "ctrl+s", *"12345678lvpwsadqegt"]
 LARGEST = {"pixel.samples": 16}  # what else would only take long
 GROWTH = 1.15  # of the most memory, from the second third of the time to the last
 
@@ -56,7 +56,7 @@ class Actions:
         words = getattr(self, verb.replace("-", "_"))()
         if verb == "orders":
             return f"mode march\norders {words[0]}"  # few modes follow light on
-        after = "\nwait samples 1" if verb == "open" else ""  # what follows means the new one
+        after = "\nstop\nwait samples 1" if verb == "open" else ""  # what follows means the new one
         return " ".join([verb, *(f'"{word}"' if " " in str(word) else str(word) for word in words)]) + after
 
     def weight(self, verb):
@@ -185,7 +185,7 @@ class Actions:
     def nothing(self):
         return []
 
-    stop = undo = redo = save = camera = close = answer = stop_job = copy_command = nothing
+    reload = stop = undo = redo = save = camera = close = answer = stop_job = copy_command = nothing
     loop = panels = help = handles = volume = switch
 
     def key(self):

@@ -102,11 +102,11 @@ class Editing(ViewerTest):
         self.assertIn("[0, 0.5, 1.0]", self.text())
 
     def test_the_window_asks_before_edits_are_lost(self):
-        self.view(self.film, ["wait idle", "edit ambient 0.25", "close", "wait 0.2", "drag 640,427 640,427", "wait 9"],
-                  "--samples", 1)
+        self.view(self.film, ["wait idle", "edit ambient 0.25", "close", "wait 0.2", "drag 640,427 640,427", "wait 9",
+                              "select lights/moon"], "--samples", 1)
         self.assertEqual(self.text(), FILM, "discarded")
         self.view(self.film, ["edit ambient 0.25", "close", "answer cancel", "edit ambient 0.5", "close", "wait 0.2",
-                              "drag 535,427 535,427", "wait 9"], "--samples", 1)
+                              "drag 535,427 535,427", "wait 9", "select lights/moon"], "--samples", 1)
         self.assertIn('"ambient": 0.5', self.text())
 
     def test_edits_stay_when_the_file_is_changed_by_others(self):

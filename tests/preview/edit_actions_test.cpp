@@ -167,11 +167,19 @@ TEST(EditActions, UnsavedEditsAreNotedInWrittenPictures) {
     Edited edited;
     EXPECT_EQ(unsaved_text(*edited.state.session), "");
     edited("edit lights/evening/intensity 31");
-    EXPECT_EQ(unsaved_text(*edited.state.session), "lights/evening/intensity = 31 0 0 at 0.0416666667 s\n");
+    const std::string text = unsaved_text(*edited.state.session);
+    EXPECT_EQ(text.find("lights/evening/intensity = 31 0 0 at 0.0416666667 s\nscene "), 0u) << text;
     edited("save");
     EXPECT_EQ(unsaved_text(*edited.state.session), "");
     edited("undo");
-    EXPECT_EQ(unsaved_text(*edited.state.session), "without the last 1 steps that were saved\n");
+    const std::string undone = unsaved_text(*edited.state.session);
+    EXPECT_EQ(undone.find("without the last 1 steps that were saved\nscene "), 0u) << undone;
+    edited("redo");
+    edited("edit lights/evening/intensity 44");
+    edited("edit lights/evening/intensity 31");
+    edited("save");
+    edited("undo");
+    EXPECT_NE(unsaved_text(*edited.state.session), undone) << "44 now, 3 then";
 }
 
 TEST(EditActions, HandsAreAskedBeforeEditsAreLost) {
@@ -199,7 +207,9 @@ TEST(EditActions, HandsAreAskedBeforeEditsAreLost) {
 
     apply(edited.state, parse_action("open third.json", "script.txt:1"));
     EXPECT_EQ(edited.state.loads, 2) << "scripts know what they do";
+    error_text(ExitCode::usage, [&] { edited("edit ambient 0.5"); }); // it would be lost in a moment
 
+    edited.state.loading = false;
     edited("close");
     edited("answer save");
     EXPECT_TRUE(edited.state.leaving);

@@ -23,7 +23,8 @@ struct FileJobs : testing::Test {
     void SetUp() override {
         std::ofstream(path("fog.json")) << R"({"bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]}, "voxel_size": 0.25,
             "noise": {"octaves": 2, "scale": 1}, "density": {"threshold": 0.2}, "wind": [1, 0, 0]})";
-        std::ofstream(path("scene.json")) << R"({"tyndall": 1, "resolution": [24, 16], "frames": "1-3", "frame_rate": 12,
+        std::ofstream(path("scene.json")) << R"({"tyndall": 1, "resolution": [24, 16],
+            "frames": "1-3", "frame_rate": 12,
             "camera": {"name": "eye", "position": [0, 0, 4], "target": [0, 0, 0], "vertical_fov": 40},
             "lights": [{"name": "sun", "type": "sun", "direction": [0.2, -1, 0], "intensity": 3}],
             "media": [{"name": "haze", "type": "homogeneous", "extinction": 0.1,
@@ -40,8 +41,11 @@ struct FileJobs : testing::Test {
         EXPECT_EQ(progress.share() == 1, result.code == ExitCode::ok) << result.message;
         return result;
     }
+    RenderJob sequence(const char* range, bool png = false) const {
+        return sequence_job(state, path("out.####.exr"), range, png, "avx2");
+    }
     RenderFiles frames(const char* range, bool png = false) const {
-        return render_files(state, path("out.####.exr"), range, png, "avx2");
+        return render_files(state, sequence(range, png));
     }
 };
 
@@ -105,22 +109,22 @@ TEST_F(FileJobs, FogIsThatOfTheMediumAsEdited) {
     EXPECT_EQ(bakeable_media(*state.scene), std::vector<std::string>{"wisps"});
     EXPECT_EQ(run(bake_files(state, "wisps", path("fog.####.vdb"), "5")).code, ExitCode::ok);
     FogRecipe recipe = read_recipe(path("fog.json"));
-    recipe.wind = {0, 3, 0}, recipe.frame_rate = 12;
+    recipe.wind = {0, 3, 0}, recipe.frame_rate = 12, recipe.extinction = 0.7f;
     Progress progress(ProgressStyle::silent, "bake", 1);
     bake(recipe, path("other.####.vdb"), {5}, {}, progress);
-    EXPECT_EQ(read_file(path("fog.0005.vdb")), read_file(path("other.0005.vdb")));
+    EXPECT_TRUE(read_file(path("fog.0005.vdb")) == read_file(path("other.0005.vdb")));
 }
 
 TEST_F(FileJobs, MistakesSayWhatIsWrong) {
     const auto usage = [&](const auto& body) { return error_text(ExitCode::usage, body); };
     EXPECT_NE(usage([&] { frames("1-"); }).find("1-"), std::string::npos);
-    EXPECT_NE(usage([&] { render_files(state, "out.exr", "", false, ""); }).find("####"), std::string::npos);
+    EXPECT_NE(usage([&] { sequence_job(state, "out.exr", "", false, ""); }).find("####"), std::string::npos);
     EXPECT_NE(usage([&] { bake_files(state, "haze", "fog.####.vdb", ""); }).find("wisps"), std::string::npos);
     EXPECT_NE(usage([&] { bake_files(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
     std::ofstream(path("file")) << "in the way";
-    EXPECT_EQ(run(render_files(state, path("file/out.####.exr"), "", false, "")).code, ExitCode::unwritable);
+    EXPECT_EQ(run(render_files(state, sequence_job(state, path("file/out.####.exr"), "", false, ""))).code, ExitCode::unwritable);
     const ViewState empty;
-    usage([&] { render_files(empty, "out.####.exr", "1", false, ""); });
+    usage([&] { sequence_job(empty, "out.####.exr", "1", false, ""); });
 }
 
 TEST_F(FileJobs, TheCommandSaysWhatIsShown) {
@@ -128,36 +132,39 @@ TEST_F(FileJobs, TheCommandSaysWhatIsShown) {
     apply(state, parse_action("quality final"));
     apply(state, parse_action("mode froxel"));
     apply(state, parse_action("set froxel.tile 4"));
-    const std::string command = command_of(state, frames("1-3", true));
+    apply(state, parse_action("exposure 1"));
+    const std::string command = command_of(state, sequence("1-3", true));
     for (const char* part : {"tyndall render ", "scene.json -o ", "out.####.exr' --frames 1-3 ", "--mode froxel ",
-                             "--quality final ", "--set froxel.tile=4", "--png"})
+                             "--quality final ", "--set pixel.samples=16",
+                             "--set froxel.tile=4", "--png --exposure 1"})
         EXPECT_NE(command.find(part), std::string::npos) << command;
     EXPECT_EQ(command.find("march.step_depth"), std::string::npos) << command; // final's own again
     apply(state, parse_action("orbit 5 5"));
-    error_text(ExitCode::usage, [&] { command_of(state, frames("1")); });
+    error_text(ExitCode::usage, [&] { command_of(state, sequence("1")); });
     apply(state, parse_action("camera"));
     edit_scene(state, "lights/sun/intensity", "7", 0);
-    error_text(ExitCode::usage, [&] { command_of(state, frames("1")); });
+    error_text(ExitCode::usage, [&] { command_of(state, sequence("1")); });
 }
 
 TEST_F(FileJobs, AThreadDoesOneAtATimeAndStops) {
     std::atomic<int> news = 0;
     JobThread thread([&] { ++news; });
     EXPECT_FALSE(thread.status());
-    state.mode = "path", state.settings.pixel.samples = 4096;
+    state.mode = "path", state.settings.pixel.samples = 64;
     thread.start(frames("1-400"));
     ASSERT_TRUE(thread.status());
     EXPECT_EQ(thread.status()->frames, 400);
     error_text(ExitCode::usage, [&] { thread.start(frames("1")); });
     EXPECT_TRUE(comes([&] { return thread.status()->share > 0; }));
     thread.stop();
-    EXPECT_TRUE(thread.status()->stopping);
+    const std::optional<JobStatus> status = thread.status();
+    EXPECT_TRUE(status && status->stopping); // until the result is taken
     std::optional<JobResult> result;
     ASSERT_TRUE(comes([&] { return (result = thread.take_result()).has_value(); }));
     EXPECT_NE(result->message.find("stopped"), std::string::npos) << result->message;
     EXPECT_NE(result->message.find("of 400 frames"), std::string::npos) << result->message;
     EXPECT_FALSE(thread.status());
-    EXPECT_EQ(news, 1);
+    EXPECT_TRUE(comes([&] { return news == 1; }));
     for (const auto& entry : std::filesystem::directory_iterator(directory.path))
         if (entry.path().extension() == ".exr") read_exr(entry.path()); // throws when it is partial
 
