@@ -123,6 +123,9 @@ TEST_F(FileJobs, MistakesSayWhatIsWrong) {
     EXPECT_NE(usage([&] { bake_files(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
     std::ofstream(path("file")) << "in the way";
     EXPECT_EQ(run(render_files(state, sequence_job(state, path("file/out.####.exr"), "", false, ""))).code, ExitCode::unwritable);
+    const std::string endless(300, 'a'); // longer than any file system's names
+    EXPECT_EQ(run(render_files(state, sequence_job(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
+              ExitCode::unwritable);
     const ViewState empty;
     usage([&] { sequence_job(empty, "out.####.exr", "1", false, ""); });
 }

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <xmmintrin.h>
+
 #include <bit>
 #include <cmath>
 
@@ -189,6 +191,7 @@ TEST(JsonText, BrokenTextIsRefusedNotOverrun) {
 
 // Every number the reader may meet: digits as short as they can be, and the same bits behind double and float.
 TEST(JsonText, NumbersKeepTheirBits) {
+    _mm_setcsr(_mm_getcsr() & ~0x8040u); // the smallest floats too, whatever a test before has set
     EXPECT_EQ(json_number(0.1f), "0.1");
     EXPECT_EQ(json_number(400), "400");
     EXPECT_EQ(json_number(100000), "100000");

@@ -141,6 +141,38 @@ TEST(ViewState, KeysAreActions) {
     EXPECT_EQ(write->verb, Verb::snapshot);
 }
 
+TEST(ViewState, ScriptsDoJobsOneAfterTheOther) {
+    ViewState state = state_with_scene();
+    ScriptPlayer player{parse_script("render a.####.exr 1-2\nbake haze b.####.vdb\nwait job\nquit", "c.txt")};
+    ScriptFacts facts;
+    const auto verb = [&]() -> std::optional<Verb> {
+        const std::optional<Action> action = next_action(player, state, facts);
+        return action ? std::optional(action->verb) : std::nullopt;
+    };
+    EXPECT_EQ(verb(), Verb::render);
+    facts.job = true;
+    EXPECT_EQ(verb(), std::nullopt);
+    facts.job = false;
+    EXPECT_EQ(verb(), Verb::bake);
+    facts.job = true;
+    EXPECT_EQ(verb(), std::nullopt);
+    facts.job = false;
+    EXPECT_EQ(verb(), Verb::wait);
+    facts.job = true;
+    EXPECT_EQ(verb(), std::nullopt) << "quitting would end it";
+    facts.job = false;
+    EXPECT_EQ(verb(), Verb::quit);
+}
+
+TEST(ViewState, ScriptsDoNotWaitForWhatNeverComes) {
+    ViewState state = state_with_scene();
+    state.most_samples = 8;
+    ScriptPlayer samples{parse_script("wait samples 9", "c.txt")}, idle{parse_script("wait idle", "c.txt")};
+    error_text(ExitCode::usage, [&] { next_action(samples, state, {}); });
+    apply(state, parse_action("play"));
+    error_text(ExitCode::usage, [&] { next_action(idle, state, {}); });
+}
+
 TEST(ViewState, ScriptsWaitForWhatTheyAskFor) {
     ViewState state = state_with_scene();
     ScriptPlayer player{parse_script("wait idle\nwait 2\nwait samples 8\nplay 2\nquit", "c.txt")};
