@@ -47,7 +47,8 @@ struct Pipeline {
     LoadedFrame first; // of the job, until it is taken
     size_t next = 0;   // index of the first frame not yet looked at
     RenderReport report;
-    std::mutex reporting; // held to change the report
+    std::mutex reporting;         // held to change the report
+    std::atomic<int> settled = 0; // frames rendered or kept
 };
 
 float png_exposure(const Pipeline& pipeline, int frame) {
@@ -126,7 +127,7 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             if (pipeline.job.resume && keep(pipeline, work)) {
                 work.report.load_seconds = seconds_since(start);
                 report_frame(pipeline, work);
-                pipeline.progress.set(static_cast<double>(work.index) + 1);
+                pipeline.progress.set(++pipeline.settled);
                 continue;
             }
             work.report.load_seconds = seconds_since(start);
@@ -161,11 +162,11 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     work.snapshot.kept_before = previous.kept;
 }
 
-void render(const Pipeline& pipeline, Work& work) {
+void render(Pipeline& pipeline, Work& work) {
     const RenderJob& job = pipeline.job;
     const auto start = Clock::now();
     FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}, {}};
-    options.progress = [&](double share) { pipeline.progress.set(static_cast<double>(work.index) + share); };
+    options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
     FrameStats& stats = work.report.stats;
     try {
         History history;
@@ -178,6 +179,7 @@ void render(const Pipeline& pipeline, Work& work) {
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
+    ++pipeline.settled;
     work.report.seconds = seconds_since(start);
 }
 

@@ -6,10 +6,12 @@
 
 #include <sys/resource.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <thread>
 
 namespace tyndall::test {
 namespace {
@@ -240,6 +242,15 @@ ScatterFunction prepare_cancelling(const View& view, const Snapshot&, const Sett
     };
 }
 
+Progress* watched = nullptr;
+double share_while_rendering = 0;
+// Waits a moment for the two frames that are kept meanwhile.
+ScatterFunction prepare_watching(const View& view, const Snapshot& snapshot, const Settings& settings, History* past) {
+    for (int i = 0; i < 400 && watched->share() < 0.6; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    share_while_rendering = watched->share();
+    return prepare_everything(view, snapshot, settings, past);
+}
+
 ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Settings&, History*) {
     return [frame = view.frame](const RayBatch&, std::span<Scatter> results) {
         for (Scatter& result : results) result = {vec3(frame == 2 ? NAN : 1), 1, 1, 0};
@@ -300,6 +311,22 @@ TEST(Sequence, CancellingKeepsWholeFramesOnly) {
     EXPECT_EQ(report.frames.size(), 2u);
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
     for (const std::string& name : out.names()) EXPECT_NO_THROW(read_exr(out.file(name)));
+}
+
+TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
+    const TemporaryDirectory in, out;
+    const Scene scene = moving_scene(in);
+    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    run(scene, job);
+    std::filesystem::remove(out.file("f.0001.exr"));
+    job.resume = true;
+    Progress progress(ProgressStyle::none, "render", 3);
+    watched = &progress;
+    std::atomic<bool> cancel = false;
+    const RenderReport report = render_sequence(scene, job, mode_of(prepare_watching), progress, cancel);
+    EXPECT_EQ(std::ranges::count_if(report.frames, &FrameReport::kept), 2);
+    EXPECT_LT(share_while_rendering, 0.7) << "one is not done";
+    EXPECT_EQ(progress.share(), 1);
 }
 
 TEST(Sequence, CountsSamplesThatAreNotFinite) {
