@@ -41,6 +41,7 @@ class Actions:
 
     def __init__(self, seed, scenes, program):
         self.random, self.scenes, self.frames = random.Random(seed), scenes, 0
+        self.last_pixel = 20  # across and down, that every picture of this size has
         self.media, self.grown = media_of(scenes[0]), media_of(scenes[0], "noise")
         table = json.loads(subprocess.run([program, "modes", "--json"], capture_output=True, check=True).stdout)
         self.modes = [mode["name"] for mode in table["modes"]]
@@ -105,7 +106,8 @@ class Actions:
         return [self.random.choice(["wipe", "side"])]
 
     def explain(self):
-        return self.random.choice([[], [self.random.randint(0, 20), self.random.randint(0, 20)]])
+        pixel = [self.random.randint(0, self.last_pixel), self.random.randint(0, self.last_pixel)]
+        return self.random.choice([[], pixel])
 
     def medium(self):
         return [self.random.choice(self.media)]
@@ -171,7 +173,9 @@ class Actions:
         return [self.number(-0.3, 0.3) for _ in range(3)]
 
     def size(self):
-        return self.random.choice([[0, 0], [320, 180], [97, 61], [1, 1], [640, 360]])
+        size = self.random.choice([[0, 0], [320, 180], [97, 61], [1, 1], [640, 360]])
+        self.last_pixel = 0 if size == [1, 1] else 20
+        return size
 
     def frame(self):
         return [self.random.randint(1, 24)]
