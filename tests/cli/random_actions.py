@@ -58,7 +58,8 @@ class Actions:
         if verb == "orders":
             return f"mode march\norders {words[0]}"  # few modes follow light on
         after = "\nstop\nwait samples 1" if verb == "open" else ""  # what follows means the new one
-        return " ".join([verb, *(f'"{word}"' if " " in str(word) else str(word) for word in words)]) + after
+        before = "stop-job\n" if verb in ("render", "bake") else ""  # that a click may have started
+        return before + " ".join([verb, *(f'"{word}"' if " " in str(word) else str(word) for word in words)]) + after
 
     def weight(self, verb):
         return {"quit": 0, "open": 0.3, "snapshot": 0.1, "screenshot": 0.2, "size": 0.3, "set": 4, "drag": 6, "key": 4,
@@ -227,7 +228,7 @@ def script(actions, seconds):
         pause = round(actions.random.random() ** 3, 2)
         lines += [actions.line(), f"wait {pause}"]
         left -= pause
-    return "\n".join([*lines, "quit"]) + "\n"
+    return "\n".join([*lines, "stop-job", "quit"]) + "\n"
 
 
 def viewer_memory(parent):
