@@ -20,16 +20,16 @@ struct Shelf {
     double seconds = 0; // since the last interface frame
 };
 
-// The name of a file to write: the usual one until it is typed over.
+// The name of a file: the usual one until it is typed over.
 struct FileField {
     std::string name;
     bool edited = false;
 };
 
-// What is to be written.
-struct WriteMemory {
+// What is to be opened or written.
+struct FilesMemory {
     std::filesystem::path scene; // that the rest is about
-    FileField picture, sequence, fog;
+    FileField other, picture, sequence, fog;
     std::string frames, fog_frames; // empty = all of the scene's
     std::string medium;             // to bake
     bool pngs = true;
@@ -38,7 +38,7 @@ struct WriteMemory {
 // What panels remember by themselves.
 struct PanelMemory {
     std::string held_row;  // a setting that was put back; its slider is dead until the mouse is up
-    WriteMemory write;
+    FilesMemory files;
     EditMemory edits;
 };
 
@@ -52,8 +52,8 @@ void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
 // Frames and playing.
 void draw_time(const ViewState& state, const Act& act);
 
-// Files to write, and the job that writes some.
-void draw_writing(const ViewState& state, WriteMemory& memory, const Act& act);
+// Files to open and to write, and the job that writes some.
+void draw_files(const ViewState& state, FilesMemory& memory, const Act& act);
 void draw_job(const JobStatus& job, const Act& act);
 
 // The technique's own settings and those it shares, as sliders.

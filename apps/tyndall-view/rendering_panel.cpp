@@ -162,6 +162,6 @@ void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     draw_remarks(state, shelf);
     draw_settings(state, memory, act);
     draw_times(shelf);
-    draw_writing(state, memory.write, act);
+    draw_files(state, memory.files, act);
 }
 }

@@ -1,4 +1,4 @@
-// Writing of files: the picture, a sequence of frames, baked fog; and the bar of the job that runs.
+// Files: another scene to open; the picture, a sequence of frames and baked fog to write; the bar of the job that runs.
 #include "base/text.h"
 #include "panels.h"
 #include "preview/file_job.h"
@@ -37,7 +37,21 @@ bool job_button(const char* text, const ViewState& state, const std::string& hel
     return pressed;
 }
 
-void draw_picture_file(const ViewState& state, WriteMemory& memory, const Act& act) {
+void draw_open(const ViewState& state, FilesMemory& memory, const Act& act) {
+    if (!memory.other.edited) memory.other.name = state.scene_file.string();
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::SetNextItemWidth(-ImGui::CalcTextSize("Open").x - 2 * style.FramePadding.x - style.ItemSpacing.x);
+    const bool entered = ImGui::InputText("##other", &memory.other.name, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (ImGui::IsItemEdited()) memory.other.edited = true;
+    ImGui::SameLine();
+    const bool pressed = ImGui::Button("Open");
+    tooltip("A scene (.json), a .gltf, .glb or .vdb; files can also be dropped on the window");
+    if (!entered && !pressed) return;
+    memory.other.edited = false;
+    act({Verb::open, {memory.other.name}, {}, {}});
+}
+
+void draw_picture_file(const ViewState& state, FilesMemory& memory, const Act& act) {
     draw_name("##picture", usual_file_name(state), memory.picture);
     if (ImGui::Button("Write picture")) {
         act({Verb::snapshot, {memory.picture.name}, {}, {}});
@@ -47,17 +61,17 @@ void draw_picture_file(const ViewState& state, WriteMemory& memory, const Act& a
             " samples a pixel, as tyndall render writes it: .exr for light, .png for looking at");
 }
 
-std::vector<std::string> sequence_words(const WriteMemory& memory) {
+std::vector<std::string> sequence_words(const FilesMemory& memory) {
     return {memory.sequence.name, memory.frames, memory.pngs ? "png" : "exr"};
 }
 
-void draw_command(const WriteMemory& memory, const Act& act) {
+void draw_command(const FilesMemory& memory, const Act& act) {
     const bool pressed = ImGui::Button("Copy command");
     tooltip("The command line that renders the same, for a shell or a farm");
     if (pressed) act({Verb::copy_command, sequence_words(memory), {}, {}});
 }
 
-void draw_sequence(const ViewState& state, WriteMemory& memory, const Act& act) {
+void draw_sequence(const ViewState& state, FilesMemory& memory, const Act& act) {
     draw_name("##sequence", usual_sequence_name(state), memory.sequence);
     draw_range("##frames", *state.scene, memory.frames);
     ImGui::SameLine();
@@ -71,7 +85,7 @@ void draw_sequence(const ViewState& state, WriteMemory& memory, const Act& act) 
     draw_command(memory, act);
 }
 
-void draw_bake(const ViewState& state, WriteMemory& memory, const Act& act) {
+void draw_bake(const ViewState& state, FilesMemory& memory, const Act& act) {
     const std::vector<std::string> media = bakeable_media(*state.scene);
     if (media.empty()) return;
     ImGui::Separator();
@@ -94,9 +108,11 @@ void draw_bake(const ViewState& state, WriteMemory& memory, const Act& act) {
 }
 }
 
-void draw_writing(const ViewState& state, WriteMemory& memory, const Act& act) {
-    if (!state.scene || !ImGui::CollapsingHeader("write files", ImGuiTreeNodeFlags_DefaultOpen)) return;
-    if (memory.scene != state.scene->file) memory = {state.scene->file, {}, {}, {}, {}, {}, {}, memory.pngs};
+void draw_files(const ViewState& state, FilesMemory& memory, const Act& act) {
+    if (!state.scene || !ImGui::CollapsingHeader("files", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (memory.scene != state.scene->file) memory = {state.scene->file, {}, {}, {}, {}, {}, {}, {}, memory.pngs};
+    draw_open(state, memory, act);
+    ImGui::Separator();
     draw_picture_file(state, memory, act);
     ImGui::Separator();
     draw_sequence(state, memory, act);
