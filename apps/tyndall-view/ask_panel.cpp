@@ -29,7 +29,8 @@ void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const Edi
         ImGui::PopStyleColor();
         ImGui::SameLine();
     }
-    if (ImGui::Button(unsaved ? "Discard" : ends_job ? "Stop it" : "Close", {width, 0})) act({Verb::answer, {"discard"}, {}, {}});
+    if (ImGui::Button(unsaved ? "Discard" : ends_job ? "Stop it" : "Close", {width, 0}))
+        act({Verb::answer, {"discard"}, {}, {}});
     ImGui::SameLine();
     if (ImGui::Button("Cancel", {width, 0}) || ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
         act({Verb::answer, {"cancel"}, {}, {}});

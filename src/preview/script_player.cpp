@@ -13,10 +13,8 @@ bool is_over(const Action& wait, const ScriptFacts& facts, double since) {
     if (wait.words[0] == "samples") return facts.samples >= wait.numbers[0];
     return facts.now - since >= std::strtod(wait.words[0].c_str(), nullptr);
 }
-}
 
 // Some waits would never end.
-namespace {
 void check_end(const Action& wait, const ViewState& state) {
     const std::string& what = wait.words[0];
     if (what == "samples" && wait.numbers[0] > state.most_samples)
