@@ -33,13 +33,17 @@ double usual_error(Quality quality) {
 
 void choose_mode(const Scene& scene, RenderJob& job, const Snapshot& first, const Globals& globals) {
     const Mode* before = mode_before(job);
-    const std::span<const Mode> candidates = before ? std::span(before, 1) : modes();
     Progress progress(globals.progress, "plan", 1, globals.json);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
     const View view = view_of(scene, job, job.frames[0]);
-    const Plan plan = make_plan(candidates, view, first, job.settings,
-                                {job.target_error, job.time_budget, job.quality, {}, {}}, control);
+    const Goal goal{job.target_error, job.time_budget, job.quality};
+    const auto plan_with = [&](std::span<const Mode> candidates) {
+        return make_plan(candidates, view, first, job.settings, goal, control);
+    };
+    Plan plan = plan_with(before ? std::span(before, 1) : modes());
+    if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was
     progress.finish();
+    job.wanted = std::make_shared<const Settings>(job.settings);
     job.mode = plan.chosen.mode->name, job.settings = plan.settings, job.plan = plan.certificate();
     job.choice = std::make_shared<const Choice>(plan.chosen.choice);
     if (globals.quiet) return;

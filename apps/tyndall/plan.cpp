@@ -64,14 +64,19 @@ std::string plan_json(const Plan& plan, const RenderJob& job) {
 // How to render what was planned.
 std::string command_of(const Plan& plan, const RenderJob& job) {
     const bool again = plan.settings.fluence.orders > 1;
-    std::string text = "tyndall render " + job.scene_file.string() + " -o out.####.exr --mode " +
+    std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o out.####.exr --mode " +
                        std::string(again ? automatic : plan.chosen.mode->name);
+    if (plan.goal.quality != Quality::preview) text += " --quality " + std::string(name_of(plan.goal.quality));
+    if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
+    if (job.resolution.x > 0) text += formatted(" --res %dx%d", job.resolution.x, job.resolution.y);
     if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
     if (plan.goal.seconds > 0) text += formatted(" --time-budget %g", plan.goal.seconds);
     const int orders = plan.settings.fluence.orders;
     if (again) text += " --orders " + (orders == all_orders ? "all" : std::to_string(orders));
+    const bool path = plan.chosen.mode->accuracy == Accuracy::multiple_scattering;
     for (const SettingRow& row : setting_rows())
-        if (row.name != "fluence.orders" && row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
+        if (row.name != "fluence.orders" && (path || row.name != "path.orders") &&
+            row.get(plan.settings) != row.get(settings_for(plan.goal.quality)))
             text += " --set " + row.name + "=" + row.get(plan.settings);
     return text;
 }

@@ -15,8 +15,7 @@
 namespace tyndall {
 namespace {
 void choose_frames(const Scene& scene, RenderJob& job) {
-    if (job.frames.empty())
-        for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame) job.frames.push_back(frame);
+    if (job.frames.empty()) job.frames = frames_between(scene.first_frame, scene.last_frame);
     check_pattern(job.output, ".exr", job.frames.size() > 1);
 }
 

@@ -117,6 +117,12 @@ int64_t piece_cost(const std::vector<int>& frames, size_t start, size_t end) {
 }
 }
 
+std::vector<int> frames_between(int first, int last) {
+    std::vector<int> frames;
+    for (int frame = first; frame <= last; ++frame) frames.push_back(frame);
+    return frames;
+}
+
 std::string format_frames(const std::vector<int>& frames) {
     // Dynamic programming over prefixes: a piece is one frame or an even run, begun where the run begins or one later.
     std::vector<Piece> best(frames.size());

@@ -8,6 +8,9 @@ namespace tyndall {
 // The frames of a range in the order written, without duplicates. Throws Error (usage) naming the column that is wrong.
 std::vector<int> parse_frames(std::string_view text);
 
+// All of them, first and last too.
+std::vector<int> frames_between(int first, int last);
+
 // "1-48", "1-9x2,20": the shortest way back.
 std::string format_frames(const std::vector<int>& frames);
 

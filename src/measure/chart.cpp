@@ -144,6 +144,16 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
     chart.reference_flip = flip_mean(flip_hdr(a, b, stage.all.viewing.exposures, flip_pixels_per_degree));
 }
 
+// Without modes that are held against the light of lamps and suns alone, where there are none.
+ChartJob job_for(const Scene& scene, ChartJob job, const ChartControl& control) {
+    if (!scene.lights.empty() || !wants_unlit(job)) return job;
+    const std::string why = "path takes no part: it is held against the light of lamps and suns, and there are none";
+    std::erase_if(job.modes, [](const Mode* mode) { return lights_only(*mode); });
+    if (job.modes.empty()) fail(ExitCode::usage, "--modes", why);
+    if (control.remark) control.remark(why);
+    return job;
+}
+
 std::vector<ChartedMode> charted_modes(const ChartStage& stage) {
     std::vector<ChartedMode> result;
     const ChartJob& job = stage.job;
@@ -191,15 +201,17 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
 }
 }
 
-Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& control) {
+Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& control) {
     const auto start = Clock::now();
     flush_denormals();
     Chart chart;
-    chart.job = job, chart.size = job.render.resolution, chart.threads = thread_count(), chart.isa = isa_name();
+    chart.job = job_for(scene, asked, control);
+    const ChartJob& job = chart.job;
+    chart.size = job.render.resolution, chart.threads = thread_count(), chart.isa = isa_name();
     chart.camera = camera_at(scene, find_camera(scene, job.render.camera), 0).name;
     chart.load_before = load_average();
 
-    ChartStage stage = make_stage(scene, chart.job, control.cancel);
+    ChartStage stage = make_stage(scene, job, control.cancel);
     chart.sequence_size = stage.sequence_size;
     chart.moves = stage.sequence.size() > 1 && stage.sequence[0].frame != stage.sequence[1].frame;
     chart.modes = charted_modes(stage);

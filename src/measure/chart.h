@@ -94,7 +94,7 @@ struct ChartControl {
 // scene, settings and number of threads are not measured again. Throws Error.
 Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& control);
 
-// What a point is placed by: its time, and its error as it comes.
+// What a point is placed by: its time, and its error as it comes; no less than what the reference's noise hides.
 enum class FrameTime { single, sequence };
 enum class ErrorOf { worse, fog }; // picture or fog light, whichever is worse (E); fog light at pixel centres
 double seconds_of(const ChartPoint& point, FrameTime time);

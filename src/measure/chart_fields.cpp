@@ -1,6 +1,7 @@
 #include "measure/chart.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tyndall {
 #define FIELD(member) [](ChartPoint& point) -> double& { return point.member; }
@@ -68,11 +69,13 @@ double seconds_of(const ChartPoint& point, FrameTime time) {
 }
 
 double error_of(const ChartPoint& point, ErrorOf what) {
-    return what == ErrorOf::worse ? point.errors.error : point.fog_error;
+    if (what == ErrorOf::worse) return std::max(point.errors.error, point.errors.uncertainty);
+    return std::max(point.fog_error, point.fog_uncertainty);
 }
 
 bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what) {
     const double seconds = seconds_of(point, time), error = error_of(point, what);
+    if (!std::isfinite(error)) return false;
     return std::ranges::none_of(points, [&](const ChartPoint& other) {
         const double its_seconds = seconds_of(other, time), its_error = error_of(other, what);
         return its_seconds <= seconds && its_error <= error && (its_seconds < seconds || its_error < error);

@@ -62,6 +62,7 @@ std::optional<ChartPoint> kept_point(const std::filesystem::path& directory, con
         for (const ChartField& field : chart_fields()) {
             const Json* value = json.find(field.name);
             if (!value || (value->kind != Json::Kind::number && value->kind != Json::Kind::null)) return {};
+            if (value->kind == Json::Kind::null && field.name == "error") return {}; // it was infinite
             field.of(point) = value->kind == Json::Kind::number ? value->number : not_measured;
         }
     } catch (const Error&) {

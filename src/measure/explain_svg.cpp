@@ -31,7 +31,8 @@ struct Panel {
 
 void draw_axes(const Panel& panel, const std::string& title, bool percents, bool distances, Svg& svg) {
     const double x_tick = tick_of(panel.range.length(), 10);
-    for (double x = std::ceil(panel.range.low / x_tick) * x_tick; x <= panel.range.high * 1.0001; x += x_tick) {
+    for (double x = std::ceil(panel.range.low / x_tick) * x_tick; x <= panel.range.high + 1e-4 * panel.range.length();
+         x += x_tick) {
         svg.line(panel.x(x), panel.top, panel.x(x), panel.bottom, "#e6e6e6", 1);
         if (distances) svg.text(panel.x(x), panel.bottom + 16, digits(x), Anchor::middle);
     }

@@ -83,6 +83,8 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
     const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
     plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
     plan.settings = without_needless(plan.terms, settings);
+    const bool path_is_free = settings.path.orders == settings_for(goal.quality).path.orders;
+    if (plan.settings.fluence.orders < 2 && path_is_free) plan.settings.path.orders = 1; // as all others
     plan.terms_seconds = goal.clock() - start;
 
     const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
@@ -97,7 +99,7 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
 std::string Plan::certificate() const {
     std::string text = std::string(chosen.mode->name);
     if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
-    text += ": error " + percent_text(chosen.error) + " expected";
+    text += ": error " + percent_text(chosen.error) + (chosen.gets_there() ? " expected" : " at best");
     if (goal.error > 0) text += ", " + percent_text(goal.error) + " wanted";
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
@@ -122,9 +124,10 @@ std::string plan_text(const Plan& plan) {
         const std::string name(standing.mode->name);
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
-            text +=
-                formatted("  %-14s chosen: %s in %s, %.0f %s per pixel", name.c_str(), percent_text(best.error).c_str(),
-                          seconds_text(best.seconds).c_str(), best.samples, best.samples < 2 ? "sample" : "samples");
+            text += formatted("  %-14s %s: %s in %s", name.c_str(), best.gets_there() ? "chosen" : "comes closest",
+                              percent_text(best.error).c_str(), seconds_text(best.seconds).c_str());
+            if (best.gets_there())
+                text += formatted(", %.0f %s per pixel", best.samples, best.samples < 2 ? "sample" : "samples");
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
         } else {
             text += "  " + name + std::string(15 - std::min<size_t>(14, name.size()), ' ') + standing.why + "\n";

@@ -45,6 +45,7 @@ std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snaps
     const double start = steady_seconds();
     Choice choice = choose(find_mode("march"), view, snapshot, shot.job.settings, goal, start, options);
     choice.measured.single = {infinity, infinity};
+    choice.measured.prepared = nullptr; // points into the snapshot
     return std::make_shared<const Choice>(std::move(choice));
 }
 
@@ -54,11 +55,9 @@ Goal goal_of(const Shot& shot, ReferenceSamples samples) {
 
 // Half of a reference with noise in place of a count, on two levels (Heinrich 2001, multilevel Monte Carlo): many
 // samples that are quick, and the mean difference that exact ones make, from few, which differ little.
-Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, View view,
-                     ReferenceSamples samples, const FrameOptions& options, FrameStats& stats) {
+Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, View view, const Goal& goal,
+                     const FrameOptions& options, FrameStats& stats) {
     const Mode& mode = find_mode(job.mode);
-    Goal goal = goal_of(shot, samples);
-    goal.choice = choice_for(shot, snapshot, goal);
     const Settings& quick = goal.choice->candidate.settings;
     Layers result = render_to_target(mode, view, snapshot, quick, goal, options, stats);
 
@@ -76,8 +75,8 @@ Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob
     return result;
 }
 
-// A picture of the job, or the file an earlier run made of it.
-ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, ReferenceSamples samples,
+// A picture of the job, or the file an earlier run made of it. `goal` gets its choice when that is first needed.
+ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, Goal* goal,
                      const std::string& name, std::string hash, const std::function<void(double)>& progress) {
     const View view = view_of(shot.scene, job, shot.frame);
     const std::filesystem::path file = shot.directory / (name + ".exr");
@@ -91,8 +90,9 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob
     options.cancel = shot.cancel, options.progress = progress;
     FrameStats stats;
     const Snapshot own = fresh(snapshot);
-    Layers layers = samples.count > 0 ? render_frame(find_mode(job.mode), view, own, job.settings, options, stats)
-                                      : half_by_noise(shot, own, job, view, samples, options, stats);
+    if (goal && !goal->choice) goal->choice = choice_for(shot, own, *goal);
+    Layers layers = goal ? half_by_noise(shot, own, job, view, *goal, options, stats)
+                         : render_frame(find_mode(job.mode), view, own, job.settings, options, stats);
     if (!shot.directory.empty()) {
         Provenance provenance = provenance_of(shot.scene, job, view, hash, stats);
         write_exr(file, layers, provenance, exact_colors);
@@ -120,9 +120,10 @@ std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashe
 double reference_seconds(const Shot& shot, ReferenceSamples samples) {
     const std::shared_ptr<const Choice> choice = choice_for(shot, fresh(shot.snapshot), goal_of(shot, samples));
     const Measured& measured = choice->measured;
-    if (samples.count > 0) return samples.count * measured.sample_seconds;
+    if (samples.count > 0) return samples.count * choice->truth_seconds;
     const double needed = std::pow(measured.sample.value / (2 * samples.noise * samples.noise), 1 / choice->power);
-    return 2 * std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);
+    const double quick = std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);
+    return 2 * (quick + exact_samples * (measured.sample_seconds + choice->truth_seconds));
 }
 
 Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
@@ -131,6 +132,8 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
     const bool chance = !samples.centers || std::ranges::any_of(shot.snapshot.lights, is_soft);
     const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.job.resolution.x) +
                                "x" + std::to_string(shot.job.resolution.y) + "." + std::to_string(shot.frame);
+    const bool by_noise = samples.count == 0;
+    Goal goal = goal_of(shot, samples), unlit_goal = goal; // both halves are made alike
     Reference result;
     for (size_t half = 0; half < 2; ++half) {
         if (half == 1 && !chance) {
@@ -142,9 +145,10 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
         };
         const RenderJob job = half_job(shot, samples, static_cast<int>(half));
         const std::string hash = half_hash(shot, job, samples, files), name = prefix + (half ? ".b" : ".a");
-        result.halves[half] = rendered(shot, shot.snapshot, job, samples, name, hash, part);
+        result.halves[half] = rendered(shot, shot.snapshot, job, by_noise ? &goal : nullptr, name, hash, part);
         if (samples.unlit)
-            result.unlit[half] = rendered(shot, unlit, job, samples, name + ".unlit", content_hash(hash + "unlit"), {});
+            result.unlit[half] = rendered(shot, unlit, job, by_noise ? &unlit_goal : nullptr, name + ".unlit",
+                                          content_hash(hash + "unlit"), {});
     }
     return result;
 }

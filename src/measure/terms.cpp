@@ -73,17 +73,17 @@ struct Terms {
     // Root mean square over mean of the picture, whichever is larger of its colour and its fog light: no E is larger
     // than this times the largest relative error of a pixel.
     double contrast() {
-        double squares[2] = {}, means[2] = {};
+        double squares[2] = {}, means[2] = {}, weights[2] = {};
         const std::vector<vec3>& values = usual().truth;
-        for (size_t i = 0; i < values.size(); ++i)
-            if (is_finite(values[i]))
-                squares[i % 2] += glm::dot(values[i], values[i]) / 3,
-                    means[i % 2] += (values[i].x + values[i].y + values[i].z) / 3;
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (!is_finite(values[i])) continue;
+            const double weight = tiles_stood_for(usual(), i / pilot_values);
+            squares[i % 2] += weight * glm::dot(values[i], values[i]) / 3;
+            means[i % 2] += weight * (values[i].x + values[i].y + values[i].z) / 3, weights[i % 2] += weight;
+        }
         double most = 1;
         for (int layer = 0; layer < 2; ++layer)
-            if (means[layer] > 0)
-                most =
-                    std::max(most, std::sqrt(squares[layer] * static_cast<double>(values.size()) / 2) / means[layer]);
+            if (means[layer] > 0) most = std::max(most, std::sqrt(squares[layer] * weights[layer]) / means[layer]);
         return most;
     }
 

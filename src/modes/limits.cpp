@@ -123,7 +123,7 @@ void add_fluence_limits(const View& view, const Snapshot& snapshot, const Fluenc
     const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
     limits.push_back({Severity::info, "fluence.resolution",
                       "light that has been scattered before comes from cells of " + number_text("%.2g", cell) +
-                          " m: its detail is no finer, and it leaks through walls thinner than that"});
+                          " m: its detail is no finer, and within them light may leak around corners of walls"});
     limits.push_back({Severity::info, "fluence.orders",
                       "fog lights no surfaces, and surfaces light fog but not each other; ambient light and what glows "
                       "are not scattered again"});

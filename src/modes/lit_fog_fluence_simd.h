@@ -11,6 +11,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
+constexpr double deepest_part = 0.5; // optical depths
+constexpr double most_parts = 4096;  // of a piece
+
+// Of all fog, as far as it dims the view.
+double extinction_at(const LitFog& frame, vec3 point) {
+    double extinction = 0;
+    for (const Medium& medium : frame.snapshot.media)
+        extinction += double(medium.optics.extinction) * density_at(medium, point);
+    return extinction * frame.style.view_depth;
+}
+
 // In the middle of every step of sampled fog, where its extinction is known already.
 void add_fluence_rows(Packet& packet) {
     const LitFog& frame = packet.frame;
@@ -44,7 +55,7 @@ void add_fluence_rows(Packet& packet) {
     }
 }
 
-// A node for every cell of the grid on the way, in fog in closed form.
+// A node for every cell of the grid on the way and every half optical depth, in fog in closed form.
 void add_fluence_nodes(Packet& packet) {
     const FluenceGrid& grid = *packet.frame.fluence;
     const FogCuts& cuts = packet.scratch.cuts;
@@ -52,10 +63,14 @@ void add_fluence_nodes(Packet& packet) {
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         const Ray& ray = packet.batch.rays[i];
         const Interval inside = clip(grid.bounds, ray.origin, ray.direction, {0, ray.t_max});
-        for (int k = 0; k < cuts.pieces[i]; ++k) {
+        double before = 0; // optical depth, about
+        for (int k = 0; k < cuts.pieces[i] && before < packet.frame.opaque; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;
             const double low = std::max(at[0], inside.low), high = std::min(at[16], inside.high);
-            const int parts = static_cast<int>(std::ceil((high - low) / double(grid.cell)));
+            const double dimming = extinction_at(packet.frame, ray.at(0.5f * (at[0] + at[16])));
+            before += dimming * (at[16] - at[0]);
+            const double finest = std::max(1 / double(grid.cell), dimming / deepest_part);
+            const int parts = static_cast<int>(std::min(std::ceil((high - low) * finest), most_parts));
             for (int part = 0; part < parts; ++part)
                 push_node(packet, any_light, i, k, low, high, (part + 0.5) / parts, 1.0 / parts);
         }

@@ -13,10 +13,7 @@
 namespace tyndall {
 namespace {
 std::vector<int> frames_of(const Scene& scene, const std::string& range) {
-    if (!range.empty()) return parse_frames(range);
-    std::vector<int> frames;
-    for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame) frames.push_back(frame);
-    return frames;
+    return range.empty() ? frames_between(scene.first_frame, scene.last_frame) : parse_frames(range);
 }
 
 // The camera moved by hand, as one of the scene's under a name that none has.

@@ -13,51 +13,51 @@ struct Runner {
     std::vector<Candidate> candidates;
     size_t next = 0;
     double integrator = infinity; // squared, of the last one measured
-};
+    int idle = 0;                 // candidates since one was better than that before it
 
-// What is asked for, and how fast samples lose their variance.
-struct Race {
-    const Goal& goal;
-    double power = 0; // 0 = not yet known
-
-    double error(const Contender& contender, double samples) const {
-        const Measured& m = contender.choice.measured;
-        if (samples < 2) return std::sqrt(m.single.value);
-        return std::sqrt(contender.integrator().value + m.sample.value / std::pow(samples, power));
-    }
-    double samples_for(const Contender& contender) const {
-        const Measured& m = contender.choice.measured;
-        const double wanted = goal.error * goal.error, left = wanted - contender.integrator().bound;
-        if (m.single.bound <= wanted) return 1;
-        if (!(left > 0)) return infinity;
-        const double samples = std::max(2.0, std::ceil(std::pow(m.sample.value / left, 1 / power)));
-        return samples <= most_target_samples ? samples : infinity;
+    void note(double error) {
+        idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error;
     }
 };
 
-// The picture a candidate would make of the goal.
-void predict(Contender& contender, const Race& race) {
+double error_with(const Contender& contender, double samples) {
     const Measured& m = contender.choice.measured;
-    const Goal& goal = race.goal;
+    if (samples < 2) return std::sqrt(m.single.value);
+    return std::sqrt(contender.integrator().value + m.sample.value / std::pow(samples, contender.choice.power));
+}
+
+// To get to a goal's error; infinite where too many would be needed.
+double samples_for(const Contender& contender, double error) {
+    const Measured& m = contender.choice.measured;
+    const double wanted = error * error, left = wanted - contender.integrator().bound;
+    if (m.single.bound <= wanted) return 1;
+    if (!(left > 0)) return infinity;
+    const double samples = std::max(2.0, std::ceil(std::pow(m.sample.value / left, 1 / contender.choice.power)));
+    return samples <= most_target_samples ? samples : infinity;
+}
+
+// The picture a candidate would make of the goal. Where it does not get there, as good as it may become.
+void predict(Contender& contender, const Goal& goal) {
+    const Measured& m = contender.choice.measured;
     const auto seconds_of = [&](double samples) { return m.prepare_seconds + samples * m.sample_seconds; };
     if (goal.error > 0) {
-        contender.samples = race.samples_for(contender);
-        contender.seconds = seconds_of(std::min(contender.samples, 1.0 * most_target_samples));
-        contender.error =
-            contender.gets_there() ? race.error(contender, contender.samples) : std::sqrt(contender.integrator().value);
+        contender.samples = samples_for(contender, goal.error);
+        const double samples = std::min(contender.samples, 1.0 * most_target_samples);
+        contender.seconds = seconds_of(samples), contender.error = error_with(contender, samples);
         if (goal.seconds == 0 || (contender.gets_there() && contender.seconds <= goal.seconds)) return;
     }
     const double samples = std::max(1.0, std::floor((goal.seconds - m.prepare_seconds) / m.sample_seconds));
-    contender.seconds = seconds_of(samples), contender.error = race.error(contender, samples);
+    contender.seconds = seconds_of(samples), contender.error = error_with(contender, samples);
     contender.samples = goal.error > 0 || contender.seconds > goal.seconds ? infinity : samples;
 }
 
 // Whether finer candidates of a mode than this can still win.
-bool may_improve(const Contender& last, double before, const Contender& best, const Goal& goal) {
+bool may_improve(const Contender& last, int idle, const Contender& best, const Goal& goal) {
+    constexpr int most_idle = 2; // reduced pictures may be as wrong as each other beside a lamp
     const Measured& m = last.choice.measured;
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
-    if (m.integrator.value > 0.9 * before) return false;
+    if (idle >= most_idle) return false;
     if (goal.error > 0 && best.gets_there() && least >= best.seconds) return false;
     if (goal.error > 0 && last.gets_there() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
     // Where noise rules, or time is nearly up, finer is worse.
@@ -86,7 +86,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     const Pilot pilot = make_pilot(find_mode("march"), view, snapshot, &truth, options, [] { return false; });
 
     Contest contest;
-    Race race{goal};
+    double edge_power = 0; // of samples by which the noise of edges falls; 0 = not yet known
     std::vector<Runner> runners = runners_of(modes, settings, goal.quality);
     size_t all = 0;
     for (const Runner& runner : runners) all += runner.candidates.size();
@@ -96,18 +96,19 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             Contender contender{runner.mode, {candidate, {}, has_integrator(*runner.mode)}};
             contender.choice.measured = measure(pilot, *runner.mode, snapshot, candidate.settings, options, goal.clock);
             Measured& measured = contender.choice.measured;
-            if (race.power == 0)
-                race.power = spread_power(pilot, *runner.mode, snapshot, candidate.settings, *measured.prepared,
+            const bool systematic = contender.choice.has_integrator;
+            if (systematic && edge_power == 0)
+                edge_power = spread_power(pilot, *runner.mode, snapshot, candidate.settings, *measured.prepared,
                                           measured.sample.value, options);
-            contender.choice.power = race.power;
-            predict(contender, race);
+            contender.choice.power = systematic ? edge_power : 1;
+            predict(contender, goal);
             measured.prepared = nullptr; // it may be large
             contest.contenders.push_back(std::move(contender));
             const size_t here = contest.contenders.size() - 1;
             if (here == 0 || beats(contest.contenders[here], contest.best(), goal)) contest.winner = here;
             const Contender& last = contest.contenders.back();
-            if (!may_improve(last, runner.integrator, contest.best(), goal)) runner.next = runner.candidates.size();
-            runner.integrator = last.choice.measured.integrator.value;
+            runner.note(last.choice.measured.integrator.value);
+            if (!may_improve(last, runner.idle, contest.best(), goal)) runner.next = runner.candidates.size();
         }
         size_t left = 0;
         for (const Runner& runner : runners) left += runner.candidates.size() - runner.next;

@@ -1,7 +1,6 @@
 #include "render/goal.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 
 namespace tyndall {
@@ -25,10 +24,6 @@ bool reaches(const Choice& choice, double samples, double error) {
 }
 }
 
-double steady_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 double Choice::expected(double samples) const {
     if (samples < 2) return measured.single.value;
     return measured.integrator.value + measured.sample.value / std::pow(samples, power);
@@ -38,7 +33,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
               double start, const FrameOptions& options) {
     const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
     const auto spent = [&] { return goal.clock() - start; };
-    const Settings truth = systematic ? truth_of(settings) : settings;
+    const Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
     const Pilot pilot =
         make_pilot(systematic ? find_mode("march") : mode, view, snapshot, systematic ? &truth : nullptr, options,
                    [&] { return timed && spent() > truth_share * goal.seconds; });
@@ -51,7 +46,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
             power = systematic ? spread_power(pilot, mode, snapshot, candidate.settings, *choice.measured.prepared,
                                               choice.measured.sample.value, options)
                                : 1;
-        choice.power = power;
+        choice.power = power, choice.truth_seconds = pilot.truth_seconds;
         return choice;
     };
 

@@ -9,6 +9,7 @@ struct Choice {
     Measured measured;
     bool has_integrator = false; // otherwise noise is the only error
     double power = 1;            // of the samples by which their variance falls
+    double truth_seconds = 0;    // per sample of the picture, of the light held to be true; 0 = noise is the only error
 
     // The squared error to expect of so many samples per pixel.
     double expected(double samples) const;
@@ -20,9 +21,10 @@ struct Goal {
     Quality quality = Quality::preview;     // of the settings: rows that depart from it are kept
     Seconds clock{};                        // empty = steady_seconds
     std::shared_ptr<const Choice> choice{}; // made for this very picture beforehand; null = none is
+    // What pictures are held against, where terms were left out because another frame did not need them, and rendered
+    // where that does not get to the error; null = the settings rendered.
+    std::shared_ptr<const Settings> wanted{};
 };
-
-double steady_seconds(); // since some moment
 
 // Share of the error wanted that the integrator may use up.
 inline constexpr double integrator_share = 0.7;

@@ -3,32 +3,42 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/pilot_sums.h"
 #include "render/samples.h"
+#include "trace/lamp_samples.h"
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <limits>
 
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
-constexpr size_t rays = 2 * 16, values = 2 * rays; // of a tile: colour and fog light of both samples of its pixels
-constexpr double confidence = 1.96;                // standard deviations below which 97.5 % of a normal lie
 constexpr uint32_t use_pilot = 0x9170u;
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
-// Tiles that show a pixel of the picture, all or some, in an order of which any beginning is spread evenly.
-std::vector<ivec2> spread_tiles(const View& view, double& count) {
+// Sets tiles that show a pixel of the picture, all or some: those with a lamp, and the others in an order of which any
+// beginning is spread evenly.
+void spread_tiles(const View& view, Pilot& pilot) {
     const bool cropped = view.crop_low != view.crop_high;
     const ivec2 first = (cropped ? view.crop_low : ivec2(0)) / tile_side;
     const ivec2 tiles = ((cropped ? view.crop_high : view.size) - 1) / tile_side + 1 - first;
-    count = static_cast<double>(tiles.x) * tiles.y;
-    const size_t wanted = static_cast<size_t>(std::min<double>(count, most_pilot_tiles));
-    std::vector<ivec2> corners;
+    pilot.tiles = static_cast<double>(tiles.x) * tiles.y;
+    size_t wanted = most_lamp_tiles;
+    std::vector<ivec2>& corners = pilot.corners;
     const auto add = [&](ivec2 tile) {
         const ivec2 corner = (first + tile) * tile_side;
         if (corners.size() < wanted && !std::ranges::count(corners, corner)) corners.push_back(corner);
     };
+    for (const View::Lamp& lamp : view.lamps) {
+        const vec2 place = glm::floor(lamp.at / static_cast<float>(tile_side)) - vec2(first);
+        if (place.x >= 0 && place.y >= 0 && place.x < static_cast<float>(tiles.x) &&
+            place.y < static_cast<float>(tiles.y))
+            add(ivec2(place));
+    }
+    pilot.lamp_tiles = corners.size();
+    wanted = static_cast<size_t>(std::min<double>(pilot.tiles, most_pilot_tiles));
     for (uint32_t k = 0; k < 4 * most_pilot_tiles; ++k) {
         const Sample2 place = sample2(k, use_pilot);
         add(glm::min(ivec2(vec2(place.x, place.y) * vec2(tiles)), tiles - 1));
@@ -36,7 +46,7 @@ std::vector<ivec2> spread_tiles(const View& view, double& count) {
     // Few tiles are taken all, though chance has left some out.
     for (int y = 0; y < tiles.y && corners.size() < wanted; ++y)
         for (int x = 0; x < tiles.x && corners.size() < wanted; ++x) add({x, y});
-    return corners;
+    if (pilot.lamp_tiles == corners.size()) pilot.lamp_tiles = 0; // there are no others
 }
 
 FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -70,64 +80,31 @@ void follow_tile(const FrameTracer& tracer, ivec2 corner, std::span<vec3> result
 // Tiles `begin` to `end` of the pilot.
 void follow(const FrameTracer& tracer, const Pilot& pilot, size_t begin, size_t end, const FrameOptions& options,
             std::vector<vec3>& result) {
-    result.resize(end * values);
+    result.resize(end * pilot_values);
     parallel_for(static_cast<int64_t>(end - begin), [&](int64_t i) {
         if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
         const size_t tile = begin + static_cast<size_t>(i);
-        follow_tile(tracer, pilot.corners[tile], {result.data() + tile * values, values});
+        follow_tile(tracer, pilot.corners[tile], {result.data() + tile * pilot_values, pilot_values});
     });
 }
 
-double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
-
-// Of one layer, summed over the pixels of tiles.
-struct Sums {
-    double products[3] = {}; // integrator, sample, single
-    double mean = 0, count = 0;
-
-    void add(const Sums& other, double factor) {
-        for (int k = 0; k < 3; ++k) products[k] += factor * other.products[k];
-        mean += factor * other.mean, count += factor * other.count;
-    }
-    double square(int k) const { // as a share of the squared mean
-        if (std::abs(products[k]) == 0) return 0;
-        return mean > 0 ? products[k] * count / (mean * mean) : infinity;
-    }
-};
-
-Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, std::span<const vec3> center, size_t layer) {
-    Sums sums;
-    for (size_t i = 0; i < 16; ++i) {
-        const size_t a = 2 * i + layer, b = a + rays;
-        if (!is_finite(truth[a] + truth[b] + own[a] + own[b] + center[a])) continue;
-        const dvec3 ta(truth[a]), tb(truth[b]), oa(own[a]), ob(own[b]), c(center[a]);
-        sums.products[0] += channel_mean((oa - ta) * (ob - tb));
-        sums.products[1] += 0.5 * channel_mean((oa - ob) * (oa - ob));
-        sums.products[2] += channel_mean((c - ta) * (c - tb));
-        sums.mean += 0.5 * channel_mean(ta + tb), sums.count += 1;
-    }
-    return sums;
-}
-
-// Jackknife: how far the ratio moves when a tile is left out.
-SquaredError squared_error(const std::vector<Sums>& tiles, int product) {
-    Sums all;
-    for (const Sums& tile : tiles) all.add(tile, 1);
-    SquaredError result{std::max(all.square(product), 0.0), 0};
-    const double count = static_cast<double>(tiles.size());
-    double mean = 0, squares = 0, seen = 0;
-    for (const Sums& tile : tiles) {
-        Sums others = all;
-        others.add(tile, -1);
-        const double value = others.square(product), off = value - mean;
-        mean += off / ++seen, squares += off * (value - mean);
-    }
-    result.bound = result.value + confidence * std::sqrt(std::max(squares * (count - 1) / count, 0.0));
-    if (!(result.bound >= 0)) result.bound = infinity;
-    return result;
+// Modes that shade surfaces themselves spread their samples by the filter alone.
+View view_for(const Mode& mode, const Pilot& pilot) {
+    View view = pilot.view;
+    if (mode.surfaces != Surfaces::shared) view.lamps.clear();
+    return view;
 }
 
 SquaredError worse(SquaredError a, SquaredError b) { return {std::max(a.value, b.value), std::max(a.bound, b.bound)}; }
+}
+
+double steady_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double tiles_stood_for(const Pilot& pilot, size_t tile) {
+    const double lamps = static_cast<double>(pilot.lamp_tiles);
+    return tile < pilot.lamp_tiles ? 1 : (pilot.tiles - lamps) / (static_cast<double>(pilot.corners.size()) - lamps);
 }
 
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
@@ -135,17 +112,21 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
     Pilot pilot;
     pilot.view = view;
     pilot.view.per_light = false, pilot.view.pixel_samples = pilot.view.batches = 2;
-    pilot.corners = spread_tiles(view, pilot.tiles);
+    pilot.view.lamp_samples = pilot.view.edge_samples = 1;
+    pilot.view.lamps = lamps_in(view, snapshot);
+    spread_tiles(pilot.view, pilot);
     if (!truth) return pilot;
 
     const Prepared prepared = prepare_frame(mode, pilot.view, snapshot, *truth, nullptr);
     const FrameTracer tracer = tracer_of(mode, pilot.view, snapshot, *truth, prepared);
     size_t done = 0;
+    const double start = steady_seconds();
     while (done < pilot.corners.size() && (done < fewest_pilot_tiles || !enough())) {
         const size_t end = std::min(done + fewest_pilot_tiles, pilot.corners.size());
         follow(tracer, pilot, done, end, options, pilot.truth);
         done = end;
     }
+    pilot.truth_seconds = (steady_seconds() - start) / 2 * (pilot.tiles / static_cast<double>(done));
     pilot.corners.resize(done);
     return pilot;
 }
@@ -153,14 +134,15 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
 Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot, const Settings& settings,
                  const FrameOptions& options, const Seconds& clock) {
     Measured result;
+    const View view = view_for(mode, pilot);
     const double start = clock();
-    result.prepared = std::make_shared<const Prepared>(prepare_frame(mode, pilot.view, snapshot, settings, nullptr));
+    result.prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));
     const double prepared = clock();
     std::vector<vec3> own, center;
     const size_t count = pilot.corners.size();
-    follow(tracer_of(mode, pilot.view, snapshot, settings, *result.prepared), pilot, 0, count, options, own);
+    follow(tracer_of(mode, view, snapshot, settings, *result.prepared), pilot, 0, count, options, own);
     const double followed = clock();
-    View single = pilot.view;
+    View single = view;
     single.pixel_samples = single.batches = 1, single.seed = hash(single.seed, use_pilot);
     follow(tracer_of(mode, single, snapshot, settings, *result.prepared), pilot, 0, count, options, center);
 
@@ -170,14 +152,16 @@ Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
     result.sample_seconds = sample * (pilot.tiles / static_cast<double>(count));
     const std::vector<vec3>& truth = pilot.truth.empty() ? own : pilot.truth;
     for (size_t layer = 0; layer < 2; ++layer) {
-        std::vector<Sums> tiles;
+        TileSums sums{{}, pilot.lamp_tiles, pilot.tiles};
         for (size_t tile = 0; tile < count; ++tile) {
-            const auto of = [&](const std::vector<vec3>& all) { return std::span(all.data() + tile * values, values); };
-            tiles.push_back(sums_of(of(truth), of(own), of(center), layer));
+            const auto of = [&](const std::vector<vec3>& all) {
+                return std::span(all.data() + tile * pilot_values, pilot_values);
+            };
+            sums.tiles.push_back(sums_of(of(truth), of(own), of(center), layer));
         }
-        result.integrator = worse(result.integrator, squared_error(tiles, 0));
-        result.sample = worse(result.sample, squared_error(tiles, 1));
-        result.single = worse(result.single, squared_error(tiles, 2));
+        result.integrator = worse(result.integrator, squared_error(sums, of_integrator));
+        result.sample = worse(result.sample, squared_error(sums, of_sample));
+        result.single = worse(result.single, squared_error(sums, of_single));
     }
     return result;
 }
@@ -185,7 +169,7 @@ Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
 double spread_power(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot, const Settings& settings,
                     const Prepared& prepared, double sample_variance, const FrameOptions& options) {
     constexpr int samples = 8;
-    View view = pilot.view;
+    View view = view_for(mode, pilot);
     view.pixel_samples = 2 * samples;
     std::vector<vec3> own;
     const size_t count = pilot.corners.size();
@@ -193,11 +177,11 @@ double spread_power(const Pilot& pilot, const Mode& mode, const Snapshot& snapsh
     double variance = 0;
     for (size_t layer = 0; layer < 2; ++layer) {
         Sums sums;
-        for (size_t tile = 0; tile < count; ++tile) {
-            const std::span<const vec3> means(own.data() + tile * values, values);
+        for (size_t tile = pilot.lamp_tiles; tile < count; ++tile) {
+            const std::span<const vec3> means(own.data() + tile * pilot_values, pilot_values);
             sums.add(sums_of(means, means, means, layer), 1);
         }
-        variance = std::max(variance, sums.square(1));
+        variance = std::max(variance, sums.square(of_sample));
     }
     if (!(variance > 0) || !(sample_variance > variance)) return 1;
     return std::clamp(std::log(sample_variance / variance) / std::log(double{samples}), 1.0, 2.0);

@@ -171,7 +171,8 @@ void render(Pipeline& pipeline, Work& work) {
     try {
         History history;
         if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        const Goal goal{job.target_error, job.time_budget, job.quality, {}, work.index == 0 ? job.choice : nullptr};
+        const Goal goal{job.target_error, job.time_budget, job.quality, {},
+                        work.index == 0 ? job.choice : nullptr, job.wanted};
         work.layers =
             has_goal(job)
                 ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, goal, options, stats)

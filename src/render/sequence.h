@@ -33,6 +33,7 @@ struct RenderJob {
     std::string unsaved;                  // edits that the scene's files do not have; for hash and header
     std::string plan;                     // why this mode, when it was chosen for the scene; for the header
     std::shared_ptr<const Choice> choice; // of the first frame's candidate, when already made
+    std::shared_ptr<const Settings> wanted; // by --mode auto: the settings with the terms its first frame does not need
 };
 
 // Whether an error or a time decides how many samples there are.

@@ -11,6 +11,10 @@
 
 namespace tyndall {
 namespace {
+// Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
+// which show by then.
+constexpr double most_first_samples = 64;
+
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.
 int samples_needed(const Noise& noise, int samples, double target, int batches) {
@@ -35,6 +39,7 @@ struct Rounds {
     std::optional<Choice> choice; // where anything was measured beforehand
     std::optional<Allotment> allotment{};
     double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
+    double first_part = 1; // of an allotment
     double done = 0, expected = most_target_samples;
     int freedom = 0; // differences between batches so far
 
@@ -73,6 +78,17 @@ Rounds rounds_of(const Mode& mode, const View& view, const Goal& goal) {
     return rounds;
 }
 
+Choice choice_for(const Rounds& rounds, const Snapshot& snapshot, const Settings& settings,
+                  const FrameOptions& options) {
+    const Goal& goal = rounds.goal;
+    if (goal.choice) return *goal.choice;
+    Choice choice = choose(rounds.mode, rounds.view, snapshot, settings, goal, rounds.start, options);
+    const bool falls_short = goal.error > 0 && choice.has_integrator &&
+                             choice.measured.integrator.bound >= goal.error * goal.error;
+    if (!falls_short || !goal.wanted) return choice;
+    return choose(rounds.mode, rounds.view, snapshot, *goal.wanted, goal, rounds.start, options);
+}
+
 // Where nothing is known, the first round is as the view asks; otherwise a small part of what is likely to be needed:
 // it shows which pixels need it.
 int first_round(Rounds& rounds) {
@@ -82,7 +98,7 @@ int first_round(Rounds& rounds) {
     if (rounds.goal.error > 0) {
         const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
         const double needed = std::pow(ratio, 1 / rounds.choice->power);
-        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, most_target_samples / 2.0));
+        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, most_first_samples));
         if (needed < 8) samples = std::max(static_cast<int>(std::ceil(needed / 2)), 2);
         if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
         rounds.expected = std::max<double>(samples, std::min<double>(needed, most_target_samples));
@@ -92,7 +108,8 @@ int first_round(Rounds& rounds) {
         samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
         rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
     }
-    return std::max(samples, rounds.fewest());
+    const bool single_refused = measured.single.bound == infinity;
+    return std::max(samples, single_refused ? 2 : rounds.fewest());
 }
 
 // After the first round: whether samples are better spread by what it showed. Then they are, from nothing.
@@ -111,13 +128,15 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     const double alike = rounds.done * std::pow(squared / allotment.squared_error, 1 / power) - rounds.done;
     if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
+    // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
+    if (*std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done) rounds.first_part = 0.4;
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }
 
 // Parts of an allotment: what noise asks for, and time leaves; 0 when time is up.
 double next_part(Rounds& rounds, const FrameStats& stats) {
-    double wanted = 1;
+    double wanted = rounds.goal.error > 0 ? rounds.first_part : 1;
     if (rounds.done > 0 && rounds.goal.error > 0) {
         const double ratio = stats.noise->bound / rounds.noise_target();
         rounds.expected = 1.02 * rounds.done * ratio * ratio;
@@ -189,13 +208,15 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     Settings chosen = settings;
     stats = {};
     if (has_integrator(mode) || goal.seconds > 0) {
-        rounds.choice =
-            goal.choice ? *goal.choice : choose(mode, view, snapshot, settings, goal, rounds.start, options);
+        rounds.choice = choice_for(rounds, snapshot, settings, options);
         chosen = rounds.choice->candidate.settings;
         rounds.work_seconds = rounds.choice->measured.sample_seconds;
         round_options.prepared = rounds.choice->measured.prepared;
+        if (!round_options.prepared) // once for all rounds
+            round_options.prepared =
+                std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, chosen, options.history));
         stats.prepare_seconds = goal.clock() - rounds.start;
-        if (round_options.prepared) stats.fog_seconds = round_options.prepared->mode_seconds;
+        stats.fog_seconds = round_options.prepared->mode_seconds;
         const SquaredError& error = rounds.choice->measured.integrator;
         if (rounds.choice->has_integrator)
             stats.integrator = {

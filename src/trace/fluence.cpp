@@ -2,10 +2,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "trace/fluence_walls.h"
 #include "trace/light_paths.h"
 
 #include <algorithm>
-#include <array>
 
 namespace tyndall {
 namespace {
@@ -32,7 +32,7 @@ FluenceGrid grid_over(const Box& fog, int resolution) {
 }
 
 // Adds the lengths of a flight in the cells of a slab (Amanatides & Woo 1987).
-void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid) {
+void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, FluenceOctants& octants) {
     const float scale = 1 / grid.cell;
     const float start = (flight.from.x - grid.bounds.low.x) * scale,
                 end_x = start + flight.length * flight.direction.x * scale;
@@ -42,6 +42,7 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid) {
     const Interval inside = clip(slab, from, step, {0, flight.length});
     if (inside.empty()) return;
 
+    const float brightness = luminance(flight.light);
     float values[12];
     for (int c = 0; c < 3; ++c) values[c] = flight.light[c];
     for (int axis = 0; axis < 3; ++axis)
@@ -58,10 +59,14 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid) {
     for (float t = inside.low;;) {
         const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
         const float end = std::min(next[axis], inside.high), length = std::max(end - t, 0.0f);
-        float* to = grid.values.data() +
-                    12 * (static_cast<size_t>(cell.x * grid.size.y + cell.y) * static_cast<size_t>(grid.size.z) +
-                          static_cast<size_t>(cell.z));
+        const size_t index = cell_index(grid, cell);
+        float* to = grid.values.data() + 12 * index;
         for (int i = 0; i < 12; ++i) to[i] += length * values[i];
+        if (!octants.empty()) {
+            const vec3 place = from + (t + 0.5f * length) * step, within = place - vec3(cell);
+            const int octant = (within.x > 0.5f ? 4 : 0) + (within.y > 0.5f ? 2 : 0) + (within.z > 0.5f ? 1 : 0);
+            octants[8 * index + static_cast<size_t>(octant)] += length * brightness * vec4(place, 1);
+        }
         if (!(next[axis] < inside.high)) return;
         t = end, next[axis] += across[axis];
         cell[axis] += step[axis] > 0 ? 1 : -1;
@@ -69,38 +74,12 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid) {
     }
 }
 
-// Every slab takes the flights in the same order.
-void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid) {
+// Every slab takes the flights in the same order. No octants: nobody asks for them.
+void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, FluenceOctants& octants) {
     parallel_for((grid.size.x + slab_cells - 1) / slab_cells, [&](int64_t slab) {
         const int first = static_cast<int>(slab) * slab_cells, last = std::min(first + slab_cells, grid.size.x);
         for (const LightPathResult& block : blocks)
-            for (const Flight& flight : block.flights) add_flight(flight, first, last, grid);
-    });
-}
-
-// Means of three cells along an axis, the middle one twice: takes most of the noise and no detail that cells a little
-// larger would keep. What leaves at the borders of the grid comes back.
-void smooth(int axis, FluenceGrid& grid) {
-    const ivec3 size = grid.size;
-    const int across = (axis + 1) % 3, up = (axis + 2) % 3;
-    const auto at = [&](ivec3 cell) {
-        return grid.values.data() + 12 * (static_cast<size_t>(cell.x * size.y + cell.y) * static_cast<size_t>(size.z) +
-                                          static_cast<size_t>(cell.z));
-    };
-    parallel_for(int64_t{size[across]} * size[up], [&](int64_t line) {
-        ivec3 cell(0);
-        cell[across] = static_cast<int>(line) / size[up], cell[up] = static_cast<int>(line) % size[up];
-        std::array<float, 12> before, here, after;
-        std::copy_n(at(cell), 12, before.begin());
-        here = before;
-        for (int i = 0; i < size[axis]; ++i) {
-            cell[axis] = std::min(i + 1, size[axis] - 1);
-            std::copy_n(at(cell), 12, after.begin());
-            cell[axis] = i;
-            float* values = at(cell);
-            for (size_t k = 0; k < 12; ++k) values[k] = 0.25f * (before[k] + after[k]) + 0.5f * here[k];
-            before = here, here = after;
-        }
+            for (const Flight& flight : block.flights) add_flight(flight, first, last, grid, octants);
     });
 }
 
@@ -180,50 +159,15 @@ KeptKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, u
 }
 }
 
-float mean_cosine(Phase phase) {
-    const bool even = phase.kind == PhaseKind::isotropic || phase.kind == PhaseKind::rayleigh;
-    return even ? 0 : std::clamp(phase.g, -largest_g, largest_g);
-}
-
-FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
-    FluenceAt at;
-    if (clip(grid.bounds, point, vec3(0), {0, 1}).empty()) return at;
-    const vec3 last = vec3(grid.size - 1);
-    const vec3 place = glm::clamp((point - grid.bounds.low) / grid.cell - 0.5f, vec3(0), last);
-    const ivec3 low(place), high = glm::min(low + 1, grid.size - 1);
-    const vec3 weight = place - vec3(low);
-    for (int corner = 0; corner < 8; ++corner) {
-        const ivec3 cell(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
-        const float share = (corner & 1 ? weight.x : 1 - weight.x) * (corner & 2 ? weight.y : 1 - weight.y) *
-                            (corner & 4 ? weight.z : 1 - weight.z);
-        const float* values = grid.values.data() + 12 * (static_cast<size_t>(cell.x * grid.size.y + cell.y) *
-                                                             static_cast<size_t>(grid.size.z) +
-                                                         static_cast<size_t>(cell.z));
-        for (int c = 0; c < 3; ++c) at.fluence[c] += share * values[c];
-        for (int axis = 0; axis < 3; ++axis)
-            for (int c = 0; c < 3; ++c) at.flux[c][axis] += share * values[3 + 3 * axis + c];
-    }
-    return at;
-}
-
-vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase) {
-    vec3 result;
-    const float g = mean_cosine(phase);
-    for (int c = 0; c < 3; ++c) {
-        const vec3 lobe = at.flux[c] * (g / std::max(at.fluence[c], 1e-30f));
-        const float squared = std::min(glm::dot(lobe, lobe), largest_g * largest_g);
-        const float q = std::max(1 + squared + 2 * glm::dot(lobe, direction), 1e-4f);
-        result[c] = at.fluence[c] * (1 - squared) / (4 * pi * q * std::sqrt(q));
-    }
-    return result;
-}
-
 FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     LightPathRules rules;
     rules.reach = light_reach(snapshot);
     FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
     if (grid.empty() || snapshot.lights.empty()) return {};
+    rules.reach.grow(grid.bounds); // cells at the rim are filled as others are
     rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
+    const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
+    FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
     const int64_t paths = settings.paths;
     const Emission emission = emission_by_pilot(snapshot, rules, paths);
     std::vector<LightPathResult> blocks(static_cast<size_t>(round_blocks));
@@ -234,11 +178,12 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
             const int64_t first = round + b * block_paths, count = std::min(block_paths, paths - first);
             if (count > 0) trace_light_paths(snapshot, emission, rules, first, count, paths, result);
         });
-        add_flights(blocks, grid);
+        add_flights(blocks, grid, octants);
     }
     const float volume = grid.cell * grid.cell * grid.cell;
     for (float& value : grid.values) value /= volume;
-    for (int axis = 0; axis < 3; ++axis) smooth(axis, grid);
+    if (surfaces) find_walls(*snapshot.occluders, octants, grid);
+    smooth(grid);
     return grid;
 }
 

@@ -25,11 +25,22 @@ struct FluenceGrid {
     // Twelve numbers per cell [(x·ny + y)·nz + z]: fluence of red, green, blue; then the flux of each, x, y, z by
     // colour: [3 + 3·axis + colour].
     std::vector<float> values;
+    // Per cell, bit `axis`: a surface lies between its light and that of the next cell. Empty = there are no surfaces.
+    std::vector<int32_t> walls;
+    // Per cell the surface that cuts it, n·p + d in cells from the lower corner, above 0 on the side whose light the
+    // cell holds; zeros where none does. As many as walls.
+    std::vector<vec4> cuts;
 
     bool empty() const { return values.empty(); }
 };
 
-// A grid's values between cell centres; zeros outside its bounds.
+inline size_t cell_index(const FluenceGrid& grid, ivec3 cell) {
+    return static_cast<size_t>(cell.x * grid.size.y + cell.y) * static_cast<size_t>(grid.size.z) +
+           static_cast<size_t>(cell.z);
+}
+
+// A grid's values between cell centres, of those that no wall parts from the cell around the point, or that lie on the
+// point's side of the surface that cuts this cell; zeros outside the bounds.
 struct FluenceAt {
     vec3 fluence{0}, flux[3]{vec3(0), vec3(0), vec3(0)}; // flux: of each colour, by axis
 };

@@ -99,6 +99,7 @@ void scatter(const Walk& walk, Walker& walker, const Optics& optics, float dista
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
     vec3 share = optics.albedo;
     if (walker.order == 0) share *= light.volume_scale * ranged(walk, walker, point);
+    walk.result.first_scatterings += walker.order == 0;
     (walker.order == 0 ? walk.result.scattered_once : walk.result.scattered_more) +=
         luminance(walker.light * walker.share * share);
     turn(walk, walker, {point, sample_phase(optics.phase, walker.ray.direction, walker.pair())}, share);

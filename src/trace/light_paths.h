@@ -33,6 +33,7 @@ Emission even_emission(const Snapshot& snapshot, const Box& reach, int side);
 // What a number of paths brought.
 struct LightPathResult {
     std::vector<Flight> flights;     // in the order of the paths
+    int64_t first_scatterings = 0;   // in fog, of light straight from lights
     double scattered_once = 0;       // power that fog scattered which came straight from lights ...
     double scattered_more = 0;       // ... and which had been scattered before, by fog or surfaces
     int64_t hits = 0;                // paths with flights that were noted

@@ -16,10 +16,10 @@ struct Quantiles {
 // Gaussian of standard deviation radius/3, lowered to be 0 at the radius.
 double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
 
-// Blackman–Harris window, 4 terms (Harris 1978), over [-1,1].
+// Blackman–Harris window, 4 terms (Harris 1978), over [-1,1]. Multiples of the angle by Chebyshev polynomials.
 double blackman_harris(double x) {
-    const double phase = 3.14159265358979323846 * (x + 1);
-    return 0.35875 - 0.48829 * std::cos(phase) + 0.14128 * std::cos(2 * phase) - 0.01168 * std::cos(3 * phase);
+    const double one = std::cos(3.14159265358979323846 * (x + 1)), two = 2 * one * one - 1, three = (2 * two - 1) * one;
+    return 0.35875 - 0.48829 * one + 0.14128 * two - 0.01168 * three;
 }
 
 // Inverse of the filter's cumulative distribution, by summing fine midpoints.

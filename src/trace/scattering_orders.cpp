@@ -41,8 +41,12 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
 
     // Ratio of means, its spread by the batches' residuals (Cochran 1977, section 2.11).
     double once = 0, more = 0, squares = 0;
-    for (const LightPathResult& result : results) once += result.scattered_once, more += result.scattered_more;
-    if (!(once > 0)) return {};
+    int64_t seen = 0;
+    for (const LightPathResult& result : results) {
+        once += result.scattered_once, more += result.scattered_more;
+        seen += result.first_scatterings;
+    }
+    if (!(once > 0)) return more > 0 ? ScatteringRatio{infinity, 0, infinity} : ScatteringRatio{};
     const double ratio = more / once;
     for (const LightPathResult& result : results) {
         const double residual = result.scattered_more - ratio * result.scattered_once;
@@ -50,7 +54,8 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
     }
     constexpr double student = 2.0; // of 63 degrees of freedom
     const double spread = student * std::sqrt(squares * batches / (batches - 1.0)) / once;
-    return {ratio, std::max(0.0, ratio - spread), ratio + spread};
+    const double unseen = 3 / static_cast<double>(seen); // the rule of three: 95 % where nothing was seen
+    return {ratio, std::max(0.0, ratio - spread), ratio + std::max(spread, unseen)};
 }
 
 double truncation_bound(const Snapshot& snapshot, int orders) {

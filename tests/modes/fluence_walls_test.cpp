@@ -1,0 +1,89 @@
+// Fluence beside surfaces and at the rim of the fog.
+#include "base/random.h"
+#include "path_scenes.h"
+#include "run_mode.h"
+#include "trace/fluence.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+constexpr FluenceSettings twice{2, 16, 1'000'000};
+
+// Mean of what is known in a box.
+double mean_fluence(const FluenceGrid& grid, const Box& box) {
+    double sum = 0;
+    constexpr int count = 4096;
+    for (uint32_t i = 0; i < count; ++i) {
+        const Sample2 across = sample2(i, 3);
+        const vec3 place(across.x, (static_cast<float>(i) + 0.5f) / count, across.y);
+        sum += fluence_at(grid, box.low + box.size() * place).fluence.x / count;
+    }
+    return sum;
+}
+
+Snapshot with_surfaces(Scene& scene, const Box& fog, vec3 sun_direction, float extinction = 0.5f) {
+    Snapshot snapshot = scene_of({even_fog(extinction, fog)}, {sun(sun_direction)});
+    add_surfaces(scene, snapshot);
+    return snapshot;
+}
+
+// A layer of fog is as bright wherever the grid's cells lie, up to what is missing beside it: cells at its rim know the
+// mean of light within and without.
+TEST(FluenceRim, ALayerBetweenTheCellsIsAsBrightAsOneOnThem) {
+    const float cell = 2.0f / twice.resolution;
+    const auto brightness = [&](float low) {
+        const Box layer{vec3(-1, low, -1), vec3(1, low + 2 * cell, 1)};
+        const Snapshot snapshot = scene_of({even_fog(1, layer)}, {sun({0.2f, -1, 0})});
+        return mean_fluence(make_fluence(snapshot, twice), layer);
+    };
+    const double on_cells = brightness(2 * cell);
+    for (const float shift : {0.25f, 0.5f, 0.8f})
+        EXPECT_NEAR(brightness((2 + shift) * cell), on_cells, 0.12 * on_cells) << shift;
+}
+
+// What lies below a floor is dark and takes nothing from the fog above.
+TEST(FluenceWalls, FogThatGoesOnBelowAFloorIsAsBrightAboveIt) {
+    const auto fluence = [](float low, float height) {
+        Scene scene;
+        scene.materials = {lambert(vec3(0))};
+        add_mesh(scene, floor_at(0, 6, 0));
+        const Snapshot snapshot = with_surfaces(scene, {vec3(-1, low, -1), vec3(1)}, {0, -1, 0});
+        const FluenceGrid grid = make_fluence(snapshot, twice);
+        return mean_fluence(grid, {vec3(-0.5f, height, -0.5f), vec3(0.5f, height + 0.02f, 0.5f)});
+    };
+    for (const float height : {0.01f, 0.08f, 0.2f, 0.5f}) {
+        const double cut_off = fluence(0, height);
+        for (const float low : {-0.25f, -0.33f, -0.41f, -1.0f})
+            EXPECT_NEAR(fluence(low, height), cut_off, 0.1 * cut_off) << height << " above, fog from " << low;
+    }
+}
+
+TEST(FluenceWalls, AClosedRoomIsDarkInside) {
+    Scene scene;
+    scene.materials = {lambert(vec3(0.8f))};
+    add_mesh(scene, box_mesh(vec3(-0.53f), vec3(0.53f), 0));
+    const Snapshot snapshot = with_surfaces(scene, {vec3(-1), vec3(1)}, {0.3f, -1, 0.2f}, 2);
+    const FluenceGrid grid = make_fluence(snapshot, {all_orders, 16, 200'000});
+    EXPECT_GT(mean_fluence(grid, {vec3(-0.95f), vec3(-0.6f)}), 0.1);
+    EXPECT_EQ(mean_fluence(grid, {vec3(-0.49f), vec3(0.49f)}), 0) << "0.04 m from the walls, cells of 0.125 m";
+}
+
+// A black screen in thin fog, lit along both sides, keeps from each side what the other scatters: half of it. A quarter
+// of a cut cell may count for the wrong side.
+TEST(FluenceWalls, AScreenLitOnBothSidesIsHalfAsBrightAsNone) {
+    const auto fluence = [](bool screen) {
+        Scene scene;
+        scene.materials = {lambert(vec3(0))};
+        add_mesh(scene, screen ? box_mesh(vec3(0.03f, -3, -3), vec3(0.031f, 3, 3), 0) : floor_at(-9, 1, 0));
+        const Snapshot snapshot = with_surfaces(scene, {vec3(-1), vec3(1)}, {0, -1, 0}, 0.1f);
+        const FluenceGrid grid = make_fluence(snapshot, twice);
+        return mean_fluence(grid, {vec3(0.035f, -0.5f, -0.5f), vec3(0.08f, 0.5f, 0.5f)}) +
+               mean_fluence(grid, {vec3(-0.03f, -0.5f, -0.5f), vec3(0.025f, 0.5f, 0.5f)});
+    };
+    const double share = fluence(true) / fluence(false);
+    EXPECT_GT(share, 0.4);
+    EXPECT_LT(share, 0.67);
+}
+}
+}
