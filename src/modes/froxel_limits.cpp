@@ -66,7 +66,7 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
         const float depth = medium.majorant() * size.deep;
         const vec3 sides = medium.world_bounds.size();
         if (depth > 1)
-            limits.push_back({Severity::degraded, where,
+            limits.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded, where,
                               "froxels are up to " + number_text("%.2g", depth) +
                                   " optical depths deep: light that changes within them is evened out"});
         if (std::min(sides.x, std::min(sides.y, sides.z)) < size.deep)
