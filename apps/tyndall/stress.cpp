@@ -99,7 +99,7 @@ Run add_stress(CLI::App& app) {
     command->add_option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there")
         ->type_name("DIR");
     command->add_flag("--list", texts->list, "only list the cases and what they sweep");
-    command->footer("Examples: everything, one or two minutes; then one mode's shadows\n"
+    command->footer("Examples: everything, some minutes; then one mode's shadows\n"
                     "  tyndall stress -o out/stress\n"
                     "  tyndall stress --modes shadow-map --cases shadows\n"
                     "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"

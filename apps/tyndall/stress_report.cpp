@@ -17,7 +17,8 @@ std::string fault_text(const StressPoint& point) {
     std::string text = formatted("error %.3g, allowed %.3g", point.error, point.allowed);
     if (point.non_finite) text += "; " + count_text(point.non_finite, "value") + " not finite";
     if (point.negative) text += "; " + count_text(point.negative, "value") + " below 0 or above 1";
-    if (point.silent()) return text + (point.excused ? "" : "; nothing said");
+    if (point.silent() && point.said()) return text + formatted("; what was said excuses %.3g", point.excused_up_to);
+    if (point.silent()) return text + "; nothing said";
     return text + "; " + point.warning;
 }
 
@@ -39,7 +40,8 @@ Json point_json(const StressPoint& point) {
                         {"error", json_of(point.error)},
                         {"allowed", json_of(point.allowed)},
                         {"holds", json_of(point.holds())},
-                        {"said", json_of(point.excused)},
+                        {"said", json_of(point.said())},
+                        {"excused_up_to", point.said() ? json_of(point.excused_up_to) : Json{}},
                         {"warning", json_of(std::string_view(point.warning))},
                         {"wrong", json_of(point.wrong)},
                         {"rmse_rel", point.measured < 0 ? Json{} : json_of(point.measured)},

@@ -9,6 +9,7 @@
 namespace tyndall {
 namespace {
 constexpr double small_error = 0.05; // below it a mode is not wrong
+constexpr double degraded_times = 3; // what is allowed, for a mode that says it is degraded
 
 std::vector<std::string_view> pieces(std::string_view text, char separator) {
     std::vector<std::string_view> result;
@@ -31,40 +32,54 @@ double promised(const Mode& mode) {
     }
 }
 
-bool may_excuse(const Limit& limit, std::string_view excuses) {
-    return std::ranges::any_of(pieces(excuses, '|'),
-                               [&](std::string_view phrase) { return limit.why.find(phrase) != std::string::npos; });
+bool names(std::string_view list, std::string_view name) { return std::ranges::count(pieces(list, ' '), name) > 0; }
+
+double allowed_to(const Mode* mode, const StressMeasure& measure) {
+    if (mode && names(measure.exact_modes, mode->name)) return measure.exact;
+    return measure.allowed >= 0 || !mode ? measure.allowed : promised(*mode);
+}
+
+// The largest error that a limit excuses; below 0: none.
+double excused_by(const Limit& limit, const StressCase& stress, double allowed) {
+    double most = -1;
+    for (const Excuse& excuse : stress.excuses) {
+        if (limit.severity == Severity::info || limit.why.find(excuse.phrase) == std::string::npos) continue;
+        if (limit.severity == Severity::wrong) return infinity;
+        most = std::max({most, degraded_times * allowed, excuse.up_to});
+    }
+    return most;
 }
 
 // What the mode says of the scene before it renders.
 void ask_limits(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
-    Severity worst = Severity::info;
     for (const Limit& limit : mode.limits(scene.view, scene.snapshot, scene.settings)) {
         point.wrong |= limit.severity == Severity::wrong;
-        if (limit.severity <= worst || !may_excuse(limit, stress.excuses)) continue;
-        worst = limit.severity, point.excused = true;
-        point.warning = std::string(name_of(worst)) + ": " + limit.where + ": " + limit.why;
+        const double excused = excused_by(limit, stress, point.allowed);
+        if (excused <= point.excused_up_to) continue;
+        point.excused_up_to = excused;
+        point.warning = std::string(name_of(limit.severity)) + ": " + limit.where + ": " + limit.why;
     }
 }
 
 StressPoint run_point(const StressCase& stress, const Mode* mode, double value, const StressScene& scene,
-                      std::optional<Layers>& truth, const StressControl& control) {
+                      std::optional<Truth>& truth, const StressControl& control) {
     if (control.cancel && *control.cancel) fail(ExitCode::internal, "stress", "cancelled");
-    Trial trial{mode, value, scene, truth, control.cancel};
     StressPoint point;
     point.value = value;
-    point.allowed = stress.measure.allowed >= 0 || !mode ? stress.measure.allowed : promised(*mode);
+    point.allowed = allowed_to(mode, stress.measure);
+    Trial trial{mode, value, point.allowed, scene, truth, control.cancel};
     if (mode) ask_limits(stress, *mode, scene, point);
     point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
     if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;
     if (std::isnan(point.error)) point.error = infinity;
-    point.non_finite = trial.non_finite, point.negative = trial.negative;
+    point.non_finite = trial.faults.non_finite, point.negative = trial.faults.negative;
+    if (truth) point.non_finite += truth->faults.non_finite, point.negative += truth->faults.negative;
     return point;
 }
 }
 
 bool takes_part(const StressCase& stress, const Mode& mode) {
-    return std::ranges::count(pieces(stress.modes, ' '), mode.name) > 0;
+    return names(stress.modes, mode.name);
 }
 
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
@@ -80,7 +95,7 @@ std::vector<StressResult> run_stress(const StressCase& stress, std::span<const M
     for (const double value : stress.values) {
         if (taking.empty()) break;
         const StressScene scene = stress.scene ? stress.scene(value) : StressScene{};
-        std::optional<Layers> truth;
+        std::optional<Truth> truth;
         for (size_t i = 0; i < taking.size(); ++i) {
             const auto start = Clock::now();
             results[i].points.push_back(run_point(stress, taking[i], value, scene, truth, control));
@@ -128,8 +143,8 @@ std::string_view name_of(Verdict verdict) {
 const std::vector<StressCase>& stress_cases() {
     static const std::vector<StressCase> cases = [] {
         std::vector<StressCase> all;
-        for (auto* group : {stress_lamps, stress_fog, stress_shadows, stress_history, stress_scattering, stress_data,
-                            stress_looks, stress_program})
+        for (auto* group : {stress_lamps, stress_fog, stress_shadows, stress_history, stress_scattering, stress_files,
+                            stress_data, stress_looks, stress_program})
             for (StressCase& stress : group()) all.push_back(std::move(stress));
         return all;
     }();

@@ -28,6 +28,15 @@ struct StressMeasure {
     double allowed = -1; // below 0: what the mode promises at preview
     std::string_view criterion = "relative RMSE of picture or fog light against the exact march";
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
+    double exact = -1;                       // what is allowed to modes that are exact here
+    std::string_view exact_modes{};          // names between spaces
+};
+
+// A limit that may excuse an error. `wrong` excuses any. `degraded` says that the picture is coarse, not that it is
+// another one: it excuses three times what is allowed, or so much as what it says amounts to in the case.
+struct Excuse {
+    std::string_view phrase; // a part of the limit
+    double up_to = 0;
 };
 
 struct StressCase {
@@ -35,8 +44,7 @@ struct StressCase {
     std::string_view sweep, unit;      // the condition that is swept
     std::vector<double> values;        // from mild to hard
     std::string_view modes;            // names between spaces; empty = a part of the program that all modes share
-    // Parts of the limits, between bars, that may excuse an error here. Empty: every mode has to hold throughout.
-    std::string_view excuses;
+    std::vector<Excuse> excuses;   // empty: every mode has to hold throughout
     StressScene (*scene)(double value) = nullptr;
     StressMeasure measure{};
 };
@@ -54,13 +62,15 @@ struct StressPoint {
     double error = 0, allowed = 0;
     double measured = -1;                  // relative RMSE where the mode called itself wrong; else -1
     bool wrong = false;                    // some limit says so
-    bool excused = false;                  // a limit that may excuse the error is degraded or wrong
-    std::string warning;                   // the worst such limit, in words
-    uint64_t non_finite = 0, negative = 0; // samples dropped; values of pixels below 0, or shares above 1
+    std::string warning;                   // the worst limit that may excuse the error, in words; empty = none
+    double excused_up_to = -1;             // the largest error that is excused; below 0 without such a limit
+    uint64_t non_finite = 0, negative = 0; // samples dropped and values that are no number; values below 0, or shares
+                                           // above 1; of the truth as well
 
+    bool said() const { return excused_up_to >= 0; }
     bool clean() const { return non_finite == 0 && negative == 0; }
     bool holds() const { return clean() && error <= allowed; }
-    bool silent() const { return !clean() || (!holds() && !excused); }
+    bool silent() const { return !clean() || (!holds() && !(error <= excused_up_to)); }
 };
 
 // One mode in one case.

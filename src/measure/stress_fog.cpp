@@ -7,7 +7,12 @@ namespace tyndall {
 namespace {
 constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
-constexpr std::string_view thick = "optical depths deep|thinner than froxels";
+// The sun comes at a slant, so that its light fades six times as fast as a step is deep: over 5 depths where the limit
+// says 0.9. One place in it is off by sqrt(2.5 coth(2.5) - 1) = 1.2 of the light.
+const std::vector<Excuse> thick{{"optical depths deep", 1.2}};
+// Straight on, it fades by 2.5 depths over the deepest step: in its middle is 1.25 / sinh(1.25) = 0.78 of the mean.
+const std::vector<Excuse> straight{{"optical depths deep", 0.25}};
+const std::vector<Excuse> thin{{"thinner than froxels", 0.9}}; // not lost altogether
 
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 6}, vec3(0));
@@ -59,7 +64,7 @@ StressScene sheet(double thickness) {
 
 // Rays that run in the face of the box, and beside it.
 StressScene in_the_face(double offset) {
-    const float y = 1 + static_cast<float>(offset) - 1.0f / static_cast<float>(stress_size.y);
+    const float y = 1 + static_cast<float>(offset); // of the middle row
     return stress_scene({even_medium(0.3f, {vec3(-1), vec3(1)})}, {noon}, flat_camera({0, y, 5}, {0, y, 0}, 2));
 }
 
@@ -73,8 +78,15 @@ StressScene endless(double extinction) {
                         front);
 }
 
+// The camera's far plane cuts the fog, which lies 5 to 7 m away.
+StressScene cut_off(double far) {
+    StressScene scene = cube(0.4);
+    scene.view.camera.far = static_cast<float>(far);
+    return scene;
+}
+
 StressScene layer(double falloff) {
-    Medium fog = even_medium(1, {vec3(-5, -1, -5), vec3(5, 3, 5)});
+    Medium fog = even_medium(0.3f, {vec3(-5, -1, -5), vec3(5, 3, 5)});
     fog.kind = DensityKind::height, fog.height_falloff = static_cast<float>(falloff);
     return stress_scene({fog}, {noon}, camera_from({0, 0.6f, 4}, {0, 0.1f, 0}));
 }
@@ -149,7 +161,7 @@ std::vector<StressCase> stress_fog() {
     constexpr std::string_view group = "fog and rays";
     return {
         StressCase{
-            "thin-fog", group, "fog vanishes", "extinction", "1/m", {1, 1e-2, 1e-4, 1e-8, 1e-12}, all, "", cube_of},
+            "thin-fog", group, "fog vanishes", "extinction", "1/m", {1, 1e-2, 1e-4, 1e-8, 1e-12}, all, {}, cube_of},
         StressCase{"thick-fog",
                    group,
                    "fog becomes a wall",
@@ -161,31 +173,35 @@ std::vector<StressCase> stress_fog() {
                    cube_of,
                    {0.1}},
         StressCase("transmittance", group, "what lies behind fades by Beer and Lambert", "optical depth", "",
-                   {0.01, 0.5, 2, 8, 32, 1000}, exact, "", wall,
+                   {0.01, 0.5, 2, 8, 32, 1000}, exact, {}, wall,
                    {1e-4, "largest error of the transmittance", transmittance_off}),
         StressCase("slab", group, "a slab's light in closed form", "optical depth", "", {0.01, 0.5, 2, 8, 30}, exact,
-                   thick, slab, {0.01, "error of the mean against the closed form", slab_off}),
+                   straight, slab, {0.01, "error of the mean against the closed form", slab_off}),
         StressCase("thin-sheet", group, "a sheet of fog of constant depth gets thin", "thickness", "m",
-                   {1, 0.1, 0.01, 0.001, 0}, all, thick, sheet),
+                   {1, 0.1, 0.01, 0.001, 0}, all, thin, sheet),
         StressCase("in-the-face", group, "rays run in the face of the fog's box", "ray to face", "m",
-                   {0.1, -0.1, 1e-3, 1e-6, 0}, all, "", in_the_face),
+                   {0.1, -0.1, 1e-3, 1e-6, 0}, all, {}, in_the_face),
         StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all, thick,
                    eye_in_fog),
-        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3, 2}, all,
-                   "few long slices only|its glow is even|few for its glow", endless),
+        StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3}, all,
+                   {{"few for its glow"}}, endless),
+        StressCase("endless-thick-fog", group, "the same, thick", "extinction", "1/m", {1, 2},
+                   "march froxel shadow-volume cone", {}, endless),
+        StressCase("far-plane", group, "the far plane moves through the fog", "distance", "m",
+                   {100, 6.9, 6, 5.1, 5.001}, all, {}, cut_off),
         StressCase("ground-fog", group, "fog that clings to the ground", "falloff", "m", {10, 1, 0.3, 0.05, 0.005}, all,
-                   thick, layer),
+                   {}, layer),
         StressCase("glowing-fog", group, "fog that glows and takes light", "optical depth", "", {0.1, 1, 5, 40}, exact,
-                   thick, glowing, {0.005, "error of the mean against the closed form", glow_off}),
-        StressCase("copies", group, "one fog said as several in the same place", "copies", "", {2, 4, 8}, exact, "",
+                   {}, glowing, {0.005, "error of the mean against the closed form", glow_off}),
+        StressCase("copies", group, "one fog said as several in the same place", "copies", "", {2, 4, 8}, exact, {},
                    one_fog, {1e-3, "relative RMSE against one", copies_off}),
         StressCase("nested-fog", group, "fog of another colour and phase inside fog", "way out", "m", {0, 0.7, 1.2, 3},
-                   all, "", nested, {0.05}),
-        StressCase("albedo", group, "fog from white to black", "albedo", "", {1, 0.5, 1e-3, 0}, all, "", white),
+                   all, {}, nested, {0.05}),
+        StressCase("albedo", group, "fog from white to black", "albedo", "", {1, 0.5, 1e-3, 0}, all, {}, white),
         StressCase("bright-behind", group, "a sky of 100 000 nits behind fog", "optical depth", "", {1, 4, 8, 12},
-                   exact, "", bright_behind, {0.002, "relative RMSE of the picture", sky_off}),
+                   exact, {}, bright_behind, {0.002, "relative RMSE of the picture", sky_off}),
         StressCase("pattern", group, "the pattern of the jitter goes away over 16 frames", "steps", "", {32, 16, 8},
-                   "shadow-map", "", jittered, {-1, to_truth, pattern_left}),
+                   "shadow-map", {}, jittered, {-1, to_truth, pattern_left}),
     };
 }
 }

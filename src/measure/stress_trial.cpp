@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int noisy_samples = 16; // per pixel, of a mode whose error is noise
+constexpr int most_samples = 1024; // per pixel, of a mode whose error is noise
 
 uint64_t negative_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(
@@ -25,31 +25,90 @@ uint64_t non_finite_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(image.pixels, [](vec3 value) { return !is_finite(value); }));
 }
 
-void count_faults(const Layers& layers, const FrameStats& stats, Trial& trial) {
-    trial.non_finite += stats.non_finite + non_finite_in(layers.color) + non_finite_in(layers.inscatter);
-    trial.negative += negative_in(layers.color) + negative_in(layers.inscatter) + no_share_in(layers.alpha) +
-                      no_share_in(layers.transmittance) + no_share_in(layers.validity);
-    for (const auto& [name, light] : layers.lights)
-        trial.non_finite += non_finite_in(light), trial.negative += negative_in(light);
+// Whether all that is wrong with a picture is noise, of which its variance tells: a march looks at soft lights by
+// chance, as paths do.
+bool is_noise(const Trial& trial) {
+    const Snapshot& snapshot = trial.scene.snapshot;
+    const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
+    return error_is_noise(*trial.mode) ||
+           (trial.mode->name == "march" && shadows && std::ranges::any_of(snapshot.lights, is_soft));
 }
 
-// What of the difference between two independent pictures and the truth two standard errors do not explain.
-double unexplained(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth) {
+// Depths that are none; infinite ones are those of the background.
+uint64_t no_depth_in(const Image<float>& depth) {
+    return static_cast<uint64_t>(std::ranges::count_if(depth.pixels, [](float value) { return !(value >= 0); }));
+}
+
+void count_faults(const Layers& layers, const FrameStats& stats, Faults& faults) {
+    faults.non_finite += stats.non_finite + non_finite_in(layers.color) + non_finite_in(layers.inscatter);
+    faults.negative += negative_in(layers.color) + negative_in(layers.inscatter) + no_share_in(layers.alpha) +
+                       no_share_in(layers.transmittance) + no_share_in(layers.validity) + no_depth_in(layers.depth);
+    for (const auto& [name, light] : layers.lights)
+        faults.non_finite += non_finite_in(light), faults.negative += negative_in(light);
+}
+
+// Squared bias that two independent pictures show, and two standard errors of it; both in squares of the truth's mean.
+struct Bias {
+    double squared = 0, doubt = 0;
+};
+Bias bias_of(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth) {
     const Estimate squared = product_of_errors(a, b, truth, truth);
-    const double rest = squared.value - 2 * squared.standard_error;
-    return rest > 0 ? relative(std::sqrt(rest), mean_of(truth)) : 0;
+    const double unit = mean_of(truth) * mean_of(truth);
+    return {relative(squared.value, unit), relative(2 * squared.standard_error, unit)};
+}
+
+// The bias that is beyond doubt, from enough samples that one as large as is allowed would be. Where even the most
+// samples are too few, the largest that there may be.
+double bias_to_truth(Trial& trial) {
+    const Layers& truth = trial.truth();
+    StressScene again = trial.scene;
+    again.view.seed += 1;
+    const double allowed = trial.allowed * trial.allowed;
+    for (;; trial.noisy_samples *= 2) {
+        const Layers a = trial.render(), b = trial.render(again);
+        const Bias both[] = {bias_of(a.color, b.color, truth.color),
+                             bias_of(a.inscatter, b.inscatter, truth.inscatter)};
+        double least = 0, most = 0, doubt = 0;
+        for (const Bias& bias : both) {
+            least = std::max(least, bias.squared - bias.doubt), doubt = std::max(doubt, bias.doubt);
+            most = std::max(most, std::max(bias.squared, 0.0) + bias.doubt);
+        }
+        if (doubt <= allowed || least > allowed) return std::sqrt(least);
+        if (trial.noisy_samples >= most_samples) return std::sqrt(most);
+        // The doubt about the product of two errors that are noise falls with the samples.
+        while (2 * trial.noisy_samples < most_samples && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
+    }
+}
+
+// The same of the mean of the fog's light.
+double bias_of_mean(Trial& trial) {
+    constexpr int pictures = 8;
+    const double truth = mean_of(trial.truth().inscatter);
+    for (;; trial.noisy_samples *= 4) {
+        double mean = 0, squares = 0;
+        StressScene scene = trial.scene;
+        for (int i = 0; i < pictures; ++i, ++scene.view.seed) {
+            const double off = mean_of(trial.render(scene).inscatter) / truth - 1;
+            mean += off / pictures, squares += off * off;
+        }
+        const double variance = std::max(0.0, squares / pictures - mean * mean);
+        const double doubt = 2 * std::sqrt(variance / (pictures - 1));
+        const double least = std::abs(mean) - doubt;
+        if (doubt <= 0.5 * trial.allowed || least > trial.allowed) return std::max(0.0, least);
+        if (trial.noisy_samples >= most_samples) return std::abs(mean) + doubt;
+    }
 }
 }
 
 Layers Trial::render(const StressScene& what, History* history) {
     View view = what.view;
     view.per_light = true;
-    if (error_is_noise(*mode)) view.pixel_samples = noisy_samples;
+    if (is_noise(*this)) view.pixel_samples = noisy_samples;
     FrameOptions options;
     options.cancel = cancel, options.history = history;
     FrameStats stats;
     Layers layers = render_frame(*mode, view, what.snapshot, what.settings, options, stats);
-    count_faults(layers, stats, *this);
+    count_faults(layers, stats, faults);
     return layers;
 }
 
@@ -60,12 +119,18 @@ Layers Trial::truth_of_scene(const StressScene& what) {
     FrameOptions options;
     options.cancel = cancel;
     FrameStats stats;
-    return render_frame(find_mode("march"), view, what.snapshot, settings, options, stats);
+    Layers layers = render_frame(find_mode("march"), view, what.snapshot, settings, options, stats);
+    count_faults(layers, stats, faults);
+    return layers;
 }
 
 const Layers& Trial::truth() {
-    if (!known_truth) known_truth = truth_of_scene(scene);
-    return *known_truth;
+    if (!known_truth) {
+        const Faults own = std::exchange(faults, {});
+        Layers layers = truth_of_scene(scene);
+        known_truth = {std::move(layers), std::exchange(faults, own)};
+    }
+    return known_truth->layers;
 }
 
 double mean_of(const Image<vec3>& image) {
@@ -90,20 +155,11 @@ double difference(const Layers& test, const Layers& reference) {
 }
 
 double error_to_truth(Trial& trial) {
-    const Layers& truth = trial.truth();
-    const Layers picture = trial.render();
-    const bool noisy = error_is_noise(*trial.mode) || std::ranges::any_of(trial.scene.snapshot.lights, is_soft);
-    if (!noisy) return difference(picture, truth);
-    StressScene again = trial.scene;
-    again.view.seed += 1;
-    const Layers other = trial.render(again);
-    if (difference(picture, other) == 0) return difference(picture, truth);
-    return std::max(unexplained(picture.color, other.color, truth.color),
-                    unexplained(picture.inscatter, other.inscatter, truth.inscatter));
+    return is_noise(trial) ? bias_to_truth(trial) : difference(trial.render(), trial.truth());
 }
 
 double error_of_mean(Trial& trial) {
-    if (error_is_noise(*trial.mode)) return error_to_truth(trial);
+    if (is_noise(trial)) return bias_of_mean(trial);
     return std::abs(mean_of(trial.render().inscatter) / mean_of(trial.truth().inscatter) - 1);
 }
 

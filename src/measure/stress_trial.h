@@ -7,13 +7,24 @@
 #include <optional>
 
 namespace tyndall {
+// What no picture may hold.
+struct Faults {
+    uint64_t non_finite = 0, negative = 0;
+};
+
+struct Truth {
+    Layers layers;
+    Faults faults;
+};
+
 struct Trial {
     const Mode* mode = nullptr; // null = the program
-    double value = 0;
+    double value = 0, allowed = 0;
     const StressScene& scene;
-    std::optional<Layers>& known_truth; // of the scene, shared by the modes
+    std::optional<Truth>& known_truth; // of the scene, shared by the modes
     std::atomic<bool>* cancel = nullptr;
-    uint64_t non_finite = 0, negative = 0; // of everything rendered
+    Faults faults{};        // of everything rendered but the shared truth
+    int noisy_samples = 16; // per pixel, of a mode whose error is noise
 
     Layers render(const StressScene& what, History* history = nullptr);
     Layers render() { return render(scene); }
@@ -25,7 +36,8 @@ struct Trial {
 // E: the relative RMSE of picture or fog light, whichever is worse.
 double difference(const Layers& test, const Layers& reference);
 double difference(const Image<vec3>& test, const Image<vec3>& reference);
-// Of the trial's mode against the truth. Where the picture is noisy: what noise does not explain.
+// Of the trial's mode against the truth, grain included. Where noise is the only error there is: what noise does not
+// explain, from so many samples that a bias as large as is allowed shows.
 double error_to_truth(Trial& trial);
 double error_of_mean(Trial& trial); // of the fog light; where noise is the only error, as above
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
@@ -33,7 +45,7 @@ double mean_of(const Image<vec3>& image);
 double most_of(const Image<vec3>& image);
 
 // --- scenes ------------------------------------------------------------------------------------------------------
-constexpr ivec2 stress_size{48, 27};
+constexpr ivec2 stress_size{49, 27}; // odd: the middle ray looks where the camera does
 
 Light spot_light(vec3 position, vec3 direction, float candela, float inner, float outer);
 Camera camera_from(vec3 position, vec3 target, float vertical_fov = 0.7f);
@@ -49,6 +61,7 @@ std::vector<StressCase> stress_fog();
 std::vector<StressCase> stress_shadows();
 std::vector<StressCase> stress_history();
 std::vector<StressCase> stress_looks();
+std::vector<StressCase> stress_files();
 std::vector<StressCase> stress_data();
 std::vector<StressCase> stress_scattering();
 std::vector<StressCase> stress_program();

@@ -52,6 +52,10 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
             limits.push_back({fine ? Severity::info : Severity::degraded, where,
                               "shafts are as coarse as froxels, here about " + metres(size.across) + " wide and " +
                                   metres(size.deep) + " deep; walls and gaps thinner than that leak or vanish"});
+        if (light.shadows && shadows && is_soft(light) && froxel.shadow_rays == 1)
+            limits.push_back({Severity::degraded, where,
+                              "seen from one point in a frame without a history: its soft shadows have hard edges in "
+                              "the fog (froxel.shadow_rays)"});
         if (is_moving(snapshot, light))
             limits.push_back({Severity::degraded, where, "moves: with --history it leaves a trail of some frames"});
         if (light.kind != LightKind::sun && in_fog(snapshot, light.position))
@@ -62,7 +66,7 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
         const float depth = medium.majorant() * size.deep;
         const vec3 sides = medium.world_bounds.size();
         if (depth > 1)
-            limits.push_back({Severity::degraded, where,
+            limits.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded, where,
                               "froxels are up to " + number_text("%.2g", depth) +
                                   " optical depths deep: light that changes within them is evened out"});
         if (std::min(sides.x, std::min(sides.y, sides.z)) < size.deep)

@@ -106,7 +106,7 @@ void add_step_limits(const View& view, const Snapshot& snapshot, int steps, cons
                                       " m, which is seen blurred or as grain; more " + row + " resolve it"});
         }
         if (fixed && depth > deep_step)
-            limits.push_back({Severity::degraded, "medium " + medium.name,
+            limits.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded, "medium " + medium.name,
                               text + "up to " + number_text("%.2g", depth) +
                                   " optical depths deep: what dims and brightens within them is lost; more " + row +
                                   " resolve it"});

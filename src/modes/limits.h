@@ -18,6 +18,9 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
 void add_step_limits(const View& view, const Snapshot& snapshot, int steps, const char* row, bool fixed,
                      std::vector<Limit>& limits);
 
+// Optical depths of a step or a froxel that take most of the light that falls on them: what is seen is by chance.
+inline constexpr float dark_depth = 2;
+
 std::string number_text(const char* format, double value);
 
 // What a grid of light that has been scattered before cannot show; ambient light too.

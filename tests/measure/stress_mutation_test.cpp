@@ -22,8 +22,8 @@ Verdict verdict_of(std::string_view id, const Mode& mode) {
     return results.empty() ? Verdict::holds : results[0].verdict();
 }
 
-void expect_caught(std::string_view id, const Mode& mode) {
-    EXPECT_NE(verdict_of(id, find_mode(mode.name)), Verdict::fails) << "unbroken";
+void expect_caught(std::string_view id, const Mode& mode, Verdict unbroken = Verdict::holds) {
+    EXPECT_EQ(verdict_of(id, find_mode(mode.name)), unbroken) << "unbroken";
     EXPECT_EQ(verdict_of(id, mode), Verdict::fails);
 }
 
@@ -124,6 +124,82 @@ TEST(MutationCheck, ShadowsIgnored) {
                       Settings other = settings;
                       other.march.visibility = Visibility::off;
                       return find_mode("march").prepare(view, snapshot, other, history);
+                  }));
+}
+
+constexpr std::string_view shadowing[] = {"march", "froxel", "shadow-map", "shadow-volume"};
+
+// A mode of `shadowing` to whose fog nothing stands in the way of light.
+template<size_t i>
+ScatterFunction unshadowed(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+    Snapshot open = snapshot;
+    open.occluders = nullptr;
+    return find_mode(shadowing[i]).prepare(view, open, settings, history);
+}
+
+// Whether a picture without any shadow has to be told from one with: of a lit floor the fog sees none.
+bool shows_shadows(const StressCase& stress) {
+    return stress.group == "shadows" && !stress.measure.error && stress.id != "lit-floor";
+}
+
+TEST(MutationCheck, NoShadowsInAnyCaseOfShadows) {
+    constexpr Prepare prepares[] = {unshadowed<0>, unshadowed<1>, unshadowed<2>, unshadowed<3>};
+    for (size_t i = 0; i < std::size(prepares); ++i)
+        for (const StressCase& stress : stress_cases()) {
+            const Mode mode = broken(shadowing[i], prepares[i]);
+            if (!shows_shadows(stress) || !takes_part(stress, mode)) continue;
+            const StressResult result = run_stress(stress, {&mode, 1}, {})[0];
+            const bool said = std::ranges::any_of(result.points, &StressPoint::wrong);
+            EXPECT_TRUE(said || result.verdict() == Verdict::fails) << stress.id << ", " << mode.name;
+        }
+}
+
+TEST(MutationCheck, LightInADarkRoom) {
+    expect_caught("dark-room", broken("froxel", unshadowed<1>));
+    expect_caught("dark-room", broken("shadow-map", unshadowed<2>));
+    expect_caught("shaft-in-grid", broken("froxel", unshadowed<1>));
+}
+
+TEST(MutationCheck, ShadowsAside) {
+    expect_caught("slit", broken("shadow-map", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                                  History* history) {
+                      const auto scene = std::make_shared<Scene>(*snapshot.scene);
+                      for (Mesh& mesh : scene->meshes)
+                          for (vec3& position : mesh.positions) position.x += 0.3f;
+                      Snapshot aside = snapshot;
+                      aside.scene = scene.get(), aside.occluders = Occluders::make(*scene, 0, nullptr);
+                      const ScatterFunction scatter =
+                          find_mode("shadow-map").prepare(view, aside, settings, history);
+                      return ScatterFunction([scatter, scene](const RayBatch& batch, std::span<Scatter> results) {
+                          scatter(batch, results);
+                      });
+                  }), Verdict::degrades);
+}
+
+TEST(MutationCheck, PathsATenthTooDark) {
+    for (const char* id : {"eye-in-shadow", "near-wall"})
+        expect_caught(id, broken("path", [](const View& view, const Snapshot& snapshot, const Settings& settings,
+                                            History* history) {
+                          return changed(find_mode("path").prepare(view, snapshot, settings, history),
+                                         [](const RayBatch&, size_t, Scatter& result) { result.radiance *= 0.9f; });
+                      }));
+}
+
+TEST(MutationCheck, AGhostOfTheSunBehind) {
+    Mode ghost = find_mode("radial-blur");
+    ghost.prepare_post = [](const View& view, const Snapshot& snapshot, const Settings& settings) {
+        Snapshot mirrored = snapshot;
+        for (Light& light : mirrored.lights) light.direction *= -1;
+        return find_mode("radial-blur").prepare_post(view, mirrored, settings);
+    };
+    expect_caught("sun-behind", ghost);
+}
+
+TEST(MutationCheck, CardsTooBright) {
+    expect_caught("many-cards", broken("billboard", [](const View& view, const Snapshot& snapshot,
+                                                       const Settings& settings, History* history) {
+                      return changed(find_mode("billboard").prepare(view, snapshot, settings, history),
+                                     [](const RayBatch&, size_t, Scatter& result) { result.radiance *= 4.0f; });
                   }));
 }
 
@@ -242,7 +318,7 @@ TEST(MutationCheck, ThreadsShow) {
 TEST(MutationCheck, ALimitNotSaid) {
     Mode silent = find_mode("cone");
     silent.limits = [](const View&, const Snapshot&, const Settings&) { return std::vector<Limit>{}; };
-    expect_caught("slit", silent);
+    expect_caught("slit", silent, Verdict::degrades);
 }
 
 TEST(MutationCheck, AModeThatAlwaysWarns) {

@@ -48,28 +48,54 @@ TEST(StressCases, AreManyAndWellFormed) {
 }
 
 // --- the judgement ---------------------------------------------------------------------------------------------------
-StressPoint point_of(double value, double error, bool excused) {
+StressPoint point_of(double value, double error, double excused_up_to = -1) {
     StressPoint point;
-    point.value = value, point.error = error, point.allowed = 0.1, point.excused = excused;
+    point.value = value, point.error = error, point.allowed = 0.1, point.excused_up_to = excused_up_to;
     return point;
 }
 
 TEST(StressVerdict, HoldsDegradesOrFails) {
     StressResult result;
-    result.points = {point_of(1, 0.05, false), point_of(2, 0.1, true)};
+    result.points = {point_of(1, 0.05), point_of(2, 0.1, 0.3)};
     EXPECT_EQ(result.verdict(), Verdict::holds);
     EXPECT_EQ(result.first(), nullptr);
-    result.points.push_back(point_of(3, 0.2, true));
+    result.points.push_back(point_of(3, 0.2, 0.3));
     EXPECT_EQ(result.verdict(), Verdict::degrades);
     EXPECT_EQ(result.first()->value, 3);
-    result.points.push_back(point_of(4, 0.11, false));
+    result.points.push_back(point_of(4, 0.11));
     EXPECT_EQ(result.verdict(), Verdict::fails);
     EXPECT_EQ(result.first()->value, 4);
 }
 
+TEST(StressVerdict, ADegradedModeIsExcusedUpToSomeError) {
+    StressResult result;
+    result.points = {point_of(1, 0.3, 0.3)};
+    EXPECT_EQ(result.verdict(), Verdict::degrades);
+    result.points.push_back(point_of(2, 0.31, 0.3));
+    EXPECT_EQ(result.verdict(), Verdict::fails);
+    result.points.back().excused_up_to = infinity;
+    EXPECT_EQ(result.verdict(), Verdict::degrades);
+}
+
+TEST(StressVerdict, ALimitWrongExcusesMoreThanOneDegraded) {
+    Mode black = find_mode("march");
+    black.prepare = [](const View&, const Snapshot&, const Settings&, History*) {
+        return ScatterFunction(
+            [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
+    };
+    black.limits = [](const View&, const Snapshot&, const Settings&) {
+        return std::vector<Limit>{{Severity::degraded, "fog", "optical depths deep"}};
+    };
+    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::fails);
+    black.limits = [](const View&, const Snapshot&, const Settings&) {
+        return std::vector<Limit>{{Severity::wrong, "fog", "optical depths deep"}};
+    };
+    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::degrades);
+}
+
 TEST(StressVerdict, NothingExcusesWhatIsNoLight) {
     StressResult result;
-    result.points = {point_of(1, 0, true)};
+    result.points = {point_of(1, 0, infinity)};
     result.points[0].negative = 1;
     EXPECT_EQ(result.verdict(), Verdict::fails);
     result.points[0].negative = 0, result.points[0].non_finite = 1;
@@ -79,11 +105,11 @@ TEST(StressVerdict, NothingExcusesWhatIsNoLight) {
 TEST(StressVerdict, CountsWarningsThatNothingBearsOut) {
     StressResult result;
     for (const double measured : {0.01, 0.049, 0.051, 3.0}) {
-        StressPoint point = point_of(1, 0, true);
+        StressPoint point = point_of(1, 0, infinity);
         point.wrong = true, point.measured = measured;
         result.points.push_back(point);
     }
-    result.points.push_back(point_of(1, 0, true));
+    result.points.push_back(point_of(1, 0, infinity));
     const WrongWarnings warnings = wrong_warnings({&result, 1});
     EXPECT_EQ(warnings.count, 4);
     EXPECT_EQ(warnings.idle, 2);

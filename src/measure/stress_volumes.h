@@ -1,0 +1,17 @@
+// Small grids that cases are made of. Internal to stress.
+#pragma once
+#include "measure/stress_trial.h"
+
+namespace tyndall {
+// n^3 voxels that fill the unit box.
+SparseVolume unit_volume(int n, const std::function<float(vec3)>& density);
+Medium medium_of(const SparseVolume& volume, float extinction);
+// Of fog in the unit box, in the sun.
+StressScene looking_at(Medium medium);
+
+float blob(vec3 p);
+float roughness(vec3 p);
+
+constexpr std::string_view seen_modes = "march froxel shadow-map shadow-volume"; // that sample a grid, without noise
+inline const Light noon_light = sun_light({0.3f, -1, -0.2f}, 10);
+}
