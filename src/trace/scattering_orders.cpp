@@ -3,6 +3,8 @@
 #include "base/parallel.h"
 #include "trace/light_paths.h"
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 // 1 minus the chance to leave an even ball uncollided from a place picked evenly in it, in any direction.
@@ -55,7 +57,9 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
     constexpr double student = 2.0; // of 63 degrees of freedom
     const double spread = student * std::sqrt(squares * batches / (batches - 1.0)) / once;
     const double unseen = 3 / static_cast<double>(seen); // the rule of three: 95 % where nothing was seen
-    return {ratio, std::max(0.0, ratio - spread), ratio + std::max(spread, unseen)};
+    const double high = ratio + std::max(spread, unseen);
+    const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
+    return {ratio, std::max(0.0, ratio - spread), surfaces ? high : std::min(high, truncation_bound(snapshot, 1))};
 }
 
 double truncation_bound(const Snapshot& snapshot, int orders) {
