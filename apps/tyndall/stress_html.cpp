@@ -9,7 +9,7 @@ constexpr const char* style = R"(
 body { font: 14px/1.4 system-ui, sans-serif; margin: 2em; color: #222; background: #fff }
 table { border-collapse: collapse } th, td { text-align: left; vertical-align: top; padding: 3px 8px }
 thead th { position: sticky; top: 0; background: #fff; border-bottom: 2px solid #888 }
-tbody th { font-weight: normal; max-width: 24em } tbody th b { font-weight: 600 }
+tbody th { font-weight: normal; min-width: 17em; max-width: 30em } tbody th b { font-weight: 600 }
 tr.group th { font-size: 115%; font-weight: 600; padding-top: 1em; border-bottom: 1px solid #ccc }
 td { border: 2px solid #fff; min-width: 6em } td.holds { background: #d9efd6 } td.degrades { background: #fbe8b5 }
 td.fails { background: #f3b9b3; font-weight: 600 } summary { cursor: pointer; white-space: nowrap }
