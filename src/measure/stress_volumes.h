@@ -3,9 +3,6 @@
 #include "measure/stress_trial.h"
 
 namespace tyndall {
-// n^3 voxels that fill the unit box.
-SparseVolume unit_volume(int n, const std::function<float(vec3)>& density);
-Medium medium_of(const SparseVolume& volume, float extinction);
 // Of fog in the unit box, in the sun.
 StressScene looking_at(Medium medium);
 

@@ -30,6 +30,8 @@ std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyCo
 Phase forward_phase(float g);
 Medium even_medium(float extinction, Box box, Phase phase = forward_phase(0), vec3 albedo = vec3(1));
 Medium noise_medium(float extinction, Phase phase = forward_phase(0), vec3 albedo = vec3(1)); // rough, fills 0..1
+SparseVolume unit_volume(int n, const std::function<float(vec3)>& density); // n^3 voxels that fill 0..1
+Medium medium_of(const SparseVolume& volume, float extinction);
 Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density);  // fills 0..1
 Light sun_light(vec3 direction, float lux);
 Light point_light(vec3 position, float candela);
