@@ -141,7 +141,7 @@ ScatterFunction from_fog_picture(const View& view, const Snapshot& snapshot, con
     if (options.blur) blur_pattern(*picture);
     if (history) {
         if (history->picture && history->picture->fog.size == picture->fog.size)
-            go_on_from(*history->picture, *picture);
+            go_on_from(*history->picture, snapshot.media, *picture);
         history->picture = picture;
     }
     return [picture, whole = std::move(whole)](const RayBatch& batch, std::span<Scatter> results) {

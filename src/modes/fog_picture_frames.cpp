@@ -2,10 +2,14 @@
 
 #include "base/parallel.h"
 #include "modes/fog_picture_mix.h"
+#include "volume/fog_reach.h"
 
 namespace tyndall {
 namespace {
 constexpr float longest_age = 10; // frames; older ones count less and less
+// Over these frames, of fog that moves across the picture:
+constexpr float most_smear = 0.5f; // pixels, of the near fog against the far
+constexpr float most_blur = 0.1f;  // pixels², by finding it between pixels
 
 // Least and most light among a pixel and its neighbours: what a light that moved or went out leaves behind lies
 // outside.
@@ -21,6 +25,34 @@ Range range_around(const FogPicture& picture, ivec2 pixel) {
             range.high = glm::max(range.high, picture.fog.at(x, y).radiance);
         }
     return range;
+}
+
+// Where light of even fog comes from on the way through it, as a share of that way: 1/τ - T/(1 - T), the mean of
+// e^(-τs) over 0 <= s <= 1.
+float mean_share(float transmittance) {
+    const float depth = -std::log(std::clamp(transmittance, 1e-6f, 1.0f));
+    return depth < 0.05f ? 0.5f - depth / 12 : 1 / depth - transmittance / (1 - transmittance);
+}
+
+// A ray's fog in the last frame's picture.
+struct Seen {
+    vec2 pixel{0};   // of where its light comes from
+    float smear = 0; // pixels between half of that light and the other
+};
+std::optional<Seen> seen_before(const FogPicture& before, const Interval& fog, const Ray& ray, float transmittance) {
+    const auto pixel = [&](float share) {
+        return pixel_of(before.view.camera, before.fog.size, ray.at(glm::mix(fog.low, fog.high, share)));
+    };
+    const float middle = mean_share(transmittance);
+    const std::optional<vec2> light = pixel(middle), near = pixel(0.5f * middle), far = pixel(1.5f * middle);
+    if (!light || !near || !far) return {};
+    return Seen{*light, glm::distance(*near, *far)};
+}
+
+// How much wider a mean of four pixels around a place makes what it shows: their variance, pixels².
+float blur_of(vec2 pixel) {
+    const vec2 share = glm::fract(pixel - 0.5f);
+    return glm::dot(share, 1.0f - share);
 }
 }
 
@@ -49,18 +81,22 @@ void blur_pattern(FogPicture& picture) {
     });
 }
 
-void go_on_from(const FogPicture& before, FogPicture& picture) {
+void go_on_from(const FogPicture& before, std::span<const Medium> media, FogPicture& picture) {
     const FogPicture now = picture;
     parallel_for(now.fog.size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < now.fog.size.x; ++x) {
-            const vec3 place = ray_through(now, {x, y}).at(now.length.at(x, y));
-            const std::optional<vec2> seen = pixel_of(before.view.camera, before.fog.size, place);
-            if (!seen || glm::any(glm::lessThan(*seen, vec2(0))) ||
-                glm::any(glm::greaterThan(*seen, vec2(before.fog.size))))
+            Ray ray = ray_through(now, {x, y});
+            ray.t_max = now.length.at(x, y);
+            const Interval stretch = fog_stretch(media, ray);
+            if (stretch.empty()) continue;
+            const std::optional<Seen> seen = seen_before(before, stretch, ray, now.fog.at(x, y).transmittance);
+            if (!seen || !glm::all(glm::greaterThanEqual(seen->pixel, vec2(0))) ||
+                !glm::all(glm::lessThanEqual(seen->pixel, vec2(before.fog.size))))
                 continue;
-            Taps taps = taps_at(before.fog.size, *seen);
+            Taps taps = taps_at(before.fog.size, seen->pixel);
             const Camera& eye = before.view.camera;
+            const vec3 place = ray.at(ray.t_max);
             const float length =
                 eye.ortho_height > 0 ? glm::dot(place - eye.position, eye.forward) : glm::length(place - eye.position);
             const Mixed old = mixed(before, taps, length);
@@ -68,7 +104,8 @@ void go_on_from(const FogPicture& before, FogPicture& picture) {
 
             float age = 0;
             for (int k = 0; k < 4; ++k) age += before.age.at(taps.at[k].x, taps.at[k].y) * taps.weight[k];
-            age = std::min(age + 1, longest_age);
+            const float sharp = 1 + most_blur / blur_of(seen->pixel), still = most_smear / seen->smear;
+            age = std::max(1.0f, std::min({age + 1, longest_age, sharp, still}));
             const Range range = range_around(now, {x, y});
             const float share = 1 / age;
             Scatter& fog = picture.fog.at(x, y);

@@ -7,6 +7,7 @@ namespace tyndall {
 // 4×4 pattern equally often.
 void blur_pattern(FogPicture& picture);
 
-// Mixes in what the last frame's picture shows at the same places: the ends of the rays.
-void go_on_from(const FogPicture& before, FogPicture& picture);
+// Mixes in what the last frame's picture shows of the same fog: where the light of even fog comes from. The more its
+// near and its far half move against each other the less is remembered.
+void go_on_from(const FogPicture& before, std::span<const Medium> media, FogPicture& picture);
 }

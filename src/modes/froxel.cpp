@@ -81,9 +81,9 @@ void set_shadows(FroxelFrame& frame, FroxelStill& still) {
 }
 
 // What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.
-FroxelLight remembered(std::shared_ptr<FroxelMemory> memory, const FroxelStill& still) {
+Recollection remembered(std::shared_ptr<FroxelMemory> memory, const FroxelStill& still) {
     if (!still.same_froxels) return recall(*memory, still.grid, still.tiles);
-    return memory.use_count() == 1 ? std::move(memory->light) : memory->light;
+    return {memory.use_count() == 1 ? std::move(memory->light) : memory->light, {}};
 }
 
 // This frame's light with what the history knows of it; the history then knows this frame.
@@ -97,7 +97,8 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared
         sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
         clean(still.grid, still.tiles, light);
     } else {
-        light = remembered(std::exchange(memory, nullptr), still);
+        Recollection past = remembered(std::exchange(memory, nullptr), still);
+        light = std::move(past.light);
         const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
         const bool settled = still.settled();
@@ -105,7 +106,7 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
         const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled};
+        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled, past.blur};
         sums = blend_history(still.grid, still.tiles, now, pass, light);
         frame.has_history = true;
     }

@@ -16,6 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr ivec2 block_size{16, 8}; // tiles
+constexpr float most_blur = 0.1f; // froxels²: what moves is seen a third of a froxel wider
 
 // Least and most among the froxels of a tile and their neighbours in depth; least > most where there are none. Of light
 // only new froxels count that hold fog. One froxel more at either end.
@@ -43,6 +44,11 @@ struct Blend {
     // Whether all that is seen of a tile is what it was.
     bool stands(size_t tile) const {
         return pass.still && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
+    }
+    // Of what is remembered. A history of weight w that is blurred by v in every frame is blurred by v w/(1 - w).
+    float weight_of(size_t tile) const {
+        const float blur = pass.blur.empty() ? 0 : pass.blur[tile];
+        return std::min(pass.weight, most_blur / (most_blur + blur));
     }
     // Values of the froxels that a tile sees.
     size_t seen(size_t tile) const { return 4 * size_t{slices[tile]}; }
@@ -123,6 +129,7 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
     float* light = blend.light.at(blend.grid, tile, 0);
     const float* now = blend.stands(tile) ? light : blend.now.at(blend.grid, tile, 0);
     const Mask16 is_extinction = extinction_lanes();
+    const float weight = blend.weight_of(tile);
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
         Floats low = infinity, high = -infinity;
@@ -131,7 +138,7 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
         const Floats was = load_some(light + i, here), is = load_some(now + i, here);
         Floats kept = select(low <= high, max(low, min(was, high)), was);
         if (blend.pass.still) kept = select(is_extinction, was, kept); // nothing to be held to
-        Floats mixed = is + (kept - is) * blend.pass.weight;
+        Floats mixed = is + (kept - is) * weight;
         if (blend.pass.stale) {
             const Mask16 stale = stale_lanes(blend.stale_at(tile, i), here);
             mixed = select(blend.pass.still ? stale : stale & !is_extinction, kept, mixed);

@@ -24,12 +24,31 @@ bool in_fog(const Snapshot& snapshot, vec3 point) {
     return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
 }
 
+// Whether the scene gives keys to a node or one above it.
+bool is_moving(const Scene& scene, int node) {
+    for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
+        const Node& at = scene.nodes[static_cast<size_t>(node)];
+        if (!at.translation.constant() || !at.rotation.constant() || !at.scale.constant()) return true;
+    }
+    return false;
+}
+
 // Whether the scene gives a light keys for where it is or shines to.
 bool is_moving(const Snapshot& snapshot, const Light& light) {
     const auto moves = [&](const LightSource& source) {
-        return source.name == light.name && (!source.position.constant() || !source.direction.constant());
+        return source.name == light.name && (!source.position.constant() || !source.direction.constant() ||
+                                             is_moving(*snapshot.scene, source.node));
     };
     return snapshot.scene && std::ranges::any_of(snapshot.scene->lights, moves);
+}
+
+// Whether it gives the camera keys for where it is.
+bool is_moving(const Snapshot& snapshot, const Camera& camera) {
+    const auto moves = [&](const CameraSource& source) {
+        return source.name == camera.name &&
+               (!source.position.constant() || is_moving(*snapshot.scene, source.node));
+    };
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->cameras, moves);
 }
 }
 
@@ -44,6 +63,9 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
     const float coarse = std::max(size.across, size.deep);
     const bool fine = froxel.tile == 1 && froxel.depth_slices >= 256;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
+    if (is_moving(snapshot, view.camera))
+        limits.push_back({Severity::degraded, view.camera.name.empty() ? "camera" : "camera " + view.camera.name,
+                          "moves: with --history shafts close to it are blurred by a third of a froxel"});
     for (const Light& light : snapshot.lights) {
         const std::string where = "light " + light.name;
         if (froxel.visibility == FroxelVisibility::off && light.shadows)

@@ -25,7 +25,7 @@ struct Recall {
     const FroxelMemory& memory;
     const FroxelGrid& grid;
     const FroxelTiles& tiles;
-    FroxelLight& result;
+    Recollection& result;
     std::vector<float> centers; // planar depths of the remembered slices
 };
 
@@ -103,10 +103,11 @@ HWY_INLINE void mix(const Recall& recall, const Recalled& found, size_t lane, fl
 void recall_tile(const Recall& recall, ivec2 at) {
     const FroxelGrid& grid = recall.grid;
     const size_t tile = grid.tile_index(at), slices = static_cast<size_t>(grid.slices());
-    float* result = recall.result.at(grid, tile, 0);
+    float* result = recall.result.light.at(grid, tile, 0);
     const vec2 pixel = grid.pixel_of(vec2(at));
     const vec3 origin = grid.origin + pixel.x * grid.origin_x + pixel.y * grid.origin_y, step = grid.line_step(pixel);
     const size_t seen = seen_slices(grid, recall.tiles, tile);
+    float blur = 0, known = 0;
     for (size_t first = 0; first < seen; first += 16) {
         alignas(64) float z[16];
         for (size_t i = 0; i < 16; ++i) {
@@ -116,15 +117,19 @@ void recall_tile(const Recall& recall, ivec2 at) {
         Recalled found;
         find(recall, fused(splat(step), load(z), splat(origin)), found);
         for (size_t i = 0; i < std::min<size_t>(16, seen - first); ++i)
-            if (found.known[i] > 0)
+            if (found.known[i] > 0) {
                 mix(recall, found, i, result + 4 * (first + i));
-            else
+                // A mean of two neighbours, weighted by how near they are, has this variance.
+                for (const float share : {found.x[i], found.y[i], found.depth[i]}) blur += share * (1 - share);
+                ++known;
+            } else
                 std::fill_n(result + 4 * (first + i), 4, 0.0f);
     }
+    recall.result.blur[tile] = known > 0 ? blur / known : 0;
     std::fill(result + 4 * seen, result + 4 * slices, 0.0f);
 }
 
-void recall_kernel(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& result) {
+void recall_kernel(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles, Recollection& result) {
     Recall recall{memory, grid, tiles, result, {}};
     for (size_t k = 0; k + 1 < memory.grid.faces.size(); ++k)
         recall.centers.push_back(0.5f * (memory.grid.faces[k] + memory.grid.faces[k + 1]));
@@ -139,9 +144,10 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(recall_kernel);
-FroxelLight recall(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles) {
-    FroxelLight result;
-    result.values.resize(4 * grid.tiles() * static_cast<size_t>(grid.slices()));
+Recollection recall(const FroxelMemory& memory, const FroxelGrid& grid, const FroxelTiles& tiles) {
+    Recollection result;
+    result.light.values.resize(4 * grid.tiles() * static_cast<size_t>(grid.slices()));
+    result.blur.resize(grid.tiles());
     HWY_DYNAMIC_DISPATCH(recall_kernel)(memory, grid, tiles, result);
     return result;
 }

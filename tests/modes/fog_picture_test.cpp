@@ -188,5 +188,23 @@ TEST(FogPicture, TheBlurRemovesAnOrderedPattern) {
     for (int y = 2; y < 30; ++y)
         for (int x = 2; x < 30; ++x) ASSERT_NEAR(results[y * 32 + x].radiance.x, 0.5f, 1e-5f) << x << " " << y;
 }
+
+TEST(FogPicture, AnEyeThatMovesAsideRemembersLess) {
+    // Fog 4 to 8 m away: its near half moves against the far one by a tenth of a pixel for each 5 mm of the eye's way.
+    const Snapshot snapshot = lit_box();
+    const auto oldest = [&](float way) {
+        History history;
+        for (int frame = 0; frame < 8; ++frame) {
+            View view = small_view({240, 160});
+            view.camera.position.x += way * static_cast<float>(frame);
+            from_fog_picture(view, snapshot, {}, march_of(view, snapshot), &history);
+        }
+        return history.picture->age.at(120, 80);
+    };
+    EXPECT_EQ(oldest(0), 8);
+    EXPECT_GT(oldest(0.003f), oldest(0.03f));
+    EXPECT_GT(oldest(0.03f), 1);
+    EXPECT_EQ(oldest(0.3f), 1);
+}
 }
 }

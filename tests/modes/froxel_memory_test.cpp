@@ -129,7 +129,7 @@ TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
     for (size_t i = 0; i < grid.tiles() * 16; ++i)
         for (const float value : {static_cast<float>(i % 7), 2.0f, 3.0f, i % 5 ? 0.1f : 0.0f})
             light.values.push_back(value);
-    const FroxelLight back = recall(memory_of(grid, tiles, light), grid, tiles);
+    const FroxelLight back = recall(memory_of(grid, tiles, light), grid, tiles).light;
     for (size_t tile = 0; tile < grid.tiles(); ++tile)
         for (int k = 0; k < 16; ++k) {
             const float *was = light.at(grid, tile, k), *is = back.at(grid, tile, k);
@@ -139,6 +139,30 @@ TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
                 ASSERT_NEAR(is[0], was[0], 1e-2) << tile << " " << k;
             }
         }
+}
+
+TEST(FroxelMemory, KnowsHowMuchWiderWhatItFindsBecame) {
+    // An orthographic picture moved aside by half a tile: means of two neighbours. By a whole one: the neighbours.
+    const Stage stage = lit_stage();
+    Camera camera = moved_view(0).camera;
+    camera.ortho_height = 4;
+    const auto blur_after = [&](float tiles_aside) {
+        FroxelGrid grid = make_froxel_grid(camera, {64, 32}, 8);
+        const FroxelTiles tiles = make_froxel_tiles(grid, stage.snapshot);
+        set_slices(grid, 3, 9, 16, 1, 0, 0);
+        FroxelLight light;
+        light.values.assign(4 * grid.tiles() * 16, 1.0f);
+        Camera moved = camera;
+        moved.position += tiles_aside * (4.0f / 4) * camera.right; // four tiles down
+        FroxelGrid now = make_froxel_grid(moved, {64, 32}, 8);
+        set_slices(now, 3, 9, 16, 1, 0, 0);
+        const FroxelTiles seen = make_froxel_tiles(now, stage.snapshot);
+        return recall(memory_of(grid, tiles, light), now, seen).blur[now.tile_index({4, 2})];
+    };
+    EXPECT_NEAR(blur_after(0), 0, 1e-4);
+    EXPECT_NEAR(blur_after(0.5f), 0.25, 1e-4);
+    EXPECT_NEAR(blur_after(1), 0, 1e-3);
+    EXPECT_NEAR(blur_after(0.1f), 0.09, 1e-3);
 }
 
 TEST(FroxelMemory, AQuarterOfTheFroxelsIsNewInEachFrame) {
