@@ -64,5 +64,6 @@ std::vector<StressCase> stress_looks();
 std::vector<StressCase> stress_files();
 std::vector<StressCase> stress_data();
 std::vector<StressCase> stress_scattering();
+std::vector<StressCase> stress_orders();
 std::vector<StressCase> stress_program();
 }

@@ -2,6 +2,7 @@
 #include "measure/stress.h"
 
 #include "base/parallel.h"
+#include "modes/fog_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -312,6 +313,50 @@ TEST(MutationCheck, ThreadsShow) {
                                      [](const RayBatch&, size_t, Scatter& result) {
                                          result.radiance += 1e-6f * static_cast<float>(thread_count());
                                      });
+                  }));
+}
+
+TEST(MutationCheck, LightScatteredAgainForgotten) {
+    expect_caught("added-orders", broken("march", [](const View& view, const Snapshot& snapshot,
+                                                     const Settings& settings, History* history) {
+                      Settings once = settings;
+                      once.fluence.orders = 1;
+                      return find_mode("march").prepare(view, snapshot, once, history);
+                  }));
+}
+
+// What has scattered before is added as if there were no surfaces.
+ScatterFunction leaking_orders(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    Settings once = settings;
+    once.fluence.orders = 1;
+    Snapshot open = snapshot;
+    open.occluders = nullptr;
+    const auto& prepare = find_mode("march").prepare;
+    const ScatterFunction single = prepare(view, snapshot, once, nullptr);
+    const ScatterFunction open_all = prepare(view, open, settings, nullptr);
+    const ScatterFunction open_single = prepare(view, open, once, nullptr);
+    return without_parts([=](const RayBatch& batch, std::span<Scatter> results) {
+        std::vector<Scatter> all(results.size()), part(results.size());
+        single(batch, results), open_all(batch, all), open_single(batch, part);
+        for (size_t i = 0; i < results.size(); ++i)
+            results[i].radiance += glm::max(all[i].radiance - part[i].radiance, vec3(0));
+    });
+}
+TEST(MutationCheck, LightScatteredAgainThroughFloors) {
+    expect_caught("below-floor", broken("march", leaking_orders));
+    expect_caught("below-slope", broken("march", leaking_orders));
+}
+
+// The eye moves, and the history thinks that it stands.
+TEST(MutationCheck, HistoryThatDoesNotFollowTheEye) {
+    expect_caught("uncovered", broken("shadow-map", [](const View& view, const Snapshot& snapshot,
+                                                       const Settings& settings, History* history) {
+                      if (history && history->picture) {
+                          auto standing = std::make_shared<FogPicture>(*history->picture);
+                          standing->view.camera = view.camera;
+                          history->picture = standing;
+                      }
+                      return find_mode("shadow-map").prepare(view, snapshot, settings, history);
                   }));
 }
 

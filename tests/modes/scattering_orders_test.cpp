@@ -69,7 +69,7 @@ TEST_P(ScatteringOrdersOfBall, AsLightPathsAndPathTracingFind) {
     for (const float g : {0.0f, 0.8f}) expect_as_predicted(GetParam(), g, 131072, 16000, 0.3);
 }
 TEST_P(ScatteringOrdersOfBall, NightlyAsLightPathsAndPathTracingFindPrecisely) {
-    for (const float g : {0.0f, 0.8f}) expect_as_predicted(GetParam(), g, 4 << 20, 1'000'000, 0.03);
+    for (const float g : {0.0f, 0.8f}) expect_as_predicted(GetParam(), g, 8 << 20, 1'000'000, 0.03);
 }
 INSTANTIATE_TEST_SUITE_P(ScatteringOrders, ScatteringOrdersOfBall, testing::Values(0.05f, 0.25f, 0.5f, 1.0f));
 
