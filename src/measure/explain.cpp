@@ -103,11 +103,18 @@ void follow(const RayScene& scene, RayStory& story) {
     for (int layer = 0; layer < most_layers; ++layer) {
         find_surfaces(scene.snapshot, layer, s);
         Path& path = s.path[0];
-        const float length = s.hit(0) ? s.length[0] : fog_reach(scene.snapshot.media, path.ray);
+        const bool open = !s.hit(0);
+        const float length = open ? fog_reach(scene.snapshot.media, path.ray) : s.length[0];
         const Ray ray{path.ray.origin, path.ray.direction, length};
         const RayNumbers numbers = ray_numbers(scene.view, layer, s);
-        const RayBatch batch{{&ray, 1}, {numbers.ids, 1},      {}, {numbers.jitter, 1}, {numbers.places, 1},
-                             {},        {numbers.positions, 1}};
+        const RayBatch batch{{&ray, 1},
+                             {numbers.ids, 1},
+                             {},
+                             {numbers.jitter, 1},
+                             {numbers.places, 1},
+                             {},
+                             {numbers.positions, 1},
+                             {&open, 1}};
         const RayPart part{ray, batch, story.end, story.depth, path.through};
         float transmittance = 1;
         add_reference(prepared, part, story, transmittance);

@@ -12,7 +12,6 @@ constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
 const std::vector<Excuse> thick{{"optical depths deep", 1.2}};
 // Straight on, it fades by 2.5 depths over the deepest step: in its middle is 1.25 / sinh(1.25) = 0.78 of the mean.
 const std::vector<Excuse> straight{{"optical depths deep", 0.25}};
-const std::vector<Excuse> thin{{"thinner than froxels", 0.9}}; // not lost altogether
 
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 6}, vec3(0));
@@ -178,7 +177,7 @@ std::vector<StressCase> stress_fog() {
         StressCase("slab", group, "a slab's light in closed form", "optical depth", "", {0.01, 0.5, 2, 8, 30}, exact,
                    straight, slab, {0.01, "error of the mean against the closed form", slab_off}),
         StressCase("thin-sheet", group, "a sheet of fog of constant depth gets thin", "thickness", "m",
-                   {1, 0.1, 0.01, 0.001, 0}, all, thin, sheet),
+                   {1, 0.1, 0.01, 0.001, 0}, all, {}, sheet),
         StressCase("in-the-face", group, "rays run in the face of the fog's box", "ray to face", "m",
                    {0.1, -0.1, 1e-3, 1e-6, 0}, all, {}, in_the_face),
         StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all, thick,

@@ -60,9 +60,10 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     for (int sample = 0; sample < fill.samples(); ++sample) {
         const size_t s = static_cast<size_t>(sample);
         const Looks looks = look(fill, packet.where, packet.first[s], slice, sample);
-        const FroxelLanes lanes = froxel_lanes(fill.grid, looks);
-        const Floats here = find_extinctions(fill, packet, lanes, slice, sample);
+        const FroxelLanes whole = froxel_lanes(fill.grid, looks);
+        const Floats here = find_extinctions(fill, packet, whole, slice, sample);
         total = total + here;
+        const FroxelLanes lanes = in_fog(fill, whole, extinction);
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
         if (!any(lit)) continue;
         Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(fill.scene, lanes, extinction) : splat(vec3(0));
@@ -72,7 +73,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
                       sample,
                       fill.exact() ? &packet.exact[s] : nullptr,
                       extinction,
-                      here * lanes.length * fill.scene.style.view_depth};
+                      here * whole.length * fill.scene.style.view_depth};
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);
         light = fused(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);
@@ -151,7 +152,7 @@ ivec2 blocks_of(const FroxelGrid& grid, int stride) { return (grid.size + 4 * st
 
 void fill_kernel(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, const FillPass& pass,
                  FroxelLight& light) {
-    const Fill fill{scene, grid, tiles, pass, light};
+    const Fill fill{scene, grid, tiles, pass, light, thin_media(scene, grid)};
     const int stride = stride_of(scene);
     const ivec2 blocks = blocks_of(grid, stride);
     parallel_for(int64_t{blocks.x} * blocks.y, [&](int64_t b) {

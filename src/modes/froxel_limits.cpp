@@ -85,16 +85,17 @@ std::vector<Limit> froxel_limits(const View& view, const Snapshot& snapshot, con
     }
     for (const Medium& medium : snapshot.media) {
         const std::string where = "medium " + medium.name;
-        const float depth = medium.majorant() * size.deep;
         const vec3 sides = medium.world_bounds.size();
+        const float thin = std::min(sides.x, std::min(sides.y, sides.z));
+        const float depth = medium.majorant() * std::min(size.deep, thin);
         if (depth > 1)
             limits.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded, where,
                               "froxels are up to " + number_text("%.2g", depth) +
                                   " optical depths deep: light that changes within them is evened out"});
-        if (std::min(sides.x, std::min(sides.y, sides.z)) < size.deep)
+        if (thin < size.deep)
             limits.push_back(
-                {Severity::degraded, where,
-                 "is a sheet thinner than froxels, which are " + metres(size.deep) + " deep: it is seen blurred"});
+                {Severity::info, where,
+                 "is a sheet thinner than froxels, which are " + metres(size.deep) + " deep: light is even within it"});
         if (medium.kind != DensityKind::bricks) continue;
         const float voxel = 1 / glm::length(vec3(medium.bricks->world_to_index[0]));
         if (voxel < 0.5f * coarse)

@@ -20,6 +20,7 @@ struct Fill {
     const FroxelTiles& tiles;
     const FillPass& pass;
     FroxelLight& light;
+    std::vector<const Medium*> sheets{}; // media that are thinner than some slice
 
     bool exact() const { return scene.settings.visibility == FroxelVisibility::slices; }
     bool wants(size_t part) const { return pass.only < 0 || static_cast<size_t>(pass.only) == part; }
@@ -150,6 +151,41 @@ FroxelLanes froxel_lanes(const FroxelGrid& grid, const Looks& looks) {
     const Floats side = fused(z, wider, wide) * static_cast<float>(grid.tile);
     lanes.width2 = side * side * (1 / pi);
     return lanes;
+}
+
+// Media whose box is thinner somewhere than the thickest slice.
+std::vector<const Medium*> thin_media(const FroxelScene& scene, const FroxelGrid& grid) {
+    float deepest = 0;
+    for (size_t k = 0; k + 1 < grid.faces.size(); ++k) deepest = std::max(deepest, grid.faces[k + 1] - grid.faces[k]);
+    std::vector<const Medium*> thin;
+    for (const Medium& medium : scene.snapshot.media) {
+        const vec3 sides = medium.world_bounds.size();
+        if (std::min(sides.x, std::min(sides.y, sides.z)) < deepest) thin.push_back(&medium);
+    }
+    return thin;
+}
+
+// Lanes cut down to the fog on them, where that is a sheet: each medium's part counts by its extinction.
+FroxelLanes in_fog(const Fill& fill, const FroxelLanes& lanes, const float (*extinction)[16]) {
+    if (fill.sheets.empty()) return lanes;
+    const std::vector<Medium>& media = fill.scene.snapshot.media;
+    Floats low = 0.0f, high = 0.0f, total = 0.0f;
+    for (size_t m = 0; m < media.size(); ++m) {
+        const bool thin = std::ranges::find(fill.sheets, &media[m]) != fill.sheets.end();
+        Ranges part{0.0f, lanes.length};
+        if (thin) part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
+        const Floats weight = zero_unless(part.high > part.low, load(extinction[m]));
+        low = fused(weight, part.low, low), high = fused(weight, part.high, high), total = total + weight;
+    }
+    const Mask16 some = total > 0.0f;
+    const Floats inverse = 1.0f / select(some, total, 1.0f);
+    low = select(some, low * inverse, 0.0f), high = select(some, high * inverse, lanes.length);
+    FroxelLanes cut = lanes;
+    cut.start = fused(lanes.toward, low, lanes.start), cut.length = high - low;
+    const Floats middle = (low + high) * 0.5f;
+    cut.point = fused(lanes.toward, middle, lanes.start);
+    cut.z = lanes.z + dot(cut.point - lanes.point, lanes.toward) / sqrt(dot(lanes.step, lanes.step));
+    return cut;
 }
 
 // Mean extinction along the stretches: exact for formulas, up to four samples for bricks.

@@ -203,13 +203,18 @@ HWY_INLINE bool from_the_eye(const Camera& camera, const RayBatch& batch) {
     return true;
 }
 
+// The slice in which fog ends holds it spread evenly: a ray that nothing else ends takes all of it.
+inline float length_of(const RayBatch& batch, size_t ray) {
+    return ray < batch.open.size() && batch.open[ray] ? infinity : batch.rays[ray].t_max;
+}
+
 inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
     const FroxelGrid& grid = picture.grid;
     alignas(64) float along[16], start[16] = {}, length[16];
     if (batch.rays.size() == 16 && batch.positions.size() == 16 && from_the_eye(grid.camera, batch)) {
         const Pixels at = pixels_of(picture, batch, places);
         const Vec3s step = fused(splat(grid.step_x), at.x, fused(splat(grid.step_y), at.y, splat(grid.step)));
-        for (size_t i = 0; i < 16; ++i) length[i] = batch.rays[i].t_max;
+        for (size_t i = 0; i < 16; ++i) length[i] = length_of(batch, i);
         places.slant = sqrt(dot(step, step)), places.seen = Floats(0.0f) < places.slant, places.start = 0.0f;
         places.end = min(load(length) / places.slant, std::numeric_limits<float>::max());
         return find_tiles(picture, batch, places);
@@ -217,7 +222,8 @@ inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Pla
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
         along[i] = glm::dot(ray.direction, grid.camera.forward);
-        start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f), length[i] = ray.t_max;
+        start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f);
+        length[i] = length_of(batch, std::min(i, batch.rays.size() - 1));
     }
     places.seen = load(along) > 1e-6f;
     const Floats forward = select(places.seen, load(along), 1.0f);

@@ -122,17 +122,22 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
             const Floats length = zero_unless(sliced, load(depths.length));
             const Mask16 some = length > 0.0f;
             const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
-            const Floats z = select(some, load(depths.first) / max(length, 1e-30f), lanes.z);
-            arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
+            const Floats half = lanes.length * 0.5f / sqrt(dot(lanes.step, lanes.step));
+            const Floats mean = load(depths.first) / max(length, 1e-30f);
+            const Floats z = max(min(mean, lanes.z + half), lanes.z - half); // in the fog
+            const Mask16 partly = some & (length < deep * 0.999f);
+            arrived.point = fused(lanes.step, select(partly, z, lanes.z) - lanes.z, lanes.point);
             arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
         } else {
             const FroxelLit::Arrivals& exact = job.exact->arrivals[at];
             const Floats amount = load(exact.amount);
             const Mask16 some = sliced & (amount > 0.0f);
             arrived.amount = select(sliced, amount, arrived.amount);
-            arrived.point = {select(some, load(exact.point[0]), arrived.point.x),
-                             select(some, load(exact.point[1]), arrived.point.y),
-                             select(some, load(exact.point[2]), arrived.point.z)};
+            const Vec3s point{load(exact.point[0]), load(exact.point[1]), load(exact.point[2])};
+            const Floats place = dot(point - lanes.start, lanes.toward);
+            const Mask16 inside = some & (place >= 0.0f) & (place <= lanes.length);
+            arrived.point = {select(inside, point.x, arrived.point.x), select(inside, point.y, arrived.point.y),
+                             select(inside, point.z, arrived.point.z)};
         }
     }
     if (any(near)) put_near(fill, index, job, near, arrived);

@@ -29,6 +29,7 @@ struct RayBatch {
     std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
     std::span<const float> near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
     std::span<const vec2> positions{}; // of the rays in the picture, in pixels from the upper left; empty = unknown
+    std::span<const bool> open{};      // per ray: no surface ends it, but the fog; empty = unknown
 };
 using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
 

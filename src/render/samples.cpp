@@ -12,9 +12,11 @@ void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<Pixel
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
     Ray rays[16];
     Scatter scatter[16];
+    bool open[16];
     for (int i = 0; i < s.count; ++i) {
         const Ray& ray = s.path[i].ray;
-        rays[i] = {ray.origin, ray.direction, s.hit(i) ? s.length[i] : fog_reach(tracer.snapshot.media, ray)};
+        open[i] = !s.hit(i);
+        rays[i] = {ray.origin, ray.direction, open[i] ? fog_reach(tracer.snapshot.media, ray) : s.length[i]};
     }
 
     const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
@@ -26,7 +28,8 @@ void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<Pixel
                     {numbers.jitter, count},
                     {numbers.places, count},
                     {},
-                    {numbers.positions, count}},
+                    {numbers.positions, count},
+                    {open, count}},
                    {scatter, count});
 
     for (int i = 0; i < s.count; ++i) {
