@@ -148,6 +148,13 @@ void jitter_places(const RayBatch& batch, Floats& x, Floats& y) {
     x = load(at_x), y = load(at_y);
 }
 
+// Rays that only the fog ends. Its last slice holds it spread evenly: where nothing else is seen around they take all.
+Mask16 open_rays(const RayBatch& batch) {
+    alignas(64) float open[16];
+    for (size_t i = 0; i < 16; ++i) open[i] = i < batch.open.size() && batch.open[i] ? 1.0f : 0.0f;
+    return load(open) > 0.0f;
+}
+
 void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
     const FroxelGrid& grid = picture.grid;
     const Pixels pixels = pixels_of(picture, batch, places);
@@ -175,8 +182,10 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     // The tile at or before the pixel knows whether all around it see far enough.
     const Ints cell = (y.first + Ints(cubic)) * grid.size.x + (x.first + Ints(cubic));
     places.together = all_same(cell);
-    const Mask16 blind = places.end > value_at(picture.tiles.trusted_around.data(), cell);
+    const Floats trusted = value_at(picture.tiles.trusted_around.data(), cell);
+    const Mask16 blind = places.end > trusted;
     if (any(blind)) distrust_blind(picture.tiles, blind, places);
+    places.end = select(open_rays(batch) & (trusted > 1e30f), 1e30f, places.end);
     for (int t = 0; t < places.count; ++t) {
         const Floats slant = places.together ? Floats(grid.slants[static_cast<size_t>(places.tiles[t][0])])
                                              : gather(grid.slants.data(), load(places.tiles[t]));
@@ -203,18 +212,13 @@ HWY_INLINE bool from_the_eye(const Camera& camera, const RayBatch& batch) {
     return true;
 }
 
-// The slice in which fog ends holds it spread evenly: a ray that nothing else ends takes all of it.
-inline float length_of(const RayBatch& batch, size_t ray) {
-    return ray < batch.open.size() && batch.open[ray] ? infinity : batch.rays[ray].t_max;
-}
-
 inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
     const FroxelGrid& grid = picture.grid;
     alignas(64) float along[16], start[16] = {}, length[16];
     if (batch.rays.size() == 16 && batch.positions.size() == 16 && from_the_eye(grid.camera, batch)) {
         const Pixels at = pixels_of(picture, batch, places);
         const Vec3s step = fused(splat(grid.step_x), at.x, fused(splat(grid.step_y), at.y, splat(grid.step)));
-        for (size_t i = 0; i < 16; ++i) length[i] = length_of(batch, i);
+        for (size_t i = 0; i < 16; ++i) length[i] = batch.rays[i].t_max;
         places.slant = sqrt(dot(step, step)), places.seen = Floats(0.0f) < places.slant, places.start = 0.0f;
         places.end = min(load(length) / places.slant, std::numeric_limits<float>::max());
         return find_tiles(picture, batch, places);
@@ -222,8 +226,7 @@ inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Pla
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
         along[i] = glm::dot(ray.direction, grid.camera.forward);
-        start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f);
-        length[i] = length_of(batch, std::min(i, batch.rays.size() - 1));
+        start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f), length[i] = ray.t_max;
     }
     places.seen = load(along) > 1e-6f;
     const Floats forward = select(places.seen, load(along), 1.0f);

@@ -106,6 +106,15 @@ void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near
     arrived = {{load(point[0]), load(point[1]), load(point[2])}, load(amount)};
 }
 
+// Light is asked for in the middle of a sheet where it arrives beside it, or the sheet fills less than half the slice.
+void hold_in_fog(const FroxelLanes& lanes, const Looks& looks, const Mask16& which, LaneArrivals& arrived) {
+    const Floats place = dot(arrived.point - lanes.start, lanes.toward);
+    const Floats slice = (load(looks.high) - load(looks.low)) * sqrt(dot(lanes.step, lanes.step));
+    const Mask16 held = which & ((place < 0.0f) | (place > lanes.length) | (lanes.length < slice * 0.5f));
+    arrived.point = {select(held, lanes.point.x, arrived.point.x), select(held, lanes.point.y, arrived.point.y),
+                     select(held, lanes.point.z, arrived.point.z)};
+}
+
 LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
     const Arriving plain = arriving(light, fill.scene.cones[index], lanes.point);
@@ -122,23 +131,19 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
             const Floats length = zero_unless(sliced, load(depths.length));
             const Mask16 some = length > 0.0f;
             const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
-            const Floats half = lanes.length * 0.5f / sqrt(dot(lanes.step, lanes.step));
-            const Floats mean = load(depths.first) / max(length, 1e-30f);
-            const Floats z = max(min(mean, lanes.z + half), lanes.z - half); // in the fog
-            const Mask16 partly = some & (length < deep * 0.999f);
-            arrived.point = fused(lanes.step, select(partly, z, lanes.z) - lanes.z, lanes.point);
+            const Floats z = select(some, load(depths.first) / max(length, 1e-30f), lanes.z);
+            arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
             arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
         } else {
             const FroxelLit::Arrivals& exact = job.exact->arrivals[at];
             const Floats amount = load(exact.amount);
             const Mask16 some = sliced & (amount > 0.0f);
             arrived.amount = select(sliced, amount, arrived.amount);
-            const Vec3s point{load(exact.point[0]), load(exact.point[1]), load(exact.point[2])};
-            const Floats place = dot(point - lanes.start, lanes.toward);
-            const Mask16 inside = some & (place >= 0.0f) & (place <= lanes.length);
-            arrived.point = {select(inside, point.x, arrived.point.x), select(inside, point.y, arrived.point.y),
-                             select(inside, point.z, arrived.point.z)};
+            arrived.point = {select(some, load(exact.point[0]), arrived.point.x),
+                             select(some, load(exact.point[1]), arrived.point.y),
+                             select(some, load(exact.point[2]), arrived.point.z)};
         }
+        if (!fill.sheets.empty()) hold_in_fog(lanes, job.looks, sliced, arrived);
     }
     if (any(near)) put_near(fill, index, job, near, arrived);
     see_through_slice(light, lanes, job, along, arrived);
