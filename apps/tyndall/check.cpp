@@ -1,4 +1,4 @@
-// tyndall check: everything wrong with scenes, recipes, volumes and pictures, one line each.
+// tyndall check: what is wrong with scenes, recipes, volumes and pictures, one line each.
 #include "common.h"
 #include "file_kind.h"
 
@@ -84,14 +84,18 @@ void check_sequence(const std::string& pattern, Problems& problems) {
     const VdbSequence sequence = find_sequence(pattern, ".");
     for (int frame = sequence.files.front(); frame <= sequence.files.back(); ++frame)
         guarded(pattern, problems, [&] {
-            if (const auto volume = sequence_file(sequence, frame, MissingFrame::error))
-                check_vdb(*volume, "", problems);
+            const auto file = sequence_file(sequence, frame, MissingFrame::error);
+            if (file && file->extension() == ".exr")
+                check_exr(file->string(), problems);
+            else if (file)
+                check_vdb(*file, "", problems);
         });
 }
 
 void check_file(const std::string& file, Problems& problems) {
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored) && file.ends_with(".vdb") && has_frame_token(file))
+    const bool numbered = file.ends_with(".vdb") || file.ends_with(".exr");
+    if (!std::filesystem::exists(file, ignored) && numbered && has_frame_token(file))
         return check_sequence(file, problems);
     switch (file_kind(file)) {
     case FileKind::vdb:
@@ -133,7 +137,7 @@ int run_check(const std::vector<std::string>& files, const Globals& globals) {
 }
 
 Run add_check(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("check", "find everything wrong with scenes, recipes, volumes and pictures");
+    CLI::App* command = app.add_subcommand("check", "find what is wrong with scenes, recipes, volumes and pictures");
     auto files = std::make_shared<std::vector<std::string>>();
     command->add_option("FILES", *files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence")
         ->type_name("")

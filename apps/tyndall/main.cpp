@@ -55,10 +55,10 @@ tyndall --help lists all commands; tyndall COMMAND --help explains one, with an 
 )";
 
 constexpr const char* exit_codes =
-    R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), more noise left than wanted (render),
-a proof that failed (verify) or a mode that fails in silence (stress), 2 wrong command line, 3 input refused,
-4 input missing or unreadable, 5 output could not be written, 6 done but some samples or pixels were not finite
-numbers, 33 out of memory, 70 internal error, 128+n stopped by signal n.)";
+    R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), a larger error than wanted (render),
+no mode that gets there (plan), a proof that failed (verify) or a mode that fails in silence (stress), 2 wrong
+command line, 3 input refused, 4 input missing or unreadable, 5 output could not be written, 6 done but some samples
+or pixels were not finite numbers, 33 out of memory, 70 internal error, 128+n stopped by signal n.)";
 
 struct GlobalTexts {
     std::string threads, progress;
@@ -83,8 +83,9 @@ void apply_globals(Globals& globals, const GlobalTexts& texts) {
     const std::vector<std::string> styles{"alf", "json", "bar", "none"};
     constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::json, ProgressStyle::bar,
                                         ProgressStyle::none};
-    if (globals.quiet) globals.progress = ProgressStyle::silent;
     if (!texts.progress.empty()) globals.progress = values[choice_option("--progress", texts.progress, styles)];
+    if (globals.quiet && (texts.progress.empty() || globals.progress == ProgressStyle::none))
+        globals.progress = ProgressStyle::silent;
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
 }
 

@@ -61,12 +61,13 @@ std::string plan_json(const Plan& plan, const RenderJob& job) {
            "\n";
 }
 
-// How to render what was planned.
-std::string command_of(const Plan& plan, const RenderJob& job) {
+// How to render what was planned: all frames of the scene unless one was asked for.
+std::string command_of(const Plan& plan, const RenderJob& job, bool one_frame) {
     const bool again = plan.settings.fluence.orders > 1;
     std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o out.####.exr --mode " +
                        std::string(again ? automatic : plan.chosen.mode->name);
     if (plan.goal.quality != Quality::preview) text += " --quality " + std::string(name_of(plan.goal.quality));
+    if (one_frame) text += formatted(" --frames %d", job.frames[0]);
     if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
     if (job.resolution.x > 0) text += formatted(" --res %dx%d", job.resolution.x, job.resolution.y);
     if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
@@ -90,6 +91,7 @@ int run_plan(const Options& texts, const Globals& globals) {
         job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
     find_camera(scene, job.camera);
     const Snapshot snapshot = load_first_frame(scene, job).snapshot;
+    if (snapshot.media.empty()) fail(ExitCode::refused, texts.render.scene, "has no fog to plan for");
 
     Progress progress(globals.progress, "plan", 1, true);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
@@ -104,7 +106,7 @@ int run_plan(const Options& texts, const Globals& globals) {
                                                      : formatted("the best in %g s", plan.goal.seconds);
         print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(job.scene_file.string(), 200).c_str(),
                                job.frames[0], view.size.x, view.size.y, goal.c_str()) +
-                     plan_text(plan) + "\n" + command_of(plan, job) + "\n");
+                     plan_text(plan) + "\n" + command_of(plan, job, !texts.frame.empty()) + "\n");
     }
     if (!globals.quiet)
         say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");

@@ -19,12 +19,12 @@ void choose_frames(const Scene& scene, RenderJob& job) {
     check_pattern(job.output, ".exr", job.frames.size() > 1);
 }
 
-// Where the mode fails on this scene, from the first frame.
+// Where the mode fails on this scene, from the first frame, with the settings it begins with.
 std::vector<Limit> limits_of(const Scene& scene, const RenderJob& job, const Snapshot& snapshot) {
     View view;
     view.camera = camera_at(scene, find_camera(scene, job.camera), snapshot.seconds);
     view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
-    return find_mode(job.mode).limits(view, snapshot, job.settings);
+    return find_mode(job.mode).limits(view, snapshot, job.choice ? job.choice->candidate.settings : job.settings);
 }
 
 std::string limit_line(const Limit& limit) {

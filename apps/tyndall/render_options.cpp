@@ -169,6 +169,7 @@ std::vector<const Mode*> asked_modes(const std::string& text) {
         return result;
     }
     for (const std::string& name : comma_list(text)) {
+        if (name == automatic) fail(ExitCode::usage, "--mode", "auto is one mode of its choice: name it alone");
         const Mode& mode = find_mode(name);
         if (std::ranges::count(result, &mode)) fail(ExitCode::usage, "--mode", name + " is named twice");
         result.push_back(&mode);

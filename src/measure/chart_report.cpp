@@ -66,12 +66,12 @@ Json left_out_json(const Chart& chart) {
     return report::array(std::move(items));
 }
 
-// The point that answers a need, by the time and the error that count.
+// The point that answers a need, by the time and the error that count; none that is as far off as a black picture.
 std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
     const ChartPoint* best = nullptr;
     for (const ChartPoint& point : chart.points) {
         const double seconds = seconds_of(point, time), error = error_of(point, what);
-        if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds)) continue;
+        if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds && error < 1)) continue;
         const bool better =
             !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(*best, what));
         if (better) best = &point;

@@ -25,9 +25,14 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     return term;
 }
 
+// The worst limit that may be why a mode is off. What the reference leaves out as well is not.
 const Limit* worst_limit(const std::vector<Limit>& limits) {
-    const auto worst = std::ranges::max_element(limits, {}, &Limit::severity);
-    return worst == limits.end() || worst->severity == Severity::info ? nullptr : &*worst;
+    const Limit* worst = nullptr;
+    for (const Limit& limit : limits)
+        if (!limit.why.starts_with("light scatters once only") && limit.severity != Severity::info &&
+            (!worst || limit.severity > worst->severity))
+            worst = &limit;
+    return worst;
 }
 
 // Why a mode that was measured lost, given its best candidate and the winner.
@@ -52,7 +57,10 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
     const Contender& winner = contest.best();
     for (const Mode& mode : modes) {
         Standing standing{&mode, {}, "a look, not light: its error is as large as it is"};
-        if (mode.accuracy != Accuracy::look) standing.why = "takes no part: light scattered again is asked for";
+        if (mode.accuracy == Accuracy::multiple_scattering)
+            standing.why = "takes no part: errors here are of light scattered once, it traces all (--mode path)";
+        else if (mode.accuracy != Accuracy::look)
+            standing.why = "takes no part: it has no light scattered again, which is asked for";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;
@@ -108,7 +116,8 @@ std::string Plan::certificate() const {
             left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
                         " (" + term.simpler + ": at most " + percent_text(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
-    if (settings.fluence.orders > 1) text += "; light scattered again comes from a grid of its own error";
+    if (settings.fluence.orders > 1)
+        text += "; light scattered again comes from a grid whose own error is not measured";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
 }
 

@@ -53,7 +53,8 @@ void append_edge_limits(const View& view, const Snapshot& snapshot, const Shadow
         const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
         if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))
             limits.push_back({Severity::degraded, where,
-                              "is in the picture: " + steps + " are few for its glow and the edges of its cone"});
+                              "is in the picture: " + steps + " are few for its glow" +
+                                  (light.kind == LightKind::spot ? " and the edges of its cone" : "")});
     }
 }
 }

@@ -201,6 +201,8 @@ std::string error_text(const FrameStats& stats, const RenderJob& job) {
                 short_text(", integrator %.3g", stats.integrator->error.error) + " (" + stats.integrator->candidate +
                 ")";
     text += short_text(stats.samples == 1 ? ", %.0f sample per pixel" : ", %.0f samples per pixel", stats.samples);
+    if (stats.integrator && job.settings.fluence.orders > 1)
+        text += ", of light scattered once: what the grid for the rest adds to it is not measured";
     if (job.time_budget > 0)
         text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", job.time_budget);
     return text;

@@ -50,12 +50,13 @@ struct Rounds {
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
 
-    // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than it.
+    // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than a tenth of it.
     double noise_target() const {
         const double bound = choice && choice->has_integrator ? choice->measured.integrator.bound : 0;
         if (bound == 0) return goal.error;
-        const double share = std::sqrt(std::max(1 - bound / (goal.error * goal.error), 0.0));
-        return goal.error * (bound < goal.error * goal.error ? share : integrator_share);
+        const double squared = goal.error * goal.error;
+        if (bound < squared) return std::sqrt(squared - bound);
+        return std::max(goal.error * integrator_share, 0.1 * std::sqrt(bound));
     }
 
     // The view of so much work, and the work it is.

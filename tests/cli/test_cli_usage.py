@@ -107,8 +107,8 @@ class CommandLine(ProgramTest):
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
         self.refuse(2, ["--time-samples"], *self.render("--time-samples", "1"))
-        for mode in ["march,march", "march,auto"]:
-            self.refuse(2, ["march"], *self.render("--mode", mode))
+        for mode, why in [("march,march", "march is named twice"), ("march,auto", "name it alone")]:
+            self.refuse(2, [why], *self.render("--mode", mode))
 
     def test_what_a_mode_cannot_do_is_refused(self):
         self.refuse(2, ["--orders", "cone scatters light once", "march, froxel and path"],
