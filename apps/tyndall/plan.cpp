@@ -90,8 +90,8 @@ int run_plan(const Options& texts, const Globals& globals) {
     if (!texts.frame.empty())
         job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
     find_camera(scene, job.camera);
+    if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, job).snapshot;
-    if (snapshot.media.empty()) fail(ExitCode::refused, texts.render.scene, "has no fog to plan for");
 
     Progress progress(globals.progress, "plan", 1, true);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};

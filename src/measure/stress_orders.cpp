@@ -32,21 +32,17 @@ double furnace_off(Trial& trial) {
     return std::max(0.0, std::abs(mean - 1) - 3 * std::sqrt(squares / (pixels * (pixels - 1))));
 }
 
-Layers traced(const Trial& trial, int samples) {
-    StressScene all_light = trial.scene;
-    all_light.settings.path.orders = all_orders, all_light.view.pixel_samples = samples;
-    FrameOptions options;
-    options.cancel = trial.cancel;
-    FrameStats stats;
-    return render_frame(find_mode("path"), all_light.view, all_light.snapshot, all_light.settings, options, stats);
-}
-
 // Of the fog's mean light, against light of all orders.
 double orders_off(Trial& trial) {
     StressScene all_light = trial.scene;
-    all_light.settings.path.orders = all_orders;
+    all_light.settings.path.orders = all_orders, all_light.view.pixel_samples = 64;
+    FrameOptions options;
+    options.cancel = trial.cancel;
+    FrameStats stats;
+    const Layers truth =
+        render_frame(find_mode("path"), all_light.view, all_light.snapshot, all_light.settings, options, stats);
     const Layers layers = error_is_noise(*trial.mode) ? trial.render(all_light) : trial.render();
-    return std::abs(mean_of(layers.inscatter) / mean_of(traced(trial, 64).inscatter) - 1);
+    return std::abs(mean_of(layers.inscatter) / mean_of(truth.inscatter) - 1);
 }
 
 // --- with the grid -----------------------------------------------------------------------------------------------
@@ -75,9 +71,9 @@ StressScene lamp_with_grid(double depth) {
 }
 
 Mesh turned(Mesh mesh, float angle) {
-    const float c = std::cos(angle), s = std::sin(angle);
-    for (vec3& p : mesh.positions) p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
-    for (vec3& n : mesh.normals) n = {c * n.x - s * n.y, s * n.x + c * n.y, n.z};
+    const mat3 turn(glm::rotate(mat4(1), angle, vec3(0, 0, 1)));
+    for (vec3& p : mesh.positions) p = turn * p;
+    for (vec3& n : mesh.normals) n = turn * n;
     return mesh;
 }
 
@@ -93,13 +89,6 @@ StressScene under_floor(float thickness, float angle) {
 }
 StressScene under_thin_floor(double thickness) { return under_floor(static_cast<float>(thickness), 0); }
 StressScene under_sloping_floor(double degrees) { return under_floor(0.02f, static_cast<float>(degrees) * pi / 180); }
-
-// Light below, by that of the same fog without a floor.
-double leak(Trial& trial) {
-    StressScene open = trial.scene;
-    open.snapshot.occluders = nullptr, open.snapshot.scene = nullptr;
-    return mean_of(trial.render().inscatter) / mean_of(trial.render(open).inscatter);
-}
 }
 
 std::vector<StressCase> stress_orders() {

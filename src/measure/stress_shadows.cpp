@@ -143,13 +143,6 @@ StressScene dark_room(double wall) {
                         camera_from({0.3f, 0.1f, 1.7f}, {0, 0, -2}), room(static_cast<float>(wall)));
 }
 
-// Light inside, by that of the same fog without the room.
-double leak(Trial& trial) {
-    StressScene open = trial.scene;
-    open.snapshot.occluders = nullptr, open.snapshot.scene = nullptr;
-    return mean_of(trial.render().inscatter) / mean_of(trial.render(open).inscatter);
-}
-
 // A roof of n x n squares that has no gap.
 StressScene tessellated(double squares) {
     const int n = static_cast<int>(squares);

@@ -163,6 +163,12 @@ double error_of_mean(Trial& trial) {
     return std::abs(mean_of(trial.render().inscatter) / mean_of(trial.truth().inscatter) - 1);
 }
 
+double leak(Trial& trial) {
+    StressScene open = trial.scene;
+    open.snapshot.occluders = nullptr, open.snapshot.scene = nullptr;
+    return mean_of(trial.render().inscatter) / mean_of(trial.render(open).inscatter);
+}
+
 Light spot_light(vec3 position, vec3 direction, float candela, float inner, float outer) {
     Light light = point_light(position, candela);
     light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);

@@ -53,6 +53,7 @@ void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, co
 HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     const Snapshot& snapshot = fill.scene.snapshot;
     const auto* extinction = reinterpret_cast<const float(*)[16]>(packet.here.data());
+    const bool sheet = holds_sheet(fill, slice);
 
     // Extinctions and lights add up over the samples.
     Vec3s light = splat(vec3(0));
@@ -63,7 +64,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         const FroxelLanes whole = froxel_lanes(fill.grid, looks);
         const Floats here = find_extinctions(fill, packet, whole, slice, sample);
         total = total + here;
-        const FroxelLanes lanes = in_fog(fill, whole, extinction);
+        const FroxelLanes lanes = sheet ? in_fog(snapshot.media, whole, extinction) : whole;
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
         if (!any(lit)) continue;
         Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(fill.scene, lanes, extinction) : splat(vec3(0));
@@ -71,6 +72,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
                       looks,
                       slice,
                       sample,
+                      sheet,
                       fill.exact() ? &packet.exact[s] : nullptr,
                       extinction,
                       here * whole.length * fill.scene.style.view_depth};
@@ -152,7 +154,7 @@ ivec2 blocks_of(const FroxelGrid& grid, int stride) { return (grid.size + 4 * st
 
 void fill_kernel(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, const FillPass& pass,
                  FroxelLight& light) {
-    const Fill fill{scene, grid, tiles, pass, light, thin_media(scene, grid)};
+    const Fill fill{scene, grid, tiles, pass, light};
     const int stride = stride_of(scene);
     const ivec2 blocks = blocks_of(grid, stride);
     parallel_for(int64_t{blocks.x} * blocks.y, [&](int64_t b) {

@@ -2,6 +2,7 @@
 #include "modes/froxel_grid.h"
 #include "modes/limits.h"
 #include "modes/techniques.h"
+#include "scene/moving_nodes.h"
 
 namespace tyndall {
 namespace {
@@ -22,15 +23,6 @@ FroxelSize middle_froxel(const View& view, const Snapshot& snapshot, const Froxe
 
 bool in_fog(const Snapshot& snapshot, vec3 point) {
     return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
-}
-
-// Whether the scene gives keys to a node or one above it.
-bool is_moving(const Scene& scene, int node) {
-    for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
-        const Node& at = scene.nodes[static_cast<size_t>(node)];
-        if (!at.translation.constant() || !at.rotation.constant() || !at.scale.constant()) return true;
-    }
-    return false;
 }
 
 // Whether the scene gives a light keys for where it is or shines to.

@@ -20,7 +20,6 @@ struct Fill {
     const FroxelTiles& tiles;
     const FillPass& pass;
     FroxelLight& light;
-    std::vector<const Medium*> sheets{}; // media that are thinner than some slice
 
     bool exact() const { return scene.settings.visibility == FroxelVisibility::slices; }
     bool wants(size_t part) const { return pass.only < 0 || static_cast<size_t>(pass.only) == part; }
@@ -153,27 +152,21 @@ FroxelLanes froxel_lanes(const FroxelGrid& grid, const Looks& looks) {
     return lanes;
 }
 
-// Media whose box is thinner somewhere than the thickest slice.
-std::vector<const Medium*> thin_media(const FroxelScene& scene, const FroxelGrid& grid) {
-    float deepest = 0;
-    for (size_t k = 0; k + 1 < grid.faces.size(); ++k) deepest = std::max(deepest, grid.faces[k + 1] - grid.faces[k]);
-    std::vector<const Medium*> thin;
-    for (const Medium& medium : scene.snapshot.media) {
+// Whether some medium is a sheet, its box thinner than the slice.
+bool holds_sheet(const Fill& fill, int slice) {
+    const size_t k = static_cast<size_t>(slice);
+    const float thickness = fill.grid.faces[k + 1] - fill.grid.faces[k];
+    return std::ranges::any_of(fill.scene.snapshot.media, [&](const Medium& medium) {
         const vec3 sides = medium.world_bounds.size();
-        if (std::min(sides.x, std::min(sides.y, sides.z)) < deepest) thin.push_back(&medium);
-    }
-    return thin;
+        return std::min(sides.x, std::min(sides.y, sides.z)) < thickness;
+    });
 }
 
-// Lanes cut down to the fog on them, where that is a sheet: each medium's part counts by its extinction.
-FroxelLanes in_fog(const Fill& fill, const FroxelLanes& lanes, const float (*extinction)[16]) {
-    if (fill.sheets.empty()) return lanes;
-    const std::vector<Medium>& media = fill.scene.snapshot.media;
+// Lanes cut down to the fog on them: each medium's part counts by its extinction.
+FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, const float (*extinction)[16]) {
     Floats low = 0.0f, high = 0.0f, total = 0.0f;
     for (size_t m = 0; m < media.size(); ++m) {
-        const bool thin = std::ranges::find(fill.sheets, &media[m]) != fill.sheets.end();
-        Ranges part{0.0f, lanes.length};
-        if (thin) part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
+        const Ranges part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
         const Floats weight = zero_unless(part.high > part.low, load(extinction[m]));
         low = fused(weight, part.low, low), high = fused(weight, part.high, high), total = total + weight;
     }

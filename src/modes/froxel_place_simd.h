@@ -185,7 +185,8 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     const Floats trusted = value_at(picture.tiles.trusted_around.data(), cell);
     const Mask16 blind = places.end > trusted;
     if (any(blind)) distrust_blind(picture.tiles, blind, places);
-    places.end = select(open_rays(batch) & (trusted > 1e30f), 1e30f, places.end);
+    constexpr float most = std::numeric_limits<float>::max();
+    if (!batch.open.empty()) places.end = select(open_rays(batch) & (trusted > most), most, places.end);
     for (int t = 0; t < places.count; ++t) {
         const Floats slant = places.together ? Floats(grid.slants[static_cast<size_t>(places.tiles[t][0])])
                                              : gather(grid.slants.data(), load(places.tiles[t]));

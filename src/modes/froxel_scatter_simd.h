@@ -27,6 +27,7 @@ struct Job {
     const Lanes& where;
     const Looks& looks;
     int slice, sample;
+    bool sheet;                    // the lanes are cut down to fog thinner than the slice
     const FroxelLit* exact;        // with slices
     const float (*extinction)[16]; // of each medium
     Floats depth;                  // optical, of the stretches, as far as it dims the fog's own light
@@ -143,7 +144,7 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
                              select(some, load(exact.point[1]), arrived.point.y),
                              select(some, load(exact.point[2]), arrived.point.z)};
         }
-        if (!fill.sheets.empty()) hold_in_fog(lanes, job.looks, sliced, arrived);
+        if (job.sheet) hold_in_fog(lanes, job.looks, sliced, arrived);
     }
     if (any(near)) put_near(fill, index, job, near, arrived);
     see_through_slice(light, lanes, job, along, arrived);

@@ -1,17 +1,10 @@
 // Which triangles stand where at a moment, and what a hit looks like.
 #include "trace/occluders_scene.h"
 
+#include "scene/moving_nodes.h"
+
 namespace tyndall {
 namespace {
-bool moves(const Scene& scene, int node) {
-    for (; node >= 0; node = scene.nodes[node].parent) {
-        const Node& n = scene.nodes[node];
-        if (n.matrix) continue;
-        if (!n.translation.constant() || !n.rotation.constant() || !n.scale.constant()) return true;
-    }
-    return false;
-}
-
 bool has_triangles(const Scene& scene, const Instance& instance) {
     return instance.mesh >= 0 && !scene.meshes[instance.mesh].triangles.empty();
 }
@@ -37,7 +30,7 @@ std::shared_ptr<const Occluders> Occluders::make(const Scene& scene, double seco
     std::vector<int> still, moving;
     for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i)
         if (has_triangles(scene, scene.instances[i]))
-            (moves(scene, scene.instances[i].node) ? moving : still).push_back(i);
+            (is_moving(scene, scene.instances[i].node) ? moving : still).push_back(i);
     const Impl* before = previous && previous->impl_->scene == &scene ? previous->impl_.get() : nullptr;
     std::shared_ptr<Occluders> result(new Occluders);
     result->impl_->scene = &scene;

@@ -56,6 +56,13 @@ class Plan(ProgramTest):
         self.succeed(*words, "--frames", "1")
         self.assertLessEqual(float(self.attributes(1)["tyndall:achievedError"]), 0.05)
 
+    def test_the_frame_that_was_planned_is_the_one_to_render(self):
+        line = self.succeed("plan", self.scene, "--frame", "3", "--progress", "none").stdout.splitlines()[-1]
+        self.assertIn(" --frames 3", line)
+
+    def test_a_scene_without_fog_needs_no_plan(self):
+        self.refuse(3, ["empty.json", "has no fog to plan for"], "plan", self.write("empty.json", scene(media=[])))
+
     def test_a_budget_instead_of_an_error(self):
         plan = json.loads(self.succeed("plan", self.scene, "--time-budget", "0.5", "--json").stdout)
         self.assertEqual(plan["time_budget"], 0.5)

@@ -207,6 +207,17 @@ class Signals(Sequence):
             self.succeed("check", self.path(f"fine/{name}"))
 
 
+class Check(Sequence):
+    def test_a_numbered_name_stands_for_all_pictures_and_the_gaps_between(self):
+        self.reference()
+        pattern = self.path("reference/out.####.exr")
+        self.succeed("check", pattern)
+        self.path("reference/out.0002.exr").write_bytes(b"no picture")
+        self.assertIn("out.0002.exr", run("check", pattern).stdout)
+        self.path("reference/out.0002.exr").unlink()
+        self.assertNotEqual(run("check", pattern).returncode, 0)
+
+
 class Progress(Sequence):
     def test_farms_read_progress_on_stdout(self):
         self.succeed(*self.bake())
