@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "lights_panel.h"
+#include "preview/scene_session.h"
 #include "theme.h"
 
 #include <imgui_stdlib.h>
@@ -19,8 +20,7 @@ void save_and_go(const ViewState& state, const EditMemory& memory, const Act& ac
     act({Verb::answer, {"save"}, {}, {}});
 }
 
-void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const EditMemory& memory,
-                  const Act& act) {
+void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const EditMemory& memory, const Act& act) {
     const float width = 6.5f * ImGui::GetFontSize();
     if (unsaved) {
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));

@@ -2,6 +2,7 @@
 
 #include "base/text.h"
 #include "preview/edit_actions.h"
+#include "preview/scene_session.h"
 #include "property_controls.h"
 #include "theme.h"
 

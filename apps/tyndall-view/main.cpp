@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "modes/mode.h"
 #include "viewer.h"
 
 #include <cstdio>
@@ -19,20 +20,17 @@ struct Texts {
     bool stats = false;
 };
 
-void add_options(CLI::App& app, Texts& texts) {
-    app.set_help_flag("-h,--help", "explain the options");
-    app.set_version_flag("--version", "tyndall-view " TYNDALL_VERSION, "print the version");
+void add_options(const CommandLine& program, Texts& texts) {
     const auto option = [&](const char* name, std::string& text, const char* type, const char* help) {
-        return app.add_option(name, text, help)->type_name(type);
+        return program.option(name, text, help, type);
     };
-    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself")->required();
+    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself").required();
     option("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
     option("--stand-in", texts.stand_in, "NAME",
            "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
     option("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
-    app.add_option("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false);
+    program.options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
+                    "ROW=VALUE");
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
     option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
     option("--exposure", texts.exposure, "EV", "brighten (+) or darken (-) the picture, in stops");
@@ -46,7 +44,7 @@ void add_options(CLI::App& app, Texts& texts) {
     option("--threads", texts.threads, "N", "threads to use, 1 to 1024 (default: every core)");
     option("--script", texts.script, "FILE",
            "actions to do, one a line; the window stays open unless the last is quit");
-    app.add_flag("--stats", texts.stats, "at the end, times of interface and pictures on stdout");
+    program.flag("--stats", texts.stats, "at the end, times of interface and pictures on stdout");
 }
 
 std::string footer() {
@@ -89,22 +87,13 @@ ViewerOptions read_options(const Texts& texts) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App app{"Looks at a scene's fog while it is lit: every technique, every setting, at once.", "tyndall view"};
-    app.get_formatter()->column_width(28);
+    const CommandLine program("tyndall view",
+                              "Looks at a scene's fog while it is lit: every technique, every setting, at once.",
+                              "tyndall-view " TYNDALL_VERSION, "Options");
     Texts texts;
-    add_options(app, texts);
-    app.footer(footer());
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        print_report(app.help());
-        return 0;
-    } catch (const CLI::CallForVersion& version) {
-        print_report(std::string(version.what()) + "\n");
-        return 0;
-    } catch (const CLI::ParseError& error) {
-        fail(ExitCode::usage, "", printable(error.what(), 300) + " (tyndall view --help)");
-    }
+    add_options(program, texts);
+    program.footer(footer());
+    if (!program.read(argc, argv)) return 0;
     run_viewer(read_options(texts));
     return 0;
 }

@@ -1,7 +1,7 @@
 // What is drawn, and the actions that come of it.
 #pragma once
 #include "edit_memory.h"
-#include "preview/render_thread.h"
+#include "preview/shown_picture.h"
 #include "preview/view_state.h"
 
 #include <functional>
@@ -37,7 +37,7 @@ struct FilesMemory {
 
 // What panels remember by themselves.
 struct PanelMemory {
-    std::string held_row;  // a setting that was put back; its slider is dead until the mouse is up
+    std::string held_row; // a setting that was put back; its slider is dead until the mouse is up
     FilesMemory files;
     EditMemory edits;
 };

@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "error_panel.h"
 #include "handles_panel.h"
+#include "modes/mode.h"
 #include "preview/missing_frames.h"
 #include "preview/reference_picture.h"
 #include "theme.h"

@@ -1,5 +1,6 @@
 // The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
 #include "base/text.h"
+#include "modes/mode.h"
 #include "panels.h"
 #include "preview/reference_picture.h"
 #include "theme.h"

@@ -1,5 +1,6 @@
 // Sliders, made from the table of settings.
 #include "base/text.h"
+#include "modes/mode.h"
 #include "panels.h"
 #include "preview/setting_groups.h"
 #include "theme.h"

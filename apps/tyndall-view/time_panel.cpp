@@ -2,6 +2,7 @@
 #include "base/text.h"
 #include "panels.h"
 #include "theme.h"
+#include "trace/moment.h"
 
 #include <algorithm>
 
@@ -17,8 +18,7 @@ void mark_gaps(const ViewState& state) {
         ImGui::GetWindowDrawList()->AddRectFilled({x, high.y - 4}, {x + std::max(width - 1, 1.0f), high.y},
                                                   ImGui::GetColorU32(trouble));
     }
-    if (!state.gaps.empty())
-        tooltip(formatted("%zu frames lack a volume file (red)", state.gaps.size()));
+    if (!state.gaps.empty()) tooltip(formatted("%zu frames lack a volume file (red)", state.gaps.size()));
 }
 
 // What is shown for them.

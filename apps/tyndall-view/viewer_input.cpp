@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 constexpr double settle = 0.15; // seconds after a motion until pictures count as still
 constexpr int drag_frames = 12;
-constexpr double reading = 8;  // seconds that news stay
+constexpr double reading = 8; // seconds that news stay
 constexpr double flying = 25; // key presses a second that holding a key counts as
 }
 

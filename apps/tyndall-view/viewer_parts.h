@@ -1,8 +1,8 @@
 // The parts of the viewer, and what hands and scripts do to them.
 #pragma once
 #include "interface_times.h"
-#include "preview/job_thread.h"
 #include "panels.h"
+#include "preview/job_thread.h"
 #include "viewer.h"
 #include "window.h"
 
@@ -43,10 +43,11 @@ struct Viewer {
     RenderThread thread; // ends before all else
 
     explicit Viewer(const ViewerOptions& given)
-        : options(given), window("Tyndall", given.window), state(given.state), jobs(Window::wake), thread(Window::wake) {}
+        : options(given), window("Tyndall", given.window), state(given.state), jobs(Window::wake),
+          thread(Window::wake) {}
 };
 
-double seconds_now(); // of a clock
+double seconds_now();                                                 // of a clock
 void tell(Viewer& viewer, const std::string& message, bool is_error); // until the next action
 
 // What came about by itself: it stays long enough to be read.

@@ -44,11 +44,11 @@ size_t hash_of(const ImDrawData& data) {
 
 const std::map<std::string, int>& key_codes() {
     static const std::map<std::string, int> codes = [] {
-        std::map<std::string, int> all{
-            {"space", GLFW_KEY_SPACE},   {"left", GLFW_KEY_LEFT},      {"right", GLFW_KEY_RIGHT},
-            {"home", GLFW_KEY_HOME},     {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
-            {"f5", GLFW_KEY_F5},
-            {"escape", GLFW_KEY_ESCAPE}, {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
+        std::map<std::string, int> all{{"space", GLFW_KEY_SPACE},    {"left", GLFW_KEY_LEFT},
+                                       {"right", GLFW_KEY_RIGHT},    {"home", GLFW_KEY_HOME},
+                                       {"tab", GLFW_KEY_TAB},        {"f1", GLFW_KEY_F1},
+                                       {"f5", GLFW_KEY_F5},          {"escape", GLFW_KEY_ESCAPE},
+                                       {"[", GLFW_KEY_LEFT_BRACKET}, {"]", GLFW_KEY_RIGHT_BRACKET}};
         for (char c = 'a'; c <= 'z'; ++c) all[std::string(1, c)] = GLFW_KEY_A + (c - 'a');
         for (char c = '0'; c <= '9'; ++c) all[std::string(1, c)] = GLFW_KEY_0 + (c - '0');
         return all;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/frames.h"
+#include "modes/mode.h"
 #include "render/provenance.h"
 
 namespace tyndall {

@@ -2,7 +2,8 @@
 #pragma once
 #include "common.h"
 #include "measure/plan.h"
-#include "render/sequence.h"
+#include "render/job.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 inline constexpr std::string_view automatic = "auto";

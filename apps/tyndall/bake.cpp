@@ -58,26 +58,22 @@ int run_bake(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_bake(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("bake", "make fog from a recipe: a sequence of OpenVDB files");
+Run add_bake(const Command& program) {
+    const Command command = program.command("bake", "make fog from a recipe: a sequence of OpenVDB files");
     auto texts = std::make_shared<Options>();
-    command->add_option("RECIPE", texts->recipe, "fog recipe (.json), for instance volumes/drifting_dust.json")
-        ->type_name("")
-        ->required();
-    command->add_option("-o,--output", texts->output, "files to write; #### stands for the frame number")
-        ->type_name("out.####.vdb")
-        ->required();
-    command->add_option("--frames", texts->frames, "frames to bake: 1-48, 1-48x2 (every second), 1,5,9 (default: 1)")
-        ->type_name("RANGE");
-    command->add_option("--voxel-size", texts->voxel_size, "edge of a voxel in metres, instead of the recipe's")
-        ->type_name("METRES");
-    command->add_flag("--float", texts->full_float, "store 32-bit floats; 16 bits otherwise, enough for fog");
-    command->add_option("--compression", texts->compression, "blosc (default) or zip, for readers without Blosc")
-        ->type_name("NAME");
-    command->add_flag("--resume", texts->resume, "keep frames that are already there and still right");
-    command->footer("Example: two seconds of drifting dust with 4 cm voxels\n"
-                    "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"
-                    "Then look at a frame with tyndall info, or name the files in a scene's media.");
+    command.option("RECIPE", texts->recipe, "fog recipe (.json), for instance volumes/drifting_dust.json", "")
+        .required();
+    command.option("-o,--output", texts->output, "files to write; #### stands for the frame number", "out.####.vdb")
+        .required();
+    command.option("--frames", texts->frames, "frames to bake: 1-48, 1-48x2 (every second), 1,5,9 (default: 1)",
+                   "RANGE");
+    command.option("--voxel-size", texts->voxel_size, "edge of a voxel in metres, instead of the recipe's", "METRES");
+    command.flag("--float", texts->full_float, "store 32-bit floats; 16 bits otherwise, enough for fog");
+    command.option("--compression", texts->compression, "blosc (default) or zip, for readers without Blosc", "NAME");
+    command.flag("--resume", texts->resume, "keep frames that are already there and still right");
+    command.footer("Example: two seconds of drifting dust with 4 cm voxels\n"
+                   "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"
+                   "Then look at a frame with tyndall info, or name the files in a scene's media.");
     return [texts](const Globals& globals) { return run_bake(*texts, globals); };
 }
 }

@@ -6,6 +6,9 @@
 #include "base/text.h"
 #include "common.h"
 #include "measure/chart_report.h"
+#include "modes/mode.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
 
 #include <algorithm>
 
@@ -115,46 +118,38 @@ int run_chart(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_chart(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("chart", "every mode's error against its time on a scene");
+Run add_chart(const Command& program) {
+    const Command command = program.command("chart", "every mode's error against its time on a scene");
     auto texts = std::make_shared<Options>();
-    command->add_option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself")
-        ->type_name("")
-        ->required();
-    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
-        return command->add_option(name, text, help)->type_name(type);
-    };
-    option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html and pictures", "DIR")
-        ->required();
-    option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
-    command->add_flag("--quick", texts->quick,
-                      "small pictures, without the settings that take longest: under a minute");
-    option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    option("--res", texts->resolution,
-           "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
-    option("--reference-noise", texts->noise,
-           "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
-           "SHARE");
-    option("--reference-seconds", texts->reference_seconds,
-           "at most so long for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
-    option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
-    option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
-    option("--longest", texts->longest,
-           "leave out settings whose picture would take more seconds than this\n"
-           "(default: 60; 0.7 with --quick)",
-           "SECONDS");
-    command
-        ->add_option("--set", texts->settings,
-                     "one setting for all modes, for instance march.ambient=off; may be\n"
-                     "repeated. What makes a mode quicker or more careful is the chart's own")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false);
-    command->footer("Example: a first look, then the whole story\n"
-                    "  tyndall chart scenes/window.json -o out/chart --quick\n"
-                    "  tyndall chart scenes/window.json -o out/chart\n"
-                    "Each mode is rendered at six settings or more, each several times, and held against exact single\n"
-                    "scattering. Points are kept as they are measured: a run that was stopped goes on where it was.");
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html and pictures", "DIR")
+        .required();
+    command.option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
+    command.flag("--quick", texts->quick, "small pictures, without the settings that take longest: under a minute");
+    command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
+    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--res", texts->resolution,
+                   "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
+    command.option("--reference-noise", texts->noise,
+                   "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
+                   "SHARE");
+    command.option("--reference-seconds", texts->reference_seconds,
+                   "at most so long for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
+    command.option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
+    command.option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
+    command.option("--longest", texts->longest,
+                   "leave out settings whose picture would take more seconds than this\n"
+                   "(default: 60; 0.7 with --quick)",
+                   "SECONDS");
+    command.options("--set", texts->settings,
+                    "one setting for all modes, for instance march.ambient=off; may be\n"
+                    "repeated. What makes a mode quicker or more careful is the chart's own",
+                    "ROW=VALUE");
+    command.footer("Example: a first look, then the whole story\n"
+                   "  tyndall chart scenes/window.json -o out/chart --quick\n"
+                   "  tyndall chart scenes/window.json -o out/chart\n"
+                   "Each mode is rendered at six settings or more, each several times, and held against exact single\n"
+                   "scattering. Points are kept as they are measured: a run that was stopped goes on where it was.");
     return [texts](const Globals& globals) { return run_chart(*texts, globals); };
 }
 }

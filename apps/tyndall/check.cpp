@@ -136,17 +136,16 @@ int run_check(const std::vector<std::string>& files, const Globals& globals) {
 }
 }
 
-Run add_check(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("check", "find what is wrong with scenes, recipes, volumes and pictures");
+Run add_check(const Command& program) {
+    const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and pictures");
     auto files = std::make_shared<std::vector<std::string>>();
-    command->add_option("FILES", *files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence")
-        ->type_name("")
-        ->required();
-    command->footer("Example: before a long render\n"
-                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
-                    "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and pictures are read whole.\n"
-                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
-                    "missing or cannot be read.");
+    command.options("FILES", *files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence", "")
+        .required();
+    command.footer("Example: before a long render\n"
+                   "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
+                   "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and pictures are read whole.\n"
+                   "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
+                   "missing or cannot be read.");
     return [files](const Globals& globals) { return run_check(*files, globals); };
 }
 }

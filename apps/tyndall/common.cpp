@@ -63,9 +63,9 @@ size_t choice_option(std::string_view option, std::string_view text, const std::
 }
 
 std::string chosen_isa(const std::string& text) {
-    const std::string_view kernels = set_isa(text);
+    set_isa(text);
     set_embree_isa(text);
-    return text == "avx512" || kernels == "baseline" ? std::string(kernels) : "avx2";
+    return text == "avx512" ? "avx512" : "avx2";
 }
 
 std::vector<std::string> comma_list(std::string_view text) {

@@ -4,8 +4,7 @@
 #include "base/math.h"
 #include "base/progress.h"
 #include "base/text.h"
-
-#include <CLI/CLI.hpp>
+#include "command_line.h"
 
 #include <atomic>
 #include <cstdint>
@@ -24,18 +23,18 @@ struct Globals {
 // A command's work after the command line was read; returns the exit code.
 using Run = std::function<int(const Globals&)>;
 
-Run add_bake(CLI::App& app);
-Run add_render(CLI::App& app);
-Run add_info(CLI::App& app);
-Run add_check(CLI::App& app);
-Run add_modes(CLI::App& app);
-Run add_compare(CLI::App& app);
-Run add_verify(CLI::App& app);
-Run add_plan(CLI::App& app);
-Run add_explain(CLI::App& app);
-Run add_stress(CLI::App& app);
-Run add_chart(CLI::App& app);
-Run add_view(CLI::App& app);
+Run add_bake(const Command& program);
+Run add_render(const Command& program);
+Run add_info(const Command& program);
+Run add_check(const Command& program);
+Run add_modes(const Command& program);
+Run add_compare(const Command& program);
+Run add_verify(const Command& program);
+Run add_plan(const Command& program);
+Run add_explain(const Command& program);
+Run add_stress(const Command& program);
+Run add_chart(const Command& program);
+Run add_view(const Command& program);
 
 // Becomes the viewer, which reads its own command line. Throws Error when it is not there.
 int start_viewer(std::vector<std::string> arguments);

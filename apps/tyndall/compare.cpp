@@ -187,35 +187,28 @@ std::string metric_help() {
 }
 }
 
-Run add_compare(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("compare", "measure how far pictures are from a reference");
+Run add_compare(const Command& program) {
+    const Command command = program.command("compare", "measure how far pictures are from a reference");
     auto texts = std::make_shared<Options>();
-    command->add_option("A.exr", texts->test, "the picture, or a sequence: a.####.exr")->type_name("")->required();
-    command->add_option("B.exr", texts->reference, "the reference: what A should look like; a sequence or one file")
-        ->type_name("")
-        ->required();
-    command->add_option("--frames", texts->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9")->type_name("RANGE");
-    command
-        ->add_option("--fail-above", texts->fail_above,
-                     "exit with code 1 when METRIC (of all frames together) is larger than\n"
-                     "VALUE; may be repeated")
-        ->type_name("METRIC=VALUE")
-        ->expected(1)
-        ->take_all();
-    command
-        ->add_option("--heatmap", texts->heatmap,
-                     "a picture of where the differences are; the strip below it is the\n"
-                     "scale")
-        ->type_name("FILE.png");
-    command
-        ->add_option("--map", texts->map,
-                     "what the heat map shows: error (default), 0.001 to 10 times the\n"
-                     "reference's mean on a logarithmic scale; or flip, 0 to 1")
-        ->type_name("WHAT");
-    command
-        ->add_option("--ppd", texts->pixels_per_degree, "pixels per degree of the viewer's eye, for FLIP (default 67)")
-        ->type_name("N");
-    command->footer(
+    command.option("A.exr", texts->test, "the picture, or a sequence: a.####.exr", "").required();
+    command.option("B.exr", texts->reference, "the reference: what A should look like; a sequence or one file", "")
+        .required();
+    command.option("--frames", texts->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9", "RANGE");
+    command.options("--fail-above", texts->fail_above,
+                    "exit with code 1 when METRIC (of all frames together) is larger than\n"
+                    "VALUE; may be repeated",
+                    "METRIC=VALUE");
+    command.option("--heatmap", texts->heatmap,
+                   "a picture of where the differences are; the strip below it is the\n"
+                   "scale",
+                   "FILE.png");
+    command.option("--map", texts->map,
+                   "what the heat map shows: error (default), 0.001 to 10 times the\n"
+                   "reference's mean on a logarithmic scale; or flip, 0 to 1",
+                   "WHAT");
+    command.option("--ppd", texts->pixels_per_degree, "pixels per degree of the viewer's eye, for FLIP (default 67)",
+                   "N");
+    command.footer(
         "Example: is the quick render within 5 % of the good one?\n"
         "  tyndall compare quick.exr good.exr --heatmap where.png --fail-above rmse_rel=0.05\n"
         "  tyndall compare 'quick.####.exr' 'good.####.exr' --frames 1-24 --json\n"

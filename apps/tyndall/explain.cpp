@@ -7,6 +7,12 @@
 #include "explain_json.h"
 #include "render/provenance.h"
 #include "render_options.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <optional>
@@ -110,29 +116,25 @@ int run_explain(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_explain(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("explain", "say what happens along one camera ray");
+Run add_explain(const Command& program) {
+    const Command command = program.command("explain", "say what happens along one camera ray");
     auto texts = std::make_shared<Options>();
-    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
-        return command->add_option(name, text, help)->type_name(type);
-    };
-    option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "")->required();
-    option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
-        ->required();
-    option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    option("--res", texts->resolution, "size of the picture the pixel is counted in (default: the scene's)", "WxH");
-    option("--quality", texts->quality, "of the modes: draft, preview (default), final or reference", "NAME");
-    command
-        ->add_option("--set", texts->settings,
-                     "one setting by name, like froxel.tile=4; may be repeated\n"
-                     "(tyndall modes lists them)")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false);
-    option("--modes", texts->modes, "the modes to ask, with commas between (default: all); or none", "NAMES");
-    option("--svg", texts->svg, "a drawing of it", "FILE.svg");
-    option("--csv", texts->csv, "a table of every step along the ray", "FILE.csv");
-    command->footer(
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
+        .required();
+    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
+    command.option("--res", texts->resolution, "size of the picture the pixel is counted in (default: the scene's)",
+                   "WxH");
+    command.option("--quality", texts->quality, "of the modes: draft, preview (default), final or reference", "NAME");
+    command.options("--set", texts->settings,
+                    "one setting by name, like froxel.tile=4; may be repeated\n"
+                    "(tyndall modes lists them)",
+                    "ROW=VALUE");
+    command.option("--modes", texts->modes, "the modes to ask, with commas between (default: all); or none", "NAMES");
+    command.option("--svg", texts->svg, "a drawing of it", "FILE.svg");
+    command.option("--csv", texts->csv, "a table of every step along the ray", "FILE.csv");
+    command.footer(
         "Example: why is this pixel of the window so bright, and who gets it right?\n"
         "  tyndall explain scenes/window.json --pixel 320,180 --svg ray.svg\n"
         "The report: what the ray meets, how much fog lies on it, where each light shines on it and what keeps\n"

@@ -26,15 +26,13 @@ std::string report_of(const std::string& file, bool json) {
 }
 }
 
-Run add_info(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("info", "what is in a file: grids, lights, cameras, layers");
+Run add_info(const Command& program) {
+    const Command command = program.command("info", "what is in a file: grids, lights, cameras, layers");
     auto file = std::make_shared<std::string>();
-    command->add_option("FILE", *file, "a .vdb, .gltf, .glb, .exr, or a scene or recipe (.json)")
-        ->type_name("")
-        ->required();
-    command->footer("Example: the grids of a volume, their size in the world and how dense they are\n"
-                    "  tyndall info fog.0001.vdb\n"
-                    "With --json the same for scripts; lengths in metres, light in candela and lux.");
+    command.option("FILE", *file, "a .vdb, .gltf, .glb, .exr, or a scene or recipe (.json)", "").required();
+    command.footer("Example: the grids of a volume, their size in the world and how dense they are\n"
+                   "  tyndall info fog.0001.vdb\n"
+                   "With --json the same for scripts; lengths in metres, light in candela and lux.");
     return [file](const Globals& globals) {
         print_report(report_of(*file, globals.json));
         return 0;

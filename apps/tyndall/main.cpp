@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <new>
+#include <optional>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -58,25 +59,28 @@ constexpr const char* exit_codes =
     R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), a larger error than wanted (render),
 no mode that gets there (plan), a proof that failed (verify) or a mode that fails in silence (stress), 2 wrong
 command line, 3 input refused, 4 input missing or unreadable, 5 output could not be written, 6 done but some samples
-or pixels were not finite numbers, 33 out of memory, 70 internal error, 128+n stopped by signal n.)";
+or pixels were not finite numbers, 33 out of memory, 69 no display or a processor without AVX2, 70 internal error,
+128+n stopped by signal n.)";
 
 struct GlobalTexts {
     std::string threads, progress;
 };
 
-void add_globals(CLI::App& app, Globals& globals, GlobalTexts& texts) {
-    const auto group = [](CLI::Option* option) { option->group("For every command"); };
-    group(app.set_help_flag("-h,--help", "explain a command and its options"));
-    group(app.set_version_flag("--version", "tyndall " TYNDALL_VERSION, "print the version"));
-    group(
-        app.add_option("--threads", texts.threads, "threads to use, 1 to 1024 (default: every core)")->type_name("N"));
-    group(app.add_option("--progress", texts.progress,
-                         "how progress is shown: alf (ALF_PROGRESS lines for render farms), json,\n"
-                         "bar, none (default: bar on a terminal, alf elsewhere)")
-              ->type_name("STYLE"));
-    group(app.add_flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr"));
-    group(app.add_flag("-q,--quiet", globals.quiet, "errors only: no progress, no remarks, no list of finished files"));
-    group(app.add_flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks"));
+constexpr const char* global_group = "For every command";
+
+void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
+    program.option("--threads", texts.threads, "threads to use, 1 to 1024 (default: every core)", "N")
+        .group(global_group);
+    program
+        .option("--progress", texts.progress,
+                "how progress is shown: alf (ALF_PROGRESS lines for render farms), json,\n"
+                "bar, none (default: bar on a terminal, alf elsewhere)",
+                "STYLE")
+        .group(global_group);
+    program.flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr").group(global_group);
+    program.flag("-q,--quiet", globals.quiet, "errors only: no progress, no remarks, no list of finished files")
+        .group(global_group);
+    program.flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks").group(global_group);
 }
 
 void apply_globals(Globals& globals, const GlobalTexts& texts) {
@@ -89,98 +93,21 @@ void apply_globals(Globals& globals, const GlobalTexts& texts) {
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
 }
 
-std::vector<std::string> option_names(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options()) {
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-        for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-    }
-    return names;
-}
-
-// "; did you mean --frames?" when a name is near enough to be meant.
-std::string hint(std::string_view typed, const std::vector<std::string>& names) {
-    const std::string nearest = nearest_name(typed, names);
-    const size_t start = nearest.find_first_not_of('-');
-    const bool alike = start != nearest.npos && typed.size() > start && typed[start] == nearest[start];
-    return alike ? "; did you mean " + nearest + "?" : "";
-}
-
-// The reader's own words, except where they are hard to understand.
-std::string reworded(const CLI::ParseError& error) {
-    const std::string text = printable(error.what(), 300);
-    if (error.get_name() != "ArgumentMismatch") return text;
-    const std::string option = text.substr(0, text.find(':'));
-    return option + (text.find("received") != text.npos ? ": given more than once" : ": a value is missing");
-}
-
-// What the command line reader stumbled over, in one line.
-std::string parse_problem(const CLI::App& app, const CLI::ParseError& error) {
-    const std::vector<CLI::App*> chosen = app.get_subcommands();
-    const std::string help = (chosen.empty() ? "" : " " + chosen[0]->get_name()) + " --help";
-    for (const std::string& argument : app.remaining(true)) {
-        if (argument.size() > 1 && argument[0] == '-') {
-            std::vector<std::string> names = option_names(app);
-            for (const CLI::App* command : chosen)
-                for (const std::string& name : option_names(*command)) names.push_back(name);
-            const std::string_view typed = std::string_view(argument).substr(0, argument.find('='));
-            return "unknown option '" + printable(typed, 60) + "'" + hint(typed, names) + " (tyndall" + help + ")";
-        }
-        if (chosen.empty()) {
-            std::vector<std::string> names;
-            for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-            return "unknown command '" + printable(argument, 60) + "'" + hint(argument, names) + " (tyndall --help)";
-        }
-        return "unexpected '" + printable(argument, 60) + "' (tyndall" + help + ")";
-    }
-    return reworded(error) + " (tyndall" + help + ")";
-}
-
-// An empty value is most often a variable a script forgot to set; it must not count as "not given".
-void refuse_empty_values(const CLI::App& app) {
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& value : option->results())
-            if (value.empty()) fail(ExitCode::usage, option->get_name(), "the value is empty");
-    for (const CLI::App* command : app.get_subcommands()) refuse_empty_values(*command);
-}
-
 int run(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "view") return start_viewer({argv + 2, argv + argc});
-    CLI::App app{"Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.", "tyndall"};
-    app.get_formatter()->column_width(28);
-    app.get_formatter()->label("Positionals", "What");
-    app.get_formatter()->label("REQUIRED", "(required)");
-    app.get_formatter()->label("SUBCOMMAND", "COMMAND");
-    app.require_subcommand(0, 1);
-    app.footer(exit_codes);
+    const CommandLine program("tyndall", "Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.",
+                              "tyndall " TYNDALL_VERSION, global_group);
+    program.footer(exit_codes);
     Globals globals;
     GlobalTexts texts;
-    add_globals(app, globals, texts);
-    const std::vector<Run> commands{add_bake(app),    add_render(app),  add_info(app),   add_check(app),
-                                    add_modes(app),   add_compare(app), add_verify(app), add_plan(app),
-                                    add_explain(app), add_stress(app),  add_chart(app),  add_view(app)};
-    const std::vector<CLI::App*> names = app.get_subcommands({});
-    for (CLI::App* command : names) {
-        command->fallthrough()->group("Commands");
-        command->footer(command->get_footer() +
-                        "\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
-    }
-
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::CallForHelp&) {
-        print_report(app.help());
-        return 0;
-    } catch (const CLI::CallForVersion& version) {
-        print_report(std::string(version.what()) + "\n");
-        return 0;
-    } catch (const CLI::ParseError& error) {
-        fail(ExitCode::usage, "", parse_problem(app, error));
-    }
-    refuse_empty_values(app);
+    add_globals(program, globals, texts);
+    const std::vector<Run> commands{add_bake(program),    add_render(program),  add_info(program),   add_check(program),
+                                    add_modes(program),   add_compare(program), add_verify(program), add_plan(program),
+                                    add_explain(program), add_stress(program),  add_chart(program),  add_view(program)};
+    program.end_every_footer("\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
+    if (!program.read(argc, argv)) return 0;
     apply_globals(globals, texts);
-    for (size_t i = 0; i < names.size(); ++i)
-        if (names[i]->parsed()) return commands[i](globals);
+    if (const std::optional<size_t> chosen = program.chosen()) return commands[*chosen](globals);
     print_report(introduction);
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "common.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
 
 namespace tyndall {
 namespace {
@@ -59,9 +60,9 @@ std::string modes_text() {
 }
 }
 
-Run add_modes(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("modes", "the rendering techniques and their settings");
-    command->footer("Example: all settings as JSON, for a script\n  tyndall modes --json");
+Run add_modes(const Command& program) {
+    const Command command = program.command("modes", "the rendering techniques and their settings");
+    command.footer("Example: all settings as JSON, for a script\n  tyndall modes --json");
     return [](const Globals& globals) {
         print_report(globals.json ? modes_json() : modes_text());
         return 0;

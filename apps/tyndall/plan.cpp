@@ -4,8 +4,15 @@
 #include "automatic.h"
 #include "base/error.h"
 #include "base/frames.h"
+#include "modes/mode.h"
 #include "render/provenance.h"
+#include "render/sequence.h"
 #include "render_options.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -115,40 +122,31 @@ int run_plan(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_plan(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("plan", "which model a scene needs at an error or in a time, and why");
+Run add_plan(const Command& program) {
+    const Command command = program.command("plan", "which model a scene needs at an error or in a time, and why");
     auto texts = std::make_shared<Options>();
     RenderOptions& render = texts->render;
     render.mode = automatic, render.output = "out.####.exr";
-    command->add_option("SCENE", render.scene, "scene file (.json), or a .gltf/.glb by itself")
-        ->type_name("")
-        ->required();
-    command
-        ->add_option("--target-error", render.target_error,
-                     "error wanted (rmse), as a share of the picture's mean (default: by quality,\n"
-                     "0.05 for preview)")
-        ->type_name("E");
-    command->add_option("--time-budget", render.time_budget, "seconds a picture may take instead")
-        ->type_name("SECONDS");
-    command->add_option("--quality", render.quality, "where other settings come from (default: preview)")
-        ->type_name("NAME");
-    command->add_option("--set", render.settings, "a setting that is to stay as it is; may be repeated")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false);
-    command
-        ->add_option("--orders", render.orders,
-                     "how many times light may scatter, or all (default: 1); more than once only\n"
-                     "where the fog needs it")
-        ->type_name("N");
-    command->add_option("--frame", texts->frame, "which frame of the scene (default: its first)")->type_name("N");
-    command->add_option("--camera", render.camera, "which camera (default: the scene's)")->type_name("NAME");
-    command->add_option("--res", render.resolution, "size of the picture (default: the scene's)")->type_name("WxH");
-    command->footer(
-        "Example: tyndall plan scenes/window.json --target-error 0.02\n"
-        "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
-        "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"
-        "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
-        "Exit code 0: some mode gets there; 1: none does.");
+    command.option("SCENE", render.scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("--target-error", render.target_error,
+                   "error wanted (rmse), as a share of the picture's mean (default: by quality,\n"
+                   "0.05 for preview)",
+                   "E");
+    command.option("--time-budget", render.time_budget, "seconds a picture may take instead", "SECONDS");
+    command.option("--quality", render.quality, "where other settings come from (default: preview)", "NAME");
+    command.options("--set", render.settings, "a setting that is to stay as it is; may be repeated", "ROW=VALUE");
+    command.option("--orders", render.orders,
+                   "how many times light may scatter, or all (default: 1); more than once only\n"
+                   "where the fog needs it",
+                   "N");
+    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--camera", render.camera, "which camera (default: the scene's)", "NAME");
+    command.option("--res", render.resolution, "size of the picture (default: the scene's)", "WxH");
+    command.footer("Example: tyndall plan scenes/window.json --target-error 0.02\n"
+                   "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
+                   "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"
+                   "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
+                   "Exit code 0: some mode gets there; 1: none does.");
     return [texts](const Globals& globals) { return run_plan(*texts, globals); };
 }
 }

@@ -5,9 +5,17 @@
 #include "base/frames.h"
 #include "base/output.h"
 #include "common.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
 #include "render/contact_sheet.h"
+#include "render/sequence.h"
 #include "render/to_target.h"
 #include "render_options.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <utility>
@@ -113,7 +121,7 @@ void say_before(const Scene& scene, const std::vector<Limit>& limits, const Rend
 // job before shares its fog and surfaces, and is replaced by this job's when that is all there is to render.
 Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& texts, const std::string& json,
                     const std::string& label, Snapshot& shared, const Globals& globals) {
-    LoadedFrame first = load_first_frame(scene, job, shared);
+    LoadedFrame first = load_first_frame(scene, job, &shared);
     if (texts.mode == automatic) choose_mode(scene, job, first.snapshot, globals);
     settle_noise(job, globals);
     shared = job.frames.size() == 1 ? first.snapshot : Snapshot{};
@@ -122,7 +130,7 @@ Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& text
     say_before(scene, limits, texts, job, globals);
 
     Progress progress(globals.progress, label, static_cast<double>(job.frames.size()), globals.json);
-    RenderReport report = render_sequence(scene, job, progress, cancel_flag(), std::move(first));
+    RenderReport report = render_sequence(scene, job, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
     for (const Limit& limit : limits) job.limits_said.push_back(limit_line(limit));
@@ -231,14 +239,14 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
 }
 }
 
-Run add_render(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("render", "light a scene and render its frames to OpenEXR files");
+Run add_render(const Command& program) {
+    const Command command = program.command("render", "light a scene and render its frames to OpenEXR files");
     auto texts = std::make_shared<RenderOptions>();
-    add_render_options(*command, *texts);
-    command->footer("Example: the first second at full HD, with PNGs to look at\n"
-                    "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
-                    "A quick look first: --quality draft --res 480x270 --frames 1\n"
-                    "Light is in candela and lux, lengths in metres, colours linear Rec.709.");
+    add_render_options(command, *texts);
+    command.footer("Example: the first second at full HD, with PNGs to look at\n"
+                   "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
+                   "A quick look first: --quality draft --res 480x270 --frames 1\n"
+                   "Light is in candela and lux, lengths in metres, colours linear Rec.709.");
     return [texts](const Globals& globals) { return run_render(*texts, globals); };
 }
 }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/output.h"
+#include "modes/mode.h"
 #include "render/to_target.h"
 
 namespace tyndall {
@@ -54,37 +55,31 @@ void check_samples(const RenderJob& job, const Mode& mode) {
                  " decides how many rays a pixel takes");
 }
 
-void add_what(CLI::App& command, RenderOptions& texts) {
-    command.add_option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself")
-        ->type_name("")
-        ->required();
-    command.add_option("-o,--output", texts.output, "files to write; #### stands for the frame number")
-        ->type_name("out.####.exr")
-        ->required();
-    command
-        .add_option("--frames", texts.frames,
-                    "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
-                    "(default: the scene's range)")
-        ->type_name("RANGE");
-    command.add_option("--camera", texts.camera, "camera by name (default: the scene's)")->type_name("NAME");
-    command.add_option("--res", texts.resolution, "picture size in pixels (default: the scene's)")->type_name("WxH");
-    command.add_option("--crop", texts.crop, "only the pixels from X0,Y0 (upper left, included) to X1,Y1 (excluded)")
-        ->type_name("X0,Y0,X1,Y1");
-    command
-        .add_option("--missing", texts.missing,
-                    "a missing frame of a VDB sequence: error (default), hold the one\n"
-                    "before, or skip the fog")
-        ->type_name("WHAT");
-    command
-        .add_option("--light-units", texts.light_units,
-                    "what a glTF's light intensities mean: spec (candela, lux;\n"
-                    "default), or Blender's unitless or raw (watts) export")
-        ->type_name("UNITS");
+void add_what(const Command& command, RenderOptions& texts) {
+    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("-o,--output", texts.output, "files to write; #### stands for the frame number", "out.####.exr")
+        .required();
+    command.option("--frames", texts.frames,
+                   "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
+                   "(default: the scene's range)",
+                   "RANGE");
+    command.option("--camera", texts.camera, "camera by name (default: the scene's)", "NAME");
+    command.option("--res", texts.resolution, "picture size in pixels (default: the scene's)", "WxH");
+    command.option("--crop", texts.crop, "only the pixels from X0,Y0 (upper left, included) to X1,Y1 (excluded)",
+                   "X0,Y0,X1,Y1");
+    command.option("--missing", texts.missing,
+                   "a missing frame of a VDB sequence: error (default), hold the one\n"
+                   "before, or skip the fog",
+                   "WHAT");
+    command.option("--light-units", texts.light_units,
+                   "what a glTF's light intensities mean: spec (candela, lux;\n"
+                   "default), or Blender's unitless or raw (watts) export",
+                   "UNITS");
 }
 
-void add_how(CLI::App& command, RenderOptions& texts) {
+void add_how(const Command& command, RenderOptions& texts) {
     const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
-        command.add_option(name, text, help)->type_name(type)->group("Quality");
+        command.option(name, text, help, type).group("Quality");
     };
     option("--quality", texts.quality, "draft, preview (default), final or reference", "NAME");
     option("--samples", texts.samples,
@@ -121,12 +116,11 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "to smooth their noise (default: 0)",
            "N");
     command
-        .add_option("--set", texts.settings,
-                    "one setting, for instance march.step_depth=0.1; may be repeated;\n"
-                    "tyndall modes lists them")
-        ->type_name("ROW=VALUE")
-        ->allow_extra_args(false)
-        ->group("Quality");
+        .options("--set", texts.settings,
+                 "one setting, for instance march.step_depth=0.1; may be repeated;\n"
+                 "tyndall modes lists them",
+                 "ROW=VALUE")
+        .group("Quality");
     option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
     option("--isa", texts.isa,
            "instruction set: auto (default), avx2 or avx512. Pictures are equal bit\n"
@@ -134,24 +128,24 @@ void add_how(CLI::App& command, RenderOptions& texts) {
            "NAME");
 }
 
-void add_results(CLI::App& command, RenderOptions& texts) {
-    const auto group = [](CLI::Option* option) { return option->group("Results"); };
-    group(command.add_option("--aov", texts.aov,
-                             "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
-                             "validity, lights (one layer per light), variance (of the mean), halves\n"
-                             "(two independent pictures); none for the picture alone"))
-        ->type_name("NAMES");
-    group(command.add_flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit"));
-    group(command.add_flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)"));
-    group(command.add_option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops"))
-        ->type_name("EV");
-    group(command.add_flag("--resume", texts.resume, "keep frames that are already there and still right"));
-    group(command.add_option("--stats-json", texts.stats, "write times and counts of every frame to a file"))
-        ->type_name("FILE");
+void add_results(const Command& command, RenderOptions& texts) {
+    const char* group = "Results";
+    command
+        .option("--aov", texts.aov,
+                "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
+                "validity, lights (one layer per light), variance (of the mean), halves\n"
+                "(two independent pictures); none for the picture alone",
+                "NAMES")
+        .group(group);
+    command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
+    command.flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)").group(group);
+    command.option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops", "EV").group(group);
+    command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
+    command.option("--stats-json", texts.stats, "write times and counts of every frame to a file", "FILE").group(group);
 }
 }
 
-void add_render_options(CLI::App& command, RenderOptions& texts) {
+void add_render_options(const Command& command, RenderOptions& texts) {
     add_what(command, texts);
     add_how(command, texts);
     add_results(command, texts);

@@ -1,7 +1,8 @@
 // The command line of tyndall render, as text and as a job.
 #pragma once
 #include "common.h"
-#include "render/sequence.h"
+#include "modes/mode.h"
+#include "render/job.h"
 
 namespace tyndall {
 struct RenderOptions {
@@ -12,7 +13,7 @@ struct RenderOptions {
     bool png = false, resume = false, full_float = false;
 };
 
-void add_render_options(CLI::App& command, RenderOptions& texts);
+void add_render_options(const Command& command, RenderOptions& texts);
 
 // The modes of --mode: a name, several with commas between, or all. Throws Error (usage).
 std::vector<const Mode*> asked_modes(const std::string& text);

@@ -88,23 +88,20 @@ int run(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_stress(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("stress", "where each mode fails, and whether it says so");
+Run add_stress(const Command& program) {
+    const Command command = program.command("stress", "where each mode fails, and whether it says so");
     auto texts = std::make_shared<Options>();
-    command->add_option("--modes", texts->modes, "which modes, between commas (default: all)")->type_name("NAMES");
-    command
-        ->add_option("--cases", texts->cases,
-                     "cases with one of these in their name or group, between commas\n(default: all)")
-        ->type_name("PARTS");
-    command->add_option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there")
-        ->type_name("DIR");
-    command->add_flag("--list", texts->list, "only list the cases and what they sweep");
-    command->footer("Examples: everything, some minutes; then one mode's shadows\n"
-                    "  tyndall stress -o out/stress\n"
-                    "  tyndall stress --modes shadow-map --cases shadows\n"
-                    "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"
-                    "from some value on and has said so before (tyndall render says it too), or fails in silence.\n"
-                    "Exit code 0: none fails in silence; 1: one does.");
+    command.option("--modes", texts->modes, "which modes, between commas (default: all)", "NAMES");
+    command.option("--cases", texts->cases,
+                   "cases with one of these in their name or group, between commas\n(default: all)", "PARTS");
+    command.option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there", "DIR");
+    command.flag("--list", texts->list, "only list the cases and what they sweep");
+    command.footer("Examples: everything, some minutes; then one mode's shadows\n"
+                   "  tyndall stress -o out/stress\n"
+                   "  tyndall stress --modes shadow-map --cases shadows\n"
+                   "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"
+                   "from some value on and has said so before (tyndall render says it too), or fails in silence.\n"
+                   "Exit code 0: none fails in silence; 1: one does.");
     return [texts](const Globals& globals) { return run(*texts, globals); };
 }
 }

@@ -88,28 +88,25 @@ int run_verify(const Options& texts, const Globals& globals) {
 }
 }
 
-Run add_verify(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("verify", "prove this program right, or a scene's picture");
+Run add_verify(const Command& program) {
+    const Command command = program.command("verify", "prove this program right, or a scene's picture");
     auto texts = std::make_shared<Options>();
-    command->add_option("SCENE", texts->scene, "a scene to check on its own data; without, the program alone")
-        ->type_name("");
-    command->add_option("--frame", texts->frame, "which frame of the scene (default: its first)")->type_name("N");
-    command->add_option("--camera", texts->camera, "which camera (default: the scene's)")->type_name("NAME");
-    command->add_option("--res", texts->resolution, "size of the pictures compared (default: 160x90)")
-        ->type_name("WxH");
-    command
-        ->add_option("--samples", texts->samples,
-                     "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
-                     "more of them find smaller differences")
-        ->type_name("N");
-    command->add_option("--seed", texts->seed, "other random numbers (default: 0)")->type_name("N");
-    command->footer("Examples: this program in about a minute; then a scene\n"
-                    "  tyndall verify\n"
-                    "  tyndall verify scenes/window.json --res 320x180 --samples 1024\n"
-                    "Without a scene: closed forms, published tables, conservation of energy, invariances. With one:\n"
-                    "same bits with any number of threads and for crops, units of length, lights that add up, the fog\n"
-                    "in a white furnace, and the march against the path tracer's first order, tile by tile.\n"
-                    "Exit code 0: all checks hold; 1: one is off.");
+    command.option("SCENE", texts->scene, "a scene to check on its own data; without, the program alone", "");
+    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--camera", texts->camera, "which camera (default: the scene's)", "NAME");
+    command.option("--res", texts->resolution, "size of the pictures compared (default: 160x90)", "WxH");
+    command.option("--samples", texts->samples,
+                   "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
+                   "more of them find smaller differences",
+                   "N");
+    command.option("--seed", texts->seed, "other random numbers (default: 0)", "N");
+    command.footer("Examples: this program in about a minute; then a scene\n"
+                   "  tyndall verify\n"
+                   "  tyndall verify scenes/window.json --res 320x180 --samples 1024\n"
+                   "Without a scene: closed forms, published tables, conservation of energy, invariances. With one:\n"
+                   "same bits with any number of threads and for crops, units of length, lights that add up, the fog\n"
+                   "in a white furnace, and the march against the path tracer's first order, tile by tile.\n"
+                   "Exit code 0: all checks hold; 1: one is off.");
     return [texts](const Globals& globals) { return run_verify(*texts, globals); };
 }
 }

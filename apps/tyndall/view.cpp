@@ -9,16 +9,16 @@
 
 namespace tyndall {
 namespace {
-constexpr const char* program = "tyndall-view";
+constexpr const char* viewer_program = "tyndall-view";
 }
 
 int start_viewer(std::vector<std::string> arguments) {
     std::error_code ignored;
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::string viewer = (own.parent_path() / program).string();
+    const std::string viewer = (own.parent_path() / viewer_program).string();
     if (!std::filesystem::exists(viewer, ignored))
         fail(ExitCode::unreadable, viewer, "the viewer is not there; it is built where GLFW and Dear ImGui are");
-    arguments.insert(arguments.begin(), program);
+    arguments.insert(arguments.begin(), viewer_program);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
@@ -26,9 +26,9 @@ int start_viewer(std::vector<std::string> arguments) {
     fail(ExitCode::unreadable, viewer, std::strerror(errno));
 }
 
-Run add_view(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("view", "look at a scene while it is lit: the viewer");
-    command->prefix_command();
-    return [command](const Globals&) { return start_viewer(command->remaining()); };
+Run add_view(const Command& program) {
+    const Command command = program.command("view", "look at a scene while it is lit: the viewer");
+    command.pass_on();
+    return [command](const Globals&) { return start_viewer(command.passed_on()); };
 }
 }

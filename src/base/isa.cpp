@@ -7,10 +7,7 @@
 #include <string>
 
 namespace tyndall {
-std::string_view isa_name() {
-    const int64_t targets = hwy::SupportedTargets();
-    return targets & HWY_AVX3 ? "avx512" : targets & HWY_AVX2 ? "avx2" : "baseline";
-}
+std::string_view isa_name() { return hwy::SupportedTargets() & HWY_AVX3 ? "avx512" : "avx2"; }
 
 std::string_view set_isa(std::string_view name) {
     if (name != "auto" && name != "avx2" && name != "avx512")

@@ -7,6 +7,6 @@ namespace tyndall {
 // Throws Error (usage) for an unknown name or an instruction set this machine does not have.
 std::string_view set_isa(std::string_view name);
 
-// "avx512", "avx2" or "baseline" (no AVX2: correct, slow, and with other rounding).
+// "avx512" or "avx2".
 std::string_view isa_name();
 }

@@ -2,15 +2,13 @@
 // World space is right-handed, Y up, metres; angles are radians; colours are linear Rec.709.
 #pragma once
 #include <glm/glm.hpp>
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace tyndall {
-using glm::dmat4, glm::dvec3, glm::ivec2, glm::ivec3, glm::mat3, glm::mat4, glm::quat, glm::vec2, glm::vec3, glm::vec4;
+using glm::dmat4, glm::dvec3, glm::ivec2, glm::ivec3, glm::mat3, glm::mat4, glm::vec2, glm::vec3, glm::vec4;
 
 inline constexpr float pi = 3.14159265358979323846f;
 inline constexpr float infinity = std::numeric_limits<float>::infinity();

@@ -5,6 +5,15 @@
 #include "base/isa.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "measure/chart.h"
+#include "measure/chart_point.h"
+#include "modes/mode.h"
+#include "render/sequence.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <chrono>

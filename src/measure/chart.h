@@ -1,6 +1,7 @@
 // Every mode's error against its time, on one scene: each at several settings, all against one reference.
 #pragma once
 #include "measure/chart_errors.h"
+#include "modes/promise.h"
 #include "render/ladders.h"
 
 #include <cstdint>

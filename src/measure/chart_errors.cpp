@@ -1,4 +1,5 @@
 #include "measure/chart_errors.h"
+#include "render/sequence.h"
 
 #include <cassert>
 #include <limits>

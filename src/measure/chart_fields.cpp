@@ -1,4 +1,6 @@
 #include "measure/chart.h"
+#include "modes/mode.h"
+#include "render/sequence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,6 +4,7 @@
 #include "measure/svg.h"
 
 #include "base/file.h"
+#include "render/sequence.h"
 
 #include <algorithm>
 #include <cstdio>

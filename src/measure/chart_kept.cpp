@@ -6,7 +6,11 @@
 #include "base/shrink.h"
 #include "measure/heatmap.h"
 #include "measure/json_values.h"
+#include "modes/mode.h"
 #include "render/png.h"
+#include "render/sequence.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <algorithm>
 

@@ -2,6 +2,13 @@
 
 #include "measure/heatmap.h"
 #include "measure/memory_growth.h"
+#include "modes/mode.h"
+#include "render/frame.h"
+#include "render/sequence.h"
+#include "trace/light_depth.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <chrono>

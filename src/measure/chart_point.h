@@ -1,6 +1,7 @@
 // One picture of a chart: rendered several times, timed, held against the reference. Internal to the chart.
 #pragma once
 #include "measure/chart.h"
+#include "trace/snapshot.h"
 
 namespace tyndall {
 // A frame of the short sequence that flicker is measured on.

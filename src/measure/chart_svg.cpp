@@ -1,5 +1,7 @@
 // The picture of a chart, as SVG.
 #include "measure/chart_report.h"
+#include "modes/mode.h"
+#include "render/sequence.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -6,6 +6,7 @@
 #include "modes/march_kernel.h"
 #include "render/camera_paths.h"
 #include "render/candidates.h"
+#include "scene/scene.h"
 #include "volume/fog_reach.h"
 
 namespace tyndall {
@@ -107,14 +108,8 @@ void follow(const RayScene& scene, RayStory& story) {
         const float length = open ? fog_reach(scene.snapshot.media, path.ray) : s.length[0];
         const Ray ray{path.ray.origin, path.ray.direction, length};
         const RayNumbers numbers = ray_numbers(scene.view, layer, s);
-        const RayBatch batch{{&ray, 1},
-                             {numbers.ids, 1},
-                             {},
-                             {numbers.jitter, 1},
-                             {numbers.places, 1},
-                             {},
-                             {numbers.positions, 1},
-                             {&open, 1}};
+        const RayBatch batch{{&ray, 1}, {numbers.ids, 1},       {},        {numbers.jitter, 1}, {numbers.places, 1},
+                             {},        {numbers.positions, 1}, {&open, 1}};
         const RayPart part{ray, batch, story.end, story.depth, path.through};
         float transmittance = 1;
         add_reference(prepared, part, story, transmittance);

@@ -3,7 +3,9 @@
 //
 // Distances are metres along the ray from its start, radiances linear Rec.709 in nits.
 #pragma once
-#include "modes/mode.h"
+#include "base/math.h"
+#include "modes/promise.h"
+#include "scene/light_kind.h"
 
 #include <atomic>
 #include <functional>
@@ -13,6 +15,11 @@
 #include <vector>
 
 namespace tyndall {
+struct Mode;
+struct Settings;
+struct Snapshot;
+struct View;
+
 // A surface on the ray; the last one is opaque, unless the ray goes on into the background.
 struct SurfaceOnRay {
     double distance = 0;

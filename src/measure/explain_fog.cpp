@@ -3,6 +3,7 @@
 
 #include "modes/style.h"
 #include "scene/cone.h"
+#include "trace/light_depth.h"
 #include "volume/fog_pieces.h"
 
 #include <algorithm>

@@ -4,8 +4,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "modes/mode.h"
 #include "render/pixel_sum.h"
 #include "render/samples.h"
+#include "trace/light_depth.h"
 
 namespace tyndall {
 namespace {

@@ -3,6 +3,8 @@
 #include "measure/explain.h"
 #include "modes/light_along.h"
 #include "render/frame.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 namespace tyndall {
 // What all of the ray shares. Not to be moved: `depths` point into `fog`.

@@ -1,7 +1,10 @@
 #include "measure/plan.h"
 
 #include "base/text.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
 #include "render/to_target.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 

@@ -4,8 +4,13 @@
 #include "base/file.h"
 #include "base/random.h"
 #include "base/text.h"
+#include "modes/mode.h"
 #include "render/resume.h"
+#include "render/sequence.h"
 #include "render/to_target.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 

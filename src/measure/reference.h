@@ -3,11 +3,15 @@
 #pragma once
 #include "render/candidates.h"
 #include "render/exr.h"
+#include "render/job.h"
 #include "render/provenance.h"
 
 #include <array>
 
 namespace tyndall {
+struct Scene;
+struct Snapshot;
+
 // Colour and fog light of a picture.
 struct ColorLayers {
     Image<vec3> color, inscatter;

@@ -3,6 +3,8 @@
 
 #include "base/error.h"
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 #include <chrono>
 
@@ -78,9 +80,7 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
 }
 }
 
-bool takes_part(const StressCase& stress, const Mode& mode) {
-    return names(stress.modes, mode.name);
-}
+bool takes_part(const StressCase& stress, const Mode& mode) { return names(stress.modes, mode.name); }
 
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
                                      const StressControl& control) {

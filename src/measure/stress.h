@@ -3,6 +3,10 @@
 // it must not do is fail in silence.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <atomic>
 #include <functional>
@@ -44,7 +48,7 @@ struct StressCase {
     std::string_view sweep, unit;      // the condition that is swept
     std::vector<double> values;        // from mild to hard
     std::string_view modes;            // names between spaces; empty = a part of the program that all modes share
-    std::vector<Excuse> excuses;   // empty: every mode has to hold throughout
+    std::vector<Excuse> excuses;       // empty: every mode has to hold throughout
     StressScene (*scene)(double value) = nullptr;
     StressMeasure measure{};
 };

@@ -1,5 +1,8 @@
 // Fog from grids: odd transforms and sizes, sheets and single voxels, detail that gets fine or thick.
 #include "measure/stress_volumes.h"
+#include "volume/medium.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
 namespace {
@@ -158,10 +161,8 @@ std::vector<StressCase> stress_data() {
                    rough, {0.1}),
         StressCase("eye-in-grid", group, "the eye stands in rough fog", "extinction", "1/m", {0.5, 3, 20}, all, detail,
                    in_rough, {0.1}),
-        StressCase(
-            "shaft-in-grid", group, "a narrow shaft through rough fog", "width", "m", {0.6, 0.2, 0.05}, sampled,
-            shafts,
-            rough_in_shadow, {0.15}),
+        StressCase("shaft-in-grid", group, "a narrow shaft through rough fog", "width", "m", {0.6, 0.2, 0.05}, sampled,
+                   shafts, rough_in_shadow, {0.15}),
     };
 }
 }

@@ -2,7 +2,10 @@
 #include "measure/stress_volumes.h"
 
 #include "base/random.h"
+#include "volume/medium.h"
 #include "volume/vdb_fog.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
 namespace {

@@ -2,6 +2,8 @@
 #include "measure/stress_trial.h"
 
 #include "base/random.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -3,6 +3,9 @@
 #include "measure/stress_trial.h"
 
 #include "modes/fog_picture.h"
+#include "modes/history.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -199,11 +202,8 @@ std::vector<StressCase> stress_history() {
         StressCase("cut", group, "cuts: camera, lens, picture size, scene", "cut", "", {0, 1, 2, 3}, remembering, {},
                    lit, {0, "difference from a frame without history", after_cut}),
         StressCase("bad-frame", group, "a frame of NaN or infinite light is forgotten", "light", "",
-                   {NAN, INFINITY, -INFINITY}, remembering,
-                   unseen, lit,
-                   {-1, to_truth, after_bad_frame}),
-        StressCase("still", group, "a still picture with a history", "frames", "", {8}, remembering,
-                   unseen, lit,
+                   {NAN, INFINITY, -INFINITY}, remembering, unseen, lit, {-1, to_truth, after_bad_frame}),
+        StressCase("still", group, "a still picture with a history", "frames", "", {8}, remembering, unseen, lit,
                    {-1, to_truth, with_history}),
         StressCase("deep-view", group, "fog goes on far into the picture", "depth", "m", {5, 50, 500, 5000},
                    "march froxel shadow-map shadow-volume cone path", {}, deep),

@@ -1,5 +1,7 @@
 // Local lights in even fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

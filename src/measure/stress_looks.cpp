@@ -1,5 +1,7 @@
 // The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

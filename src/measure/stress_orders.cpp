@@ -1,5 +1,9 @@
 // Light that scatters more than once: left out, added by a grid of fluence, and kept out by walls.
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
 namespace {

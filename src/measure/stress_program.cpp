@@ -6,6 +6,9 @@
 #include "measure/flip.h"
 #include "measure/metrics.h"
 #include "render/exr.h"
+#include "scene/light.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 #include "volume/recipe.h"
 
 namespace tyndall {
@@ -241,8 +244,7 @@ std::vector<StressCase> stress_program() {
     constexpr std::string_view group = "numbers", own = "program";
     return {
         StressCase("far-from-origin", group, "a scene far from the origin", "away", "m", {10, 1e3, 1e4, 1e5, 1e6},
-                   exact, anywhere, away,
-                   {0.05, "relative RMSE against the same at the origin", off_from_usual}),
+                   exact, anywhere, away, {0.05, "relative RMSE against the same at the origin", off_from_usual}),
         StressCase("units", group, "everything larger or smaller", "size", "times", {2, 0.3, 1e-3, 1e3, 1e5}, exact, {},
                    sized, {0.03, "relative RMSE against the usual size", off_from_usual}),
         StressCase("threads", group, "the same bits on any number of threads", "threads", "", {1, 3}, every, {}, room,
@@ -252,11 +254,8 @@ std::vector<StressCase> stress_program() {
         StressCase("no-light", group, "without a light all is black", "lights", "", {0}, every, {}, dark,
                    {0, "brightest pixel", not_black}),
         StressCase("field-of-view", group, "from a needle to a fish eye", "field of view", "radians",
-                   {0.7, 0.05, 1e-3, 2.5, 3.1}, exact,
-                   coarse,
-                   flat_view),
-        StressCase("picture-size", group, "pictures of few pixels", "width", "pixels", {50, 17, 4, 1}, exact,
-                   coarse,
+                   {0.7, 0.05, 1e-3, 2.5, 3.1}, exact, coarse, flat_view),
+        StressCase("picture-size", group, "pictures of few pixels", "width", "pixels", {50, 17, 4, 1}, exact, coarse,
                    odd_size),
         StressCase("phase-sum", own, "what fog scatters is all there is", "g", "", {0, 0.5, -0.5, 0.9, 0.99, -0.99}, "",
                    {}, nullptr, {1e-3, "integral over the sphere less 1", phase_off}),

@@ -1,5 +1,7 @@
 // How fog spreads light: lobes, signs, colours, layers.
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -100,8 +102,7 @@ std::vector<StressCase> stress_scattering() {
         StressCase("phase-kinds", group, "isotropic, Rayleigh, Schlick, hardly Henyey-Greenstein", "kind", "",
                    {0, 1, 2, 3, 4}, all, {}, kinds),
         StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8}, exact,
-                   {}, in_even_light,
-                   {0.005, "error of the mean against the closed form", even_light_off}),
+                   {}, in_even_light, {0.005, "error of the mean against the closed form", even_light_off}),
         StressCase("linear", group, "twice the light is twice the picture", "sun", "times", {2, 1e-6, 1e6, 1e12}, exact,
                    {}, dim_or_bright, {1e-4, "relative RMSE of the picture by the light's strength", not_linear}),
         StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0},

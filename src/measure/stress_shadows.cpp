@@ -1,5 +1,7 @@
 // Surfaces in the way of the light: slits, wires, rooms, meshes of every quality, eyes in shadow.
 #include "measure/stress_trial.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -123,8 +125,7 @@ StressScene eye_in_shadow(double depth) {
 StressScene long_shadow(double size) {
     const float s = static_cast<float>(size);
     return stress_scene({even_medium(0.5f / s, {vec3(-3 * s), vec3(3 * s)})}, {slanting},
-                        camera_from({0, 0, 6 * s}, vec3(0)),
-                        {box_of(vec3(-s, 0.8f * s, -s), vec3(s), -1)});
+                        camera_from({0, 0, 6 * s}, vec3(0)), {box_of(vec3(-s, 0.8f * s, -s), vec3(s), -1)});
 }
 
 // The walls of a room around the eye, fog inside and out, the sun outside.
@@ -232,8 +233,8 @@ double short_rays_off(Trial& trial) {
 std::vector<StressCase> stress_shadows() {
     constexpr std::string_view group = "shadows";
     return {
-        StressCase("slit", group, "sun through a slit that gets narrow", "width", "m", {2, 0.5, 0.1, 0.02}, all,
-                   narrow, slit, fine),
+        StressCase("slit", group, "sun through a slit that gets narrow", "width", "m", {2, 0.5, 0.1, 0.02}, all, narrow,
+                   slit, fine),
         StressCase("lit-floor", group, "a lit floor does not shadow itself", "sun's elevation", "degrees",
                    {89, 45, 10, 3, 1}, all, {}, lit_floor, sharp),
         StressCase("orbit", group, "the eye goes round a shaft of shadow", "azimuth", "degrees",
@@ -259,8 +260,8 @@ std::vector<StressCase> stress_shadows() {
                    shadowed, {}, tessellated, {0, "brightest pixel", brightest}),
         StressCase("soft-sun", group, "the disc of the sun gets large", "half angle", "radians", {0, 0.005, 0.05, 0.2},
                    shadowed, hard, soft),
-        StressCase("soft-lamp", group, "a lamp gets large", "radius", "m", {0, 0.02, 0.1, 0.3}, shadowed,
-                   hard, soft_lamp),
+        StressCase("soft-lamp", group, "a lamp gets large", "radius", "m", {0, 0.02, 0.1, 0.3}, shadowed, hard,
+                   soft_lamp),
         StressCase("glass", group, "a pane that takes a part of the light", "alpha", "", {1, 0.8, 0.4, 0.1}, shadowed,
                    {{"MASK and BLEND"}, {"half shadows"}, as_froxels}, glass),
         StressCase("cut-out", group, "a sheet with a hole in its texture", "hole", "", {0.5, 0.1, 0.02, 0.9}, shadowed,

@@ -4,6 +4,9 @@
 #include "measure/halves.h"
 #include "measure/metrics.h"
 #include "render/candidates.h"
+#include "scene/light.h"
+#include "trace/occluders_scene.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -40,7 +40,7 @@ double difference(const Image<vec3>& test, const Image<vec3>& reference);
 // explain, from so many samples that a bias as large as is allowed shows.
 double error_to_truth(Trial& trial);
 double error_of_mean(Trial& trial); // of the fog light; where noise is the only error, as above
-double leak(Trial& trial); // the fog's mean light, by that of the same fog without surfaces
+double leak(Trial& trial);          // the fog's mean light, by that of the same fog without surfaces
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
 double most_of(const Image<vec3>& image);

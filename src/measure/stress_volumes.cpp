@@ -1,5 +1,7 @@
 #include "measure/stress_volumes.h"
 
+#include "volume/medium.h"
+
 #include "base/random.h"
 
 namespace tyndall {

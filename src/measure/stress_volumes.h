@@ -1,6 +1,7 @@
 // Small grids that cases are made of. Internal to stress.
 #pragma once
 #include "measure/stress_trial.h"
+#include "scene/light.h"
 
 namespace tyndall {
 // Of fog in the unit box, in the sun.

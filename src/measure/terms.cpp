@@ -4,7 +4,11 @@
 #include "modes/techniques.h"
 #include "render/candidates.h"
 #include "render/goal.h"
+#include "scene/light.h"
+#include "trace/occluders_scene.h"
 #include "trace/scattering_orders.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 #include <optional>
 

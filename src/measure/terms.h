@@ -1,11 +1,14 @@
 // What a picture is made of, term by term, and how wrong it would be without each.
 #pragma once
-#include "modes/mode.h"
+#include "modes/settings.h"
 
 #include <atomic>
 #include <functional>
 
 namespace tyndall {
+struct Snapshot;
+struct View;
+
 // One term of the light, for one light or the whole scene. Errors are E of a picture that leaves it out or takes it
 // more simply, everything else right.
 struct Term {

@@ -1,6 +1,8 @@
 // Checks against closed forms and published single-scattering values.
 #include "measure/verify_rays.h"
 
+#include "scene/light.h"
+#include "trace/snapshot.h"
 #include "volume/tracking.h"
 
 namespace tyndall {

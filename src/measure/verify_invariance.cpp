@@ -2,6 +2,9 @@
 #include "measure/verify_rays.h"
 
 #include "base/random.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -4,6 +4,15 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "modes/mode.h"
+#include "scene/light.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
 bool Check::holds() const { return std::abs(measured - expected) <= tolerance; }

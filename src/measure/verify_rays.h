@@ -1,9 +1,14 @@
 // Scenes without files and light along single rays, for checks. Internal to verify.
 #pragma once
 #include "measure/verify.h"
-#include "modes/mode.h"
+#include "modes/ray_batch.h"
+#include "modes/settings.h"
 
 namespace tyndall {
+struct Light;
+struct Medium;
+struct Mode;
+struct Snapshot;
 // A list of checks under way.
 struct Checks {
     std::vector<Check> list;
@@ -32,7 +37,7 @@ Medium even_medium(float extinction, Box box, Phase phase = forward_phase(0), ve
 Medium noise_medium(float extinction, Phase phase = forward_phase(0), vec3 albedo = vec3(1)); // rough, fills 0..1
 SparseVolume unit_volume(int n, const std::function<float(vec3)>& density); // n^3 voxels that fill 0..1
 Medium medium_of(const SparseVolume& volume, float extinction);
-Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density);  // fills 0..1
+Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density); // fills 0..1
 Light sun_light(vec3 direction, float lux);
 Light point_light(vec3 position, float candela);
 Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights, vec3 ambient = vec3(0));

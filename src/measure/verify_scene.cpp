@@ -7,7 +7,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "modes/mode.h"
 #include "render/frame.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <cassert>
 

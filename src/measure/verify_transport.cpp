@@ -1,5 +1,8 @@
 // Checks of light that scatters many times: conservation of energy and published tables.
 #include "measure/verify_rays.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -2,6 +2,9 @@
 #include "modes/billboard.h"
 
 #include "modes/techniques.h"
+#include "scene/light.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,6 +1,9 @@
 // Beam cards: where light leaks into the scene, and what is drawn there.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/camera.h"
+#include "trace/snapshot.h"
 
 #include <string>
 #include <vector>

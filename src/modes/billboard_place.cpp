@@ -2,6 +2,10 @@
 #include "modes/billboard_search.h"
 
 #include "base/random.h"
+#include "scene/scene.h"
+#include "trace/kept.h"
+#include "trace/occluders_scene.h"
+#include "volume/medium.h"
 
 #include <cmath>
 

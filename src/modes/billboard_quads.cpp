@@ -3,6 +3,9 @@
 
 #include "base/random.h"
 #include "modes/style.h"
+#include "scene/light.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,6 +1,7 @@
 // The view from a light, and the openings it shines through.
 #pragma once
 #include "modes/billboard.h"
+#include "scene/light.h"
 
 namespace tyndall {
 // The view from a light: an orthographic grid (sun), an octahedron (point) or a square over the cone (spot).

@@ -2,6 +2,8 @@
 #include "modes/billboard_search.h"
 
 #include "base/parallel.h"
+#include "trace/occluders_scene.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

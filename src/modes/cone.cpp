@@ -2,9 +2,13 @@
 #include "modes/cone.h"
 
 #include "modes/fog_picture.h"
+#include "modes/history.h"
 #include "modes/limits.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "volume/bricks.h"
 
 namespace tyndall {
 namespace {

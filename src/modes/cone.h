@@ -1,6 +1,9 @@
 // What the analytic light cones need, made once per frame.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 #include <array>
 #include <vector>

@@ -5,6 +5,10 @@
 #include "base/random.h"
 #include "modes/fog_picture_frames.h"
 #include "modes/fog_picture_mix.h"
+#include "modes/history.h"
+#include "scene/light.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
 #include "volume/fog_reach.h"
 
 namespace tyndall {

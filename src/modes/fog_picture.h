@@ -1,6 +1,8 @@
 // The fog of a picture, computed once for every n-th pixel and found again for any ray of the picture.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "trace/view.h"
 
 namespace tyndall {
 // Fog between the eye and the first surface at the centres of pixels, of a size that is a share of the full one.

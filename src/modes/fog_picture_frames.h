@@ -3,6 +3,9 @@
 #include "modes/fog_picture.h"
 
 namespace tyndall {
+struct FogPicture;
+struct Medium;
+
 // Averages every pixel with those of like length around it: weights ½ 1 1 1 ½ along each side hold every phase of a
 // 4×4 pattern equally often.
 void blur_pattern(FogPicture& picture);

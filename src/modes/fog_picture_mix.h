@@ -1,6 +1,7 @@
 // Pixels of a FogPicture mixed with regard to how far their rays run.
 #pragma once
 #include "modes/fog_picture.h"
+#include "scene/camera.h"
 
 namespace tyndall {
 inline constexpr float alike = 0.05f; // lengths that differ by less than this share show the same fog

@@ -1,8 +1,10 @@
 // Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
 // again for every camera ray.
+#include "base/simd.h"
 #include "modes/froxel_lookup.h"
 #include "modes/froxel_memory.h"
 #include "modes/froxel_still.h"
+#include "modes/history.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 #include "trace/kept_shadows.h"

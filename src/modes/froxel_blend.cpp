@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr ivec2 block_size{16, 8}; // tiles
-constexpr float most_blur = 0.1f; // froxels²: what moves is seen a third of a froxel wider
+constexpr float most_blur = 0.1f;  // froxels²: what moves is seen a third of a froxel wider
 
 // Least and most among the froxels of a tile and their neighbours in depth; least > most where there are none. Of light
 // only new froxels count that hold fog. One froxel more at either end.

@@ -68,14 +68,10 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
         if (!any(lit)) continue;
         Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(fill.scene, lanes, extinction) : splat(vec3(0));
-        const Job job{packet.where,
-                      looks,
-                      slice,
-                      sample,
-                      sheet,
-                      fill.exact() ? &packet.exact[s] : nullptr,
-                      extinction,
-                      here * whole.length * fill.scene.style.view_depth};
+        const Job job{packet.where, looks,
+                      slice,        sample,
+                      sheet,        fill.exact() ? &packet.exact[s] : nullptr,
+                      extinction,   here * whole.length * fill.scene.style.view_depth};
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);
         light = fused(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);

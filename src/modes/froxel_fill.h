@@ -7,6 +7,7 @@
 #include "trace/light_grid.h"
 #include "trace/shadow_slices.h"
 #include "trace/shadow_view.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 

@@ -1,8 +1,15 @@
 // What a froxel cache cannot show of a scene, in words.
 #include "modes/froxel_grid.h"
 #include "modes/limits.h"
+#include "modes/settings.h"
 #include "modes/techniques.h"
+#include "scene/light.h"
 #include "scene/moving_nodes.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -28,8 +35,8 @@ bool in_fog(const Snapshot& snapshot, vec3 point) {
 // Whether the scene gives a light keys for where it is or shines to.
 bool is_moving(const Snapshot& snapshot, const Light& light) {
     const auto moves = [&](const LightSource& source) {
-        return source.name == light.name && (!source.position.constant() || !source.direction.constant() ||
-                                             is_moving(*snapshot.scene, source.node));
+        return source.name == light.name &&
+               (!source.position.constant() || !source.direction.constant() || is_moving(*snapshot.scene, source.node));
     };
     return snapshot.scene && std::ranges::any_of(snapshot.scene->lights, moves);
 }
@@ -37,8 +44,7 @@ bool is_moving(const Snapshot& snapshot, const Light& light) {
 // Whether it gives the camera keys for where it is.
 bool is_moving(const Snapshot& snapshot, const Camera& camera) {
     const auto moves = [&](const CameraSource& source) {
-        return source.name == camera.name &&
-               (!source.position.constant() || is_moving(*snapshot.scene, source.node));
+        return source.name == camera.name && (!source.position.constant() || is_moving(*snapshot.scene, source.node));
     };
     return snapshot.scene && std::ranges::any_of(snapshot.scene->cameras, moves);
 }

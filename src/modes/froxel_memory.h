@@ -2,6 +2,7 @@
 #pragma once
 #include "modes/froxel_integrate.h"
 #include "modes/froxel_still.h"
+#include "volume/medium.h"
 
 #include <span>
 

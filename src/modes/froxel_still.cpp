@@ -1,6 +1,8 @@
 #include "modes/froxel_still.h"
 
 #include "trace/kept.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

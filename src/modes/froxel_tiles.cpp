@@ -1,6 +1,9 @@
 #include "modes/froxel_tiles.h"
 
 #include "base/parallel.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,9 +1,10 @@
 // What the eye sees through each tile of froxels: a few rays per tile up to the first opaque surface.
 #pragma once
 #include "modes/froxel_grid.h"
-#include "trace/snapshot.h"
 
 namespace tyndall {
+struct Snapshot;
+
 struct FroxelTiles {
     std::vector<vec2> offsets;    // of a tile's rays from its centre, in tiles; the first is the centre itself
     std::vector<float> depth;     // [tile · rays + ray]: planar depth of the surface, infinite where there is none

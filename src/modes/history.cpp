@@ -1,4 +1,6 @@
 #include "modes/history.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 #include <span>

@@ -1,7 +1,6 @@
 // What a mode keeps from one frame to the next.
 #pragma once
 #include "modes/settings.h"
-#include "trace/snapshot.h"
 #include "trace/view.h"
 
 #include <memory>
@@ -9,7 +8,9 @@
 
 namespace tyndall {
 struct FroxelMemory; // of modes/froxel_memory.h
-struct FogPicture;   // of modes/fog_picture.h
+struct Scene;
+struct Snapshot;
+struct FogPicture; // of modes/fog_picture.h
 
 // Handed to prepare() frame after frame, empty before the first. A mode that keeps something calls follow() first.
 struct History {

@@ -1,5 +1,6 @@
 // One light as one camera ray sees it: on which stretches its light arrives, and how much of it where.
 #pragma once
+#include "scene/light.h"
 #include "trace/shadow_slices.h"
 #include "volume/medium.h"
 

@@ -1,6 +1,7 @@
 #include "modes/light_point.h"
 
 #include "base/random.h"
+#include "scene/light.h"
 
 namespace tyndall {
 namespace {

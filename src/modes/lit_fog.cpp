@@ -1,4 +1,5 @@
 #include "modes/lit_fog.h"
+#include "trace/view.h"
 
 #include <algorithm>
 

@@ -8,6 +8,7 @@
 #include "trace/fluence.h"
 #include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
+#include "trace/snapshot.h"
 
 #include <optional>
 

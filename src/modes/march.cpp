@@ -7,6 +7,9 @@
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/view.h"
 
 namespace tyndall {
 namespace {

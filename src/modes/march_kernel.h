@@ -6,6 +6,7 @@
 #include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
 #include "trace/shadow_slices.h"
+#include "trace/snapshot.h"
 
 #include <vector>
 

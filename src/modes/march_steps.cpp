@@ -1,6 +1,8 @@
 #include "modes/march_steps.h"
 
 #include "scene/cone.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
 #include "volume/fog_reach.h"
 
 namespace tyndall {

@@ -1,10 +1,12 @@
 // Where the march evaluates the fog of a ray: steps as its settings ask for.
 #pragma once
 #include "modes/settings.h"
-#include "trace/snapshot.h"
 #include "volume/steps.h"
 
 namespace tyndall {
+struct Light;
+struct Snapshot;
+
 struct MarchSteps {
     MarchSettings settings;
     std::vector<Light> lights;     // whose strength or shadows the steps have to resolve

@@ -1,5 +1,5 @@
-#include "modes/mode.h"
 
+#include "modes/mode.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "modes/techniques.h"

@@ -1,48 +1,18 @@
 // The techniques: what each promises, where it fails, and how it turns a scene into light along camera rays.
 #pragma once
-#include "modes/history.h"
-#include "trace/snapshot.h"
-#include "trace/view.h"
+#include "base/image.h"
+#include "modes/promise.h"
+#include "modes/ray_batch.h"
 
-#include <functional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tyndall {
-// What the fog does to one camera ray up to its t_max.
-struct Scatter {
-    vec3 radiance{0};        // light scattered and emitted towards the eye
-    float transmittance = 1; // share of what lies behind that comes through
-    float validity = 1;      // 0 where the mode knows itself wrong
-    int steps = 0;           // evaluations spent, for statistics
-    vec3 surface{0};         // of a mode with Surfaces::own: light of surfaces and background, through the fog
-};
-
-// Up to 16 neighbouring rays (4×4 pixels) of one pixel sample.
-struct RayBatch {
-    std::span<const Ray> rays;
-    std::span<const uint32_t> ids;         // a number per ray, unique to pixel and sample: seeds random choices
-    std::span<vec3> per_light;             // empty, or rays × lights: the part of radiance from each light
-    std::span<const float> jitter;         // per ray in [0,1), stratified over the samples of a pixel; empty = ½
-    std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
-    std::span<const float> near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
-    std::span<const vec2> positions{}; // of the rays in the picture, in pixels from the upper left; empty = unknown
-    std::span<const bool> open{};      // per ray: no surface ends it, but the fog; empty = unknown
-};
-using ScatterFunction = std::function<void(const RayBatch&, std::span<Scatter>)>;
-
-enum class Accuracy { look, even_fog, single_scattering, multiple_scattering };
-// Who shades what lies behind the fog: the renderer; the mode, which then gets whole camera rays, follows them through
-// BLEND surfaces and adds surfaces and background itself; or nobody, because the mode works on the finished picture.
-enum class Surfaces { shared, own, post };
-enum class Severity { info, degraded, wrong };
-
-struct Limit {
-    Severity severity = Severity::info;
-    std::string where, why;
-};
+struct History;
+struct Settings;
+struct Snapshot;
+struct View;
 
 // A picture without fog, and what a mode with Surfaces::post adds to it. All images cover the full picture.
 struct PlainPicture {
@@ -79,7 +49,4 @@ bool has_fluence(const Mode& mode);
 
 // Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
 bool error_is_noise(const Mode& mode);
-
-std::string_view name_of(Accuracy accuracy);
-std::string_view name_of(Severity severity);
 }

@@ -1,6 +1,11 @@
 // The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
 #include "modes/path_tracer.h"
 #include "modes/techniques.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,7 +1,9 @@
 // Shadow rays in packets, fog by ratio tracking.
 #include "modes/path_connect.h"
 
+#include "scene/light.h"
 #include "trace/light_ray.h"
+#include "trace/occluders_scene.h"
 
 namespace tyndall {
 namespace {

@@ -1,5 +1,7 @@
 // Light from fog on a stretch of a line.
 #include "modes/path_line.h"
+#include "scene/light.h"
+#include "volume/bricks.h"
 
 namespace tyndall {
 namespace {

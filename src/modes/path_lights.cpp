@@ -2,6 +2,9 @@
 #include "modes/path_lights.h"
 
 #include "scene/cone.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

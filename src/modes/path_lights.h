@@ -1,11 +1,14 @@
 // Which light a path turns to next, and how far along a line through fog it looks for it.
 #pragma once
-#include "trace/snapshot.h"
+#include "base/math.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct Light;
+struct Snapshot;
+
 // One light along a line: distances are picked even in angle around a local light (Kulla & Fajardo 2012), even in
 // length under the sun.
 struct LineLight {

@@ -6,7 +6,10 @@
 // it by multiple importance sampling. Where the path collided or met a surface it turns into its next line.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/camera.h"
 #include "trace/glow.h"
+#include "trace/snapshot.h"
 
 namespace tyndall {
 struct PathTracer {

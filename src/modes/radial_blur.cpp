@@ -7,6 +7,8 @@
 #include "modes/radial_blur_glow.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
 
 namespace tyndall {
 namespace {

@@ -3,6 +3,9 @@
 
 #include "base/parallel.h"
 #include "base/shrink.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 namespace tyndall {
 namespace {

@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "base/reduce_simd.h"
 #include "base/simd.h"
+#include "trace/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

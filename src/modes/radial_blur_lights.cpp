@@ -3,6 +3,9 @@
 
 #include "modes/style.h"
 #include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,9 +1,11 @@
 // How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and
 // headers.
 #pragma once
-#include "trace/fluence.h"
-#include "trace/light_depth.h"
-#include "trace/view.h"
+#include "base/math.h"
+#include "trace/fluence_settings.h"
+#include "trace/jitter.h"
+#include "trace/light_transmittance.h"
+#include "trace/pixel_filter.h"
 
 #include <functional>
 #include <string>

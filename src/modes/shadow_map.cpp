@@ -1,10 +1,12 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "modes/fog_picture.h"
+#include "modes/history.h"
 #include "modes/limits.h"
 #include "modes/march_kernel.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 namespace {

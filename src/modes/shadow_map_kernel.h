@@ -1,8 +1,10 @@
 // The march with shadow maps of one packet, apart from its preparation.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
 #include "trace/kept_shadows.h"
 #include "trace/light_depth.h"
+#include "trace/snapshot.h"
 
 #include <vector>
 

@@ -11,6 +11,7 @@
 #include "base/simd.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style_simd.h"
+#include "scene/light.h"
 #include "trace/light_depth_simd.h"
 #include "trace/light_simd.h"
 #include "trace/shadow_map_simd.h"

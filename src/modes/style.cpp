@@ -1,4 +1,8 @@
 #include "modes/style.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

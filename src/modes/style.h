@@ -1,9 +1,15 @@
 // Artist's controls applied to a snapshot, and what kernels need besides.
 #pragma once
 #include "modes/settings.h"
-#include "trace/snapshot.h"
+#include "scene/camera.h"
+
+#include <span>
+#include <vector>
 
 namespace tyndall {
+struct Medium;
+struct Snapshot;
+
 bool is_stylised(const Settings& settings);
 
 // The snapshot with style.density on its media and style.tint on its lights, ambient light and emission in fog. What a

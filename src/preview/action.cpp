@@ -11,7 +11,8 @@ namespace tyndall {
 const std::vector<VerbInfo>& verbs() {
     static const std::vector<VerbInfo> all{
         {Verb::open, "open", "FILE", "show another scene"},
-        {Verb::reload, "reload", "", "read all files again; unsaved edits stay (files that change are read by themselves)"},
+        {Verb::reload, "reload", "",
+         "read all files again; unsaved edits stay (files that change are read by themselves)"},
         {Verb::set, "set", "NAME VALUE", "change a setting, as --set does"},
         {Verb::reset, "reset", "NAME", "a setting back to its usual value; all: every one"},
         {Verb::mode, "mode", "NAME", "render with another technique"},
@@ -139,8 +140,7 @@ void check_wait(const Action& action) {
     const std::string& what = action.words[0];
     const bool samples = what == "samples";
     constexpr const char* usage = "wait idle, wait job, wait SECONDS or wait samples N";
-    if (samples != (action.numbers.size() == 1))
-        refuse(action.place, std::string("expected ") + usage);
+    if (samples != (action.numbers.size() == 1)) refuse(action.place, std::string("expected ") + usage);
     if (what != "idle" && what != "job" && !samples && number(what, action.place, usage) < 0)
         refuse(action.place, "seconds cannot be negative");
 }

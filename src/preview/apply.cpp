@@ -1,5 +1,6 @@
 // What each action does to the state.
 #include "preview/verb_actions.h"
+#include "render/sequence.h"
 
 #include <map>
 
@@ -7,8 +8,7 @@ namespace tyndall {
 namespace {
 std::map<Verb, void (*)(ViewState&, const Action&)> all_actions() {
     std::map<Verb, void (*)(ViewState&, const Action&)> all;
-    for (const auto& table :
-         {technique_actions(), look_actions(), camera_actions(), time_actions(), scene_actions()})
+    for (const auto& table : {technique_actions(), look_actions(), camera_actions(), time_actions(), scene_actions()})
         for (const VerbAction& one : table) all.emplace(one.verb, one.apply);
     return all;
 }

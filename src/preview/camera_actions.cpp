@@ -1,6 +1,7 @@
 // Where the camera stands, and how many pixels it has.
 #include "base/error.h"
 #include "preview/verb_actions.h"
+#include "render/sequence.h"
 
 namespace tyndall {
 namespace {

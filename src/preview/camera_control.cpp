@@ -1,7 +1,9 @@
 #include "preview/camera_control.h"
 
 #include "scene/scene_bounds.h"
-#include "trace/snapshot.h"
+#include "trace/moment.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
 namespace {

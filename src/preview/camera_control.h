@@ -1,9 +1,10 @@
 // A camera moved by hand. Pure functions; angles in radians, the world's up is +Y, roll is kept.
 #pragma once
 #include "scene/camera.h"
-#include "scene/scene.h"
 
 namespace tyndall {
+struct Scene;
+
 // A camera and how far before it the point lies that it turns around.
 struct Viewpoint {
     Camera camera;

@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "base/json_pointer.h"
 #include "base/text.h"
+#include "preview/scene_session.h"
 #include "preview/verb_actions.h"
+#include "render/sequence.h"
 
 #include <algorithm>
 #include <utility>
@@ -148,10 +150,8 @@ constexpr VerbAction table[] = {
     {Verb::reload, [](ViewState& state, const Action&) { reload_scene(state); }},
     {Verb::close, close_window},
     {Verb::answer, [](ViewState& state, const Action& action) { answer(state, action.words[0]); }},
-    {Verb::select,
-     [](ViewState& state, const Action& action) {
-         state.selected = parse_thing(loaded_scene(state), action.words[0]);
-     }},
+    {Verb::select, [](ViewState& state,
+                      const Action& action) { state.selected = parse_thing(loaded_scene(state), action.words[0]); }},
     {Verb::edit,
      [](ViewState& state, const Action& action) {
          edit_scene(state, action.words[0], action.words[1], action.numbers.empty() ? 0 : action.numbers[0]);

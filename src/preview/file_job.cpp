@@ -2,9 +2,11 @@
 
 #include "base/frames.h"
 #include "base/output.h"
+#include "base/progress.h"
 #include "base/text.h"
 #include "preview/scene_session.h"
 #include "render/provenance.h"
+#include "render/sequence.h"
 #include "volume/bake.h"
 
 #include <algorithm>

@@ -1,8 +1,10 @@
 // Work that writes files while the viewer goes on: frames as tyndall render makes them, fog as tyndall bake does.
 #pragma once
 #include "base/error.h"
+#include "base/progress.h"
 #include "preview/view_state.h"
-#include "render/sequence.h"
+#include "render/job.h"
+#include "volume/recipe.h"
 
 #include <variant>
 

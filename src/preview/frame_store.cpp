@@ -1,6 +1,9 @@
 #include "preview/frame_store.h"
 
 #include "base/error.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "volume/medium.h"
 
 #include <unistd.h>
 
@@ -21,6 +24,11 @@ uint64_t resident_bytes() {
 }
 
 uint64_t usual_store_bytes() { return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes() / 4; }
+
+FrameStore::FrameStore(uint64_t most_bytes) : most_bytes_(most_bytes) {}
+FrameStore::~FrameStore() = default;
+
+size_t FrameStore::size() const { return frames_.size(); }
 
 void FrameStore::begin(const std::shared_ptr<const Scene>& scene, MissingFrame missing) {
     if (scene == scene_ && missing == missing_) return;

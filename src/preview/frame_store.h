@@ -7,12 +7,15 @@
 #include <optional>
 
 namespace tyndall {
+struct Scene;
+
 // How much memory the frames of a store may take: a quarter of the machine's.
 uint64_t usual_store_bytes();
 
 class FrameStore {
 public:
-    explicit FrameStore(uint64_t most_bytes = usual_store_bytes()) : most_bytes_(most_bytes) {}
+    explicit FrameStore(uint64_t most_bytes = usual_store_bytes());
+    ~FrameStore();
 
     // Forgets everything that is not of this scene and policy.
     void begin(const std::shared_ptr<const Scene>& scene, MissingFrame missing);
@@ -30,7 +33,7 @@ public:
     // caused is said when it is asked for.
     bool make_ahead(int frame, const Snapshot& current);
 
-    size_t size() const { return frames_.size(); }
+    size_t size() const;
 
 private:
     std::shared_ptr<const Scene> scene_;

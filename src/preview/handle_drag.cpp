@@ -1,6 +1,7 @@
 #include "preview/handle_drag.h"
 
 #include "preview/edit_actions.h"
+#include "render/sequence.h"
 
 #include <algorithm>
 

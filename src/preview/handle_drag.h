@@ -2,6 +2,7 @@
 #pragma once
 #include "preview/light_handles.h"
 #include "preview/view_state.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 // As light_icons. Suns without a place of their own stand side by side near the upper edge of the picture, `gap` pixels

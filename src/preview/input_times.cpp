@@ -1,4 +1,5 @@
 #include "preview/input_times.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 namespace {

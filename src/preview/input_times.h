@@ -1,10 +1,13 @@
 // Whether files that a scene was read from changed on disk.
 #pragma once
-#include "scene/scene.h"
-
+#include <cstdint>
+#include <filesystem>
 #include <span>
+#include <vector>
 
 namespace tyndall {
+struct Scene;
+
 struct InputTime {
     std::filesystem::path file;
     std::filesystem::file_time_type written{};

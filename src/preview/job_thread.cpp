@@ -1,6 +1,7 @@
 #include "preview/job_thread.h"
 
 #include "base/parallel.h"
+#include "render/sequence.h"
 
 #include <utility>
 

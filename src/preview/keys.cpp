@@ -1,5 +1,7 @@
 // What keys do.
+#include "modes/mode.h"
 #include "preview/view_state.h"
+#include "render/sequence.h"
 
 namespace tyndall {
 namespace {

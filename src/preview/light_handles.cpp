@@ -1,4 +1,5 @@
 #include "preview/light_handles.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 namespace {

@@ -1,4 +1,5 @@
 #include "preview/missing_frames.h"
+#include "scene/scene.h"
 
 #include <filesystem>
 #include <optional>

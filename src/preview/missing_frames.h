@@ -1,10 +1,13 @@
 // Gaps in the volume files of a scene.
 #pragma once
-#include "scene/scene.h"
+#include "volume/sequence.h"
 
+#include <string>
 #include <vector>
 
 namespace tyndall {
+struct Scene;
+
 // Frames of the scene for which a sequence of volume files lacks the file, ascending.
 std::vector<int> missing_frames(const Scene& scene);
 

@@ -1,7 +1,13 @@
 #include "preview/painter.h"
 
 #include "base/error.h"
+#include "modes/history.h"
+#include "modes/mode.h"
 #include "preview/painter_show.h"
+#include "render/frame.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <chrono>

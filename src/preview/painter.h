@@ -2,10 +2,13 @@
 // the stand-in mode, then rounds of samples of the mode asked for, averaged; in turns with those of the mode beside and
 // of the reference, when they are shown.
 #pragma once
+#include "modes/history.h"
 #include "preview/frame_store.h"
 #include "preview/pace.h"
 #include "preview/ray_question.h"
 #include "preview/reference_picture.h"
+#include "preview/request.h"
+#include "preview/shown_picture.h"
 #include "preview/volume_picture.h"
 
 #include <map>

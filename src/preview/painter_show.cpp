@@ -1,5 +1,7 @@
 // What of a painter's layers is shown: codes of the layer asked for, two pictures in one, errors, answers.
 #include "preview/painter_show.h"
+#include "modes/history.h"
+#include "modes/mode.h"
 
 #include <algorithm>
 #include <chrono>

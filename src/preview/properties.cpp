@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 namespace {

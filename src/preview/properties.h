@@ -1,7 +1,7 @@
 // What of a scene can be changed while it is looked at: one table of lights', fog's, cameras' and the scene's own
 // numbers serves panels, scripts and saving. Values are in the units of scene files (metres, degrees, candela, lux).
 #pragma once
-#include "scene/scene.h"
+#include "scene/keyed.h"
 
 #include <span>
 #include <string>
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace tyndall {
+struct Scene;
+
 enum class Part { light, medium, camera, scene };
 enum class ValueKind { number, vector, color, toggle }; // number: in x; toggle: x is 0 or 1
 

@@ -1,6 +1,7 @@
 #include "preview/property_words.h"
 
 #include "base/error.h"
+#include "scene/scene.h"
 
 #include <algorithm>
 

@@ -6,6 +6,9 @@
 #include <string>
 
 namespace tyndall {
+struct LightSource;
+struct MediumSource;
+
 struct PropertyWords {
     const char* label;
     const char* help;         // what it does to the picture

@@ -1,6 +1,10 @@
 #include "preview/ray_question.h"
 
+#include "modes/mode.h"
+#include "preview/request.h"
 #include "render/provenance.h"
+#include "render/sequence.h"
+#include "trace/view.h"
 
 #include <chrono>
 

@@ -1,9 +1,11 @@
 // What happens on the ray of a pixel, asked while looking at a picture.
 #pragma once
 #include "measure/explain.h"
-#include "preview/request.h"
 
 namespace tyndall {
+struct Request;
+struct Snapshot;
+
 struct RayAnswer {
     uint64_t revision = 0; // of the picture it was asked of
     ivec2 pixel{0};

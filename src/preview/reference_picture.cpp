@@ -2,8 +2,12 @@
 
 #include "base/text.h"
 #include "measure/terms.h"
+#include "modes/mode.h"
+#include "preview/request.h"
 #include "preview/setting_groups.h"
 #include "render/candidates.h"
+#include "render/sequence.h"
+#include "trace/kept.h"
 
 #include <algorithm>
 

@@ -7,8 +7,11 @@
 #include "measure/comparison.h"
 #include "measure/heatmap.h"
 #include "preview/rounds.h"
+#include "preview/shown_picture.h"
 
 namespace tyndall {
+struct EditableParts;
+
 inline constexpr std::string_view reference_name = "reference"; // beside a mode, instead of another one
 inline constexpr HeatScale error_scale{1e-3, 1, true};          // of the reference's mean
 

@@ -2,6 +2,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "modes/history.h"
+#include "preview/painter.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 #include <chrono>
 #include <new>
@@ -21,7 +25,8 @@ void count_quick(const ShownPicture& picture, double seconds, PictureCounts& cou
 }
 }
 
-RenderThread::RenderThread(std::function<void()> news) : news_(std::move(news)), thread_([this] { run(); }) {}
+RenderThread::RenderThread(std::function<void()> news)
+    : news_(std::move(news)), painter_(std::make_unique<Painter>()), thread_([this] { run(); }) {}
 
 RenderThread::~RenderThread() {
     {
@@ -80,8 +85,8 @@ void RenderThread::make_file(SaveJob job) {
     Saved saved{job.file, 0, {}, ExitCode::ok};
     saving_ = 0;
     try {
-        const bool same = painter_.scene == job.request.scene;
-        save_picture(job, same ? &painter_.snapshot : nullptr, cancel_save_, [&](double share) { saving_ = share; });
+        const bool same = painter_->scene == job.request.scene;
+        save_picture(job, same ? &painter_->snapshot : nullptr, cancel_save_, [&](double share) { saving_ = share; });
     } catch (const Error& error) {
         saved.error = error.what(), saved.code = error.code;
     } catch (const std::bad_alloc&) {
@@ -118,7 +123,7 @@ void RenderThread::run() {
             make_file(std::move(*save));
         } else {
             const auto start = Clock::now();
-            std::optional<ShownPicture> picture = paint(painter_, *current, cancel_);
+            std::optional<ShownPicture> picture = paint(*painter_, *current, cancel_);
             const std::scoped_lock lock(mutex_);
             unfinished_ = !picture ? false : !picture->finished;
             if (!picture && current->moving && counts_.quick > 0) counts_.quick_seconds += seconds_since(start);

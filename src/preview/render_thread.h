@@ -1,14 +1,18 @@
 // One thread that owns rendering. The interface posts what it wants and looks for what is there; it never waits.
 #pragma once
-#include "preview/painter.h"
+#include "preview/request.h"
 #include "preview/save_picture.h"
+#include "preview/shown_picture.h"
 
 #include <condition_variable>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <thread>
 
 namespace tyndall {
+struct Painter;
+
 // Pictures made so far.
 struct PictureCounts {
     int pictures = 0, quick = 0;
@@ -53,7 +57,7 @@ private:
     bool stop_ = false, unfinished_ = false, working_ = false, painting_quick_ = false;
     std::atomic<bool> cancel_{false}, cancel_save_{false};
     std::atomic<double> saving_{-1};
-    Painter painter_; // the thread's own
+    const std::unique_ptr<Painter> painter_; // the thread's own
     std::thread thread_;
 };
 }

@@ -1,6 +1,9 @@
 #include "preview/request.h"
 
+#include "preview/editable_parts.h"
 #include "render/provenance.h"
+#include "render/sequence.h"
+#include "trace/view.h"
 
 namespace tyndall {
 const std::string& quick_mode(const Request& request) {

@@ -1,7 +1,13 @@
 #include "preview/rounds.h"
 
 #include "base/random.h"
+#include "modes/mode.h"
+#include "preview/request.h"
+#include "render/frame.h"
 #include "render/layers_mean.h"
+#include "render/sequence.h"
+#include "trace/light_depth.h"
+#include "trace/view.h"
 
 #include <algorithm>
 #include <chrono>

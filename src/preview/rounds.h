@@ -1,11 +1,16 @@
 // Rounds of samples, averaged: how a still picture becomes better while it is looked at.
 #pragma once
 #include "measure/reference.h"
-#include "preview/request.h"
+#include "render/layers.h"
 
 #include <array>
 
 namespace tyndall {
+struct Mode;
+struct Prepared;
+struct Request;
+struct Snapshot;
+
 // What the rounds of a mode have come to. The first one is a look of one sample, which the second replaces.
 struct Rounds {
     std::shared_ptr<const Prepared> prepared; // from the snapshot

@@ -1,9 +1,15 @@
 #include "preview/save_picture.h"
 
 #include "base/error.h"
+#include "modes/mode.h"
 #include "render/check_job.h"
+#include "render/frame.h"
 #include "render/png.h"
 #include "render/provenance.h"
+#include "render/sequence.h"
+#include "scene/light.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,

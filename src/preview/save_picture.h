@@ -1,8 +1,17 @@
 // A picture of the viewer to a file: the one tyndall render writes.
 #pragma once
+#include "base/error.h"
 #include "preview/request.h"
+#include "scene/load_options.h"
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
 
 namespace tyndall {
+struct Snapshot;
+
 struct SaveJob {
     std::filesystem::path file; // .exr or .png
     Request request;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "render/sequence.h"
 
 #include <cstdlib>
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "modes/mode.h"
 
 #include <algorithm>
 #include <cmath>

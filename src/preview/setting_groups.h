@@ -1,8 +1,10 @@
 // Settings as the viewer shows them: those that change a mode's picture, in groups, over ranges fit for a hand.
 #pragma once
-#include "modes/mode.h"
+#include "modes/settings.h"
 
 namespace tyndall {
+struct Mode;
+
 struct SettingGroup {
     std::string title;
     std::vector<const SettingRow*> rows;

@@ -1,8 +1,10 @@
 // Techniques and their settings.
 #include "base/error.h"
+#include "modes/mode.h"
 #include "preview/reference_picture.h"
 #include "preview/setting_groups.h"
 #include "preview/verb_actions.h"
+#include "render/sequence.h"
 
 namespace tyndall {
 namespace {

@@ -1,5 +1,7 @@
 // Frames, playing, and frames that are missing.
 #include "preview/verb_actions.h"
+#include "render/sequence.h"
+#include "scene/scene.h"
 
 #include <algorithm>
 #include <cmath>

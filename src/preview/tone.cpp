@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/layers.h"
 
 #include <array>
 #include <bit>

@@ -1,11 +1,13 @@
 // Layers of a picture as codes for the screen.
 #pragma once
-#include "render/frame.h"
+#include "base/image.h"
 
 #include <string>
 #include <vector>
 
 namespace tyndall {
+struct Layers;
+
 enum class ShownLayer { picture, fog, transmittance, depth, validity, error };
 const std::vector<std::string>& shown_layer_names();
 

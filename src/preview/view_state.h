@@ -3,11 +3,16 @@
 #include "preview/action.h"
 #include "preview/camera_control.h"
 #include "preview/request.h"
-#include "preview/scene_loader.h"
+#include "preview/scene_edit.h"
 
 #include <optional>
 
 namespace tyndall {
+struct EditableParts;
+struct LoadedScene;
+struct Scene;
+struct SceneSession;
+
 // How far a job is that writes files.
 struct JobStatus {
     std::string name; // "render out.####.exr"
@@ -52,14 +57,14 @@ struct ViewState {
     std::vector<int> gaps;    // frames for which volume files are missing
 
     bool panels = true, help = false;
-    bool lights_tab = false;     // what the side shows: lights and fog, or rendering
-    bool handles = true;         // lights are drawn in the picture while the side shows them
+    bool lights_tab = false;      // what the side shows: lights and fog, or rendering
+    bool handles = true;          // lights are drawn in the picture while the side shows them
     std::optional<JobStatus> job; // that runs
     std::optional<Action> asked;  // would lose edits or end a job: waits for an answer
-    bool leaving = false;        // the window is to close
-    Thing selected;              // its properties are shown; may be beyond the end
-    std::string file_error;      // why the scene's files, as they are now, cannot be read
-    std::string message;         // the last thing that went wrong, or was done
+    bool leaving = false;         // the window is to close
+    Thing selected;               // its properties are shown; may be beyond the end
+    std::string file_error;       // why the scene's files, as they are now, cannot be read
+    std::string message;          // the last thing that went wrong, or was done
     bool message_is_error = false;
 
     uint64_t revision = 1, shown_revision = 1, motions = 0; // motions: changes that more are likely to follow
@@ -94,8 +99,8 @@ std::optional<int> next_frame(const ViewState& state);
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);
 
-// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, f5, [ and ];
-// with "ctrl+" and "shift+" before, in this order.
+// What a key does; nothing for keys without a meaning. Keys: 1..9, a..z, space, left, right, home, tab, f1, f5, [ and
+// ]; with "ctrl+" and "shift+" before, in this order.
 std::optional<Action> action_of_key(const ViewState& state, std::string_view key);
 
 struct KeyInfo {

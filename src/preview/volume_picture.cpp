@@ -5,6 +5,10 @@
 #include "base/text.h"
 #include "measure/grid_report.h"
 #include "measure/heatmap.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <array>

@@ -3,6 +3,8 @@
 #include "preview/request.h"
 
 namespace tyndall {
+struct Snapshot;
+
 struct VolumePicture {
     uint64_t revision = 0; // of the request it is of
     VolumeQuestion question;

@@ -1,4 +1,5 @@
 #include "render/allotment.h"
+#include "trace/view.h"
 
 #include <algorithm>
 #include <cmath>

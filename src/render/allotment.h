@@ -4,6 +4,8 @@
 #include "render/frame.h"
 
 namespace tyndall {
+struct TileFactors;
+
 inline constexpr int most_tile_samples = 1 << 16; // of a pixel
 
 struct Allotment {

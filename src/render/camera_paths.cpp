@@ -2,6 +2,8 @@
 #include "render/camera_paths.h"
 
 #include "base/random.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 namespace tyndall {
 namespace {

@@ -2,6 +2,7 @@
 // and for what explains a ray.
 #pragma once
 #include "render/samples.h"
+#include "trace/occluders.h"
 
 namespace tyndall {
 inline constexpr int most_layers = 64;

@@ -1,4 +1,5 @@
 #include "render/candidates.h"
+#include "modes/mode.h"
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
 // Ways for a mode to integrate the fog, from coarse to fine, and the truth they are held against.
 #pragma once
+#include "modes/settings.h"
 #include "render/ladders.h"
 
 namespace tyndall {

@@ -3,7 +3,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/frames.h"
+#include "modes/mode.h"
+#include "render/sequence.h"
 #include "render/to_target.h"
+#include "scene/scene.h"
 
 #include <set>
 

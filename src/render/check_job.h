@@ -1,6 +1,8 @@
 // What can be said about a job before any frame is loaded.
 #pragma once
-#include "render/sequence.h"
+#include "modes/mode.h"
+#include "render/job.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 inline std::filesystem::path png_name(const std::string& exr) {

@@ -1,5 +1,6 @@
 #include "render/contest.h"
 
+#include "modes/mode.h"
 #include "render/to_target.h"
 
 #include <algorithm>
@@ -15,9 +16,7 @@ struct Runner {
     double integrator = infinity; // squared, of the last one measured
     int idle = 0;                 // candidates since one was better than that before it
 
-    void note(double error) {
-        idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error;
-    }
+    void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
 };
 
 double error_with(const Contender& contender, double samples) {

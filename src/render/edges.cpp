@@ -1,6 +1,9 @@
 #include "render/edges.h"
 
 #include "base/parallel.h"
+#include "render/frame.h"
+#include "render/samples.h"
+#include "trace/view.h"
 
 #include <algorithm>
 #include <mutex>

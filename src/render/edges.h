@@ -4,6 +4,8 @@
 #include "render/samples.h"
 
 namespace tyndall {
+struct TileFactors;
+
 // How many times as many samples the tiles around a part of the picture take, 1 to view.edge_samples; null where all
 // take one times: that many are allowed, pixels are seen at their centres only, or have too few samples to gain by it.
 // Counts the rays in `stats`. A tile's number depends on its own pixels and those beside it.

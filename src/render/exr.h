@@ -6,7 +6,8 @@
 // 32 bit are Z, 1e10 where there is no surface, Variance and the halves. Rec.709, ZIP, no date and no host: the same
 // input gives the same bytes.
 #pragma once
-#include "render/frame.h"
+#include "render/layers.h"
+#include "scene/camera.h"
 
 #include <filesystem>
 #include <map>

@@ -3,10 +3,15 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "modes/mode.h"
 #include "render/edges.h"
 #include "render/noise.h"
 #include "render/pixel_sum.h"
+#include "scene/scene.h"
 #include "trace/lamp_samples.h"
+#include "trace/light_depth.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 #include <cassert>

@@ -11,61 +11,21 @@
 // A mode with Surfaces::own is asked once per sample, for the whole ray from the eye to the far plane; the renderer
 // finds the surfaces for depth and alpha only.
 #pragma once
-#include "modes/mode.h"
-#include "trace/light_depth.h"
+#include "modes/ray_batch.h"
+#include "render/layers.h"
 
 #include <atomic>
-#include <map>
-#include <optional>
-#include <string>
+#include <functional>
+#include <memory>
 #include <vector>
 
 namespace tyndall {
-// How far a picture may be from the mean of all pictures its mode makes.
-struct Noise {
-    double error = 0; // root mean square of the standard errors over linear RGB, as a share of the picture's mean; for
-                      // colour or fog light alone, whichever is worse
-    double bound = 0; // the error is below this with a confidence of 97.5 %
-};
-
-// Pixels of the crop window. Colours are premultiplied linear Rec.709.
-struct Layers {
-    ivec2 display{0}, low{0}, size{0};        // full picture; where the pixels lie in it
-    Image<vec3> color;                        // surfaces and background through fog, plus fog light
-    Image<float> alpha;                       // 1 - what shows of the background
-    Image<float> depth;                       // planar z of the first opaque surface at the sample nearest the pixel's
-                                              // centre, metres; infinite = none
-    Image<vec3> inscatter;                    // fog light alone, as far as BLEND surfaces in front let it through
-    Image<float> transmittance;               // of the fog, eye to surface
-    Image<float> validity;                    // of the least valid stretch of a sample
-    Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
-    Image<vec3> half_a, half_b;               // on request: colour of the even and of the odd batches
-    std::vector<std::pair<std::string, Image<vec3>>> lights; // fog and surface light by light name, on request: every
-                                                             // light of the scene, dark ones too
-};
-
-// How far the mode is from the truth whatever the number of samples, and what it was set to.
-struct Integrator {
-    Noise error; // as for noise, but systematic: measured against the truth on rays spread over the picture
-    std::string candidate;
-    Settings settings;
-};
-
-struct FrameStats {
-    double prepare_seconds = 0, render_seconds = 0;
-    double fog_seconds = 0; // of both, what the mode took: its preparation, and its share of every thread's time
-    uint64_t camera_rays = 0, steps = 0;
-    uint64_t non_finite = 0; // samples dropped: they count as black and not valid
-    ivec2 first_non_finite{-1};
-    int samples = 0;                      // per pixel
-    std::optional<Noise> noise;           // for more than one batch
-    std::optional<Integrator> integrator; // where it was measured
-    double goal_seconds = 0;              // of a goal: all that its time counts
-
-    std::optional<Noise> error() const; // noise and integrator together
-
-    void add(const FrameStats& other); // counts and times
-};
+struct History;
+struct LightDepth;
+struct Mode;
+struct Settings;
+struct Snapshot;
+struct View;
 
 // What a frame needs before its first ray.
 struct Prepared {

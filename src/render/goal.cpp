@@ -1,4 +1,5 @@
 #include "render/goal.h"
+#include "modes/mode.h"
 
 #include <algorithm>
 #include <optional>

@@ -1,8 +1,10 @@
 // Ways to make a picture, by each mode: from the quickest to the most careful.
 #pragma once
-#include "modes/mode.h"
+#include "modes/settings.h"
 
 namespace tyndall {
+struct Mode;
+
 struct Candidate {
     std::string name; // of its rung, without samples
     Settings settings;

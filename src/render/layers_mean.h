@@ -1,6 +1,6 @@
 // Means of independent pictures.
 #pragma once
-#include "render/frame.h"
+#include "render/layers.h"
 
 namespace tyndall {
 // Into the layers `share` of other ones, with the variances of such a mean. Depth stays.

@@ -1,6 +1,6 @@
 // How noisy a picture is, from the spread of its batches.
 #pragma once
-#include "render/frame.h"
+#include "render/layers.h"
 
 namespace tyndall {
 // From the variances of the layers, which stand on `freedom` differences between batches (batches - 1, summed over

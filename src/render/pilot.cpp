@@ -3,9 +3,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "modes/mode.h"
 #include "render/pilot_sums.h"
 #include "render/samples.h"
 #include "trace/lamp_samples.h"
+#include "trace/light_depth.h"
 
 #include <algorithm>
 #include <array>

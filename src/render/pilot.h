@@ -7,6 +7,7 @@
 // truth multiply to its squared error, whatever the reason.
 #pragma once
 #include "render/frame.h"
+#include "trace/view.h"
 
 namespace tyndall {
 inline constexpr int most_pilot_tiles = 128; // of sixteen pixels

@@ -5,8 +5,12 @@
 #include "base/file.h"
 #include "base/frames.h"
 #include "base/text.h"
+#include "modes/mode.h"
 #include "modes/style.h"
+#include "render/frame.h"
+#include "render/sequence.h"
 #include "render/to_target.h"
+#include "scene/scene.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,11 +1,14 @@
 // What a frame is made from, as a view to render, a hash to compare and attributes to keep.
 #pragma once
-#include "render/sequence.h"
+#include "render/job.h"
+#include "scene/scene.h"
 
 #include <map>
 #include <string>
 
 namespace tyndall {
+struct View;
+
 View view_of(const Scene& scene, const RenderJob& job, int frame);
 
 // Content hashes of files already read, by path: a file counts as it was when first asked for.

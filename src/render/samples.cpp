@@ -3,6 +3,8 @@
 
 #include "base/random.h"
 #include "render/camera_paths.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
 #include "volume/fog_reach.h"
 
 namespace tyndall {

@@ -4,11 +4,16 @@
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/parallel.h"
+#include "modes/history.h"
+#include "modes/mode.h"
 #include "render/check_job.h"
 #include "render/png.h"
 #include "render/provenance.h"
 #include "render/resume.h"
 #include "render/to_target.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "volume/medium.h"
 
 #include <sys/resource.h>
 
@@ -171,8 +176,8 @@ void render(Pipeline& pipeline, Work& work) {
     try {
         History history;
         if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        const Goal goal{job.target_error, job.time_budget, job.quality, {},
-                        work.index == 0 ? job.choice : nullptr, job.wanted};
+        const Goal goal{job.target_error, job.time_budget, job.quality, {}, work.index == 0 ? job.choice : nullptr,
+                        job.wanted};
         work.layers =
             has_goal(job)
                 ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, goal, options, stats)
@@ -273,23 +278,27 @@ uint64_t peak_memory() {
 }
 }
 
-LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot& previous) {
+LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot* previous) {
     const auto start = Clock::now();
     flush_denormals();
-    Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), &previous, job.missing);
+    Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), previous, job.missing);
     return {std::move(snapshot), seconds_since(start)};
 }
 
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
-                             std::atomic<bool>& cancel, LoadedFrame first) {
+                             std::atomic<bool>& cancel, LoadedFrame* first) {
     const auto start = Clock::now();
     check_job(scene, job, mode);
     flush_denormals();
 
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);
-    Pipeline pipeline{scene, job, mode, progress, cancel, channel_names(lights, job.exr), {}, std::move(first),
-                      0,     {},  {}};
+    Pipeline pipeline{scene,  job,
+                      mode,   progress,
+                      cancel, channel_names(lights, job.exr),
+                      {},     first ? std::move(*first) : LoadedFrame{},
+                      0,      {},
+                      {}};
     run(pipeline);
 
     RenderReport& report = pipeline.report;
@@ -305,7 +314,7 @@ RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mod
 }
 
 RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
-                             LoadedFrame first) {
-    return render_sequence(scene, job, find_mode(job.mode), progress, cancel, std::move(first));
+                             LoadedFrame* first) {
+    return render_sequence(scene, job, find_mode(job.mode), progress, cancel, first);
 }
 }

@@ -2,9 +2,11 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "modes/mode.h"
 #include "render/allotment.h"
 #include "render/layers_mean.h"
 #include "render/noise.h"
+#include "trace/light_depth.h"
 
 #include <algorithm>
 #include <cassert>
@@ -39,7 +41,7 @@ struct Rounds {
     std::optional<Choice> choice; // where anything was measured beforehand
     std::optional<Allotment> allotment{};
     double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
-    double first_part = 1; // of an allotment
+    double first_part = 1;   // of an allotment
     double done = 0, expected = most_target_samples;
     int freedom = 0; // differences between batches so far
 
@@ -84,8 +86,8 @@ Choice choice_for(const Rounds& rounds, const Snapshot& snapshot, const Settings
     const Goal& goal = rounds.goal;
     if (goal.choice) return *goal.choice;
     Choice choice = choose(rounds.mode, rounds.view, snapshot, settings, goal, rounds.start, options);
-    const bool falls_short = goal.error > 0 && choice.has_integrator &&
-                             choice.measured.integrator.bound >= goal.error * goal.error;
+    const bool falls_short =
+        goal.error > 0 && choice.has_integrator && choice.measured.integrator.bound >= goal.error * goal.error;
     if (!falls_short || !goal.wanted) return choice;
     return choose(rounds.mode, rounds.view, snapshot, *goal.wanted, goal, rounds.start, options);
 }

@@ -1,6 +1,8 @@
 // Evaluation of animated values: step, linear, eased and cubic Hermite (glTF's CUBICSPLINE).
 #include "scene/keyed.h"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <cassert>
 
 namespace tyndall {

@@ -2,9 +2,13 @@
 #pragma once
 #include "base/math.h"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <vector>
 
 namespace tyndall {
+using glm::quat;
+
 enum class Interpolation { step, linear, smooth, cubic }; // cubic: values hold in-tangent, value, out-tangent (glTF)
 
 // Before the first and after the last key the value holds, unless `loop` repeats the keys.

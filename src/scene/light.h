@@ -1,12 +1,11 @@
 // A light at one moment, as KHR_lights_punctual with soft edges, and what of it reaches a point.
 #pragma once
 #include "base/math.h"
+#include "scene/light_kind.h"
 
 #include <string>
 
 namespace tyndall {
-enum class LightKind { point, spot, sun };
-
 struct Light {
     std::string name;
     LightKind kind = LightKind::point;

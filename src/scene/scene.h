@@ -1,9 +1,11 @@
 // What the files say: plain data, every number possibly animated. How to render is not in here.
 #pragma once
+#include "scene/background_kind.h"
 #include "scene/keyed.h"
-#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/load_options.h"
 #include "scene/mesh.h"
-#include "volume/medium.h"
+#include "volume/phase.h"
 #include "volume/recipe.h"
 #include "volume/sequence.h"
 
@@ -72,8 +74,6 @@ struct MediumSource {
     std::string entry;               // as of a camera
 };
 
-enum class BackgroundKind { color, sky, image };
-
 struct Background {
     BackgroundKind kind = BackgroundKind::color;
     Keyed<vec3> color{vec3(0)};                   // color; horizon of the sky
@@ -114,14 +114,6 @@ struct Scene {
     std::vector<Billboard> billboards;
     std::vector<std::filesystem::path> inputs; // every file read, for hashes and reloading
     std::vector<std::string> warnings;         // one line each, said once
-};
-
-enum class LightUnits { spec, unitless, raw };
-
-struct LoadOptions {
-    // Of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
-    // (points and spots also spread over the sphere, 683 / 4 pi).
-    LightUnits light_units = LightUnits::spec;
 };
 
 // Reads a scene file, or a bare .gltf/.glb (framed by a default camera when it has none). Throws Error.

@@ -2,6 +2,9 @@
 
 #include "scene/scene_file.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include <cstdio>
 
 namespace tyndall {

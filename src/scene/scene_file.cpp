@@ -7,6 +7,9 @@
 #include "scene/scene_bounds.h"
 #include "scene_schema.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
 #include <charconv>
 
 namespace tyndall {

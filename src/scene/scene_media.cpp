@@ -21,7 +21,8 @@ PhaseKind phase_named(std::string_view name) {
 
 void read_transform(const Field& field, MediumSource& medium) {
     if (const Field translate = field.member("translate")) medium.translation = keyed_vector(translate);
-    if (const Field rotate = field.member("rotate")) medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
+    if (const Field rotate = field.member("rotate"))
+        medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
     const Field scale = field.member("scale");
     if (!scale) return;
     medium.scale = keyed_color(scale); // one number or three, as a colour

@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/json_pointer.h"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <cassert>
 
 namespace tyndall {

@@ -1,4 +1,5 @@
 // What is seen where there is no surface: a colour, a sky gradient or a picture.
+#include "base/image.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {

@@ -2,8 +2,13 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scene/light.h"
+#include "trace/fluence_settings.h"
 #include "trace/fluence_walls.h"
+#include "trace/kept.h"
 #include "trace/light_paths.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 

@@ -6,17 +6,15 @@
 // mean cosine g turns it into a lobe of mean cosine g|F|/φ: exact for a beam scattered twice in thin fog and for light
 // from all around, and right to the first moment always.
 #pragma once
-#include "trace/snapshot.h"
+#include "base/math.h"
+#include "volume/phase.h"
 
 #include <memory>
 #include <vector>
 
 namespace tyndall {
-struct FluenceSettings {
-    int orders = 1;      // most scatterings of light, in fog or on surfaces; 1 = no grid
-    int resolution = 64; // cells along the longest side of the fog
-    int paths = 200'000; // of light
-};
+struct FluenceSettings;
+struct Snapshot;
 
 struct FluenceGrid {
     Box bounds;

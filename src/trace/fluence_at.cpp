@@ -54,8 +54,8 @@ FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
     Corners corners;
     for (int i = 0; i < 8; ++i) {
         corners.cells[i] = {i & 4 ? high.x : low.x, i & 2 ? high.y : low.y, i & 1 ? high.z : low.z};
-        corners.shares[i] = (i & 4 ? weight.x : 1 - weight.x) * (i & 2 ? weight.y : 1 - weight.y) *
-                            (i & 1 ? weight.z : 1 - weight.z);
+        corners.shares[i] =
+            (i & 4 ? weight.x : 1 - weight.x) * (i & 2 ? weight.y : 1 - weight.y) * (i & 1 ? weight.z : 1 - weight.z);
     }
     if (!grid.walls.empty()) leave_seen(grid, from_low, ivec3(place + 0.5f), corners);
     for (int i = 0; i < 8; ++i) {

@@ -77,8 +77,8 @@ HWY_INLINE void open_corners(const FluenceGrid& grid, const FluenceAxis& x, cons
     }
     if (!any(none)) return;
     for (int corner = 0; corner < 8; ++corner)
-        open[corner] = open[corner] | (none & !(away(x, (corner & 4) != 0) | away(y, (corner & 2) != 0) |
-                                                away(z, (corner & 1) != 0)));
+        open[corner] = open[corner] |
+                       (none & !(away(x, (corner & 4) != 0) | away(y, (corner & 2) != 0) | away(z, (corner & 1) != 0)));
 }
 
 // As fluence_at().
@@ -94,7 +94,7 @@ HWY_INLINE FluenceAt16 fluence_at16(const FluenceGrid& grid, const Vec3s& point)
         return FluenceAxis{cell, min(cell + 1, cells - 1), truncate(at + 0.5f), at - to_floats(cell), place};
     };
     const FluenceAxis x = axis(point.x, box.low.x, grid.size.x), y = axis(point.y, box.low.y, grid.size.y),
-               z = axis(point.z, box.low.z, grid.size.z);
+                      z = axis(point.z, box.low.z, grid.size.z);
     Mask16 open[8];
     const bool walls = !grid.walls.empty();
     if (walls) open_corners(grid, x, y, z, open);

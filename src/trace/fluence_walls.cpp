@@ -15,7 +15,7 @@ struct Cells {
     const Occluders& occluders;
     const FluenceOctants& octants;
     FluenceGrid& grid;
-    Box surfaces{}; // their bounds, in cells
+    Box surfaces{};          // their bounds, in cells
     std::vector<vec3> lit{}; // a place in the light of each cell, in cells; the centre of dark ones
 
     size_t index(ivec3 cell) const { return cell_index(grid, cell); }
@@ -133,8 +133,7 @@ float share_here(const Cells& cells, ivec3 cell) {
     const vec4* octants = &cells.octants[8 * cells.index(cell)];
     const vec3 from = cells.world(cells.lit[cells.index(cell)]);
     Segments parts;
-    for (int k = 0; k < 8; ++k)
-        parts.add(from, octants[k].w > 0 ? cells.world(vec3(octants[k]) / octants[k].w) : from);
+    for (int k = 0; k < 8; ++k) parts.add(from, octants[k].w > 0 ? cells.world(vec3(octants[k]) / octants[k].w) : from);
     const std::array<bool, 16> open = parts.open(cells.occluders);
     float here = 0, all = 0;
     for (size_t k = 0; k < 8; ++k) all += octants[k].w, here += open[k] ? octants[k].w : 0;

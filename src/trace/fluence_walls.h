@@ -1,6 +1,7 @@
 // Surfaces between the cells of a grid of fluence: light is not mixed across them.
 #pragma once
 #include "trace/fluence.h"
+#include "trace/occluders.h"
 
 namespace tyndall {
 // Where in the cells light flew, [8 · cell + octant]: ∫ luminance, w, and of places (in cells) times it.

@@ -2,7 +2,13 @@
 #include "trace/fog.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "scene/scene.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 #include "volume/vdb.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include <cstdio>
 

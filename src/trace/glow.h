@@ -1,10 +1,12 @@
 // Surfaces that give off light, as targets: points on them are picked by area times brightness.
 #pragma once
-#include "trace/snapshot.h"
+#include "base/math.h"
 
 #include <vector>
 
 namespace tyndall {
+struct Snapshot;
+
 struct GlowingTriangle {
     int instance = 0, triangle = 0; // of the scene
     vec3 a{0}, b{0}, c{0};          // world corners

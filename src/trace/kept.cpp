@@ -1,5 +1,6 @@
 #include "trace/kept.h"
 
+#include "scene/light.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

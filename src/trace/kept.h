@@ -4,8 +4,7 @@
 // that is found has the bits it would have if it were made. A snapshot knows what its own frame made or found and what
 // the frame before it did; what two frames in a row did not ask for is gone.
 #pragma once
-#include "scene/camera.h"
-#include "scene/light.h"
+#include "base/math.h"
 
 #include <memory>
 #include <mutex>
@@ -15,6 +14,7 @@
 #include <vector>
 
 namespace tyndall {
+struct Light;
 struct Snapshot;
 struct View;
 

@@ -1,4 +1,8 @@
 #include "trace/kept_shadows.h"
+#include "trace/kept.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

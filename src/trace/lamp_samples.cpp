@@ -1,6 +1,8 @@
 #include "trace/lamp_samples.h"
 
 #include "base/random.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,11 @@
 // Samples of pixels that show a lamp. The light that fog scatters along a ray falls with the ray's distance from the
 // lamp as 1 / distance, which has no variance in the limit: even samples never settle.
 #pragma once
-#include "trace/snapshot.h"
 #include "trace/view.h"
 
 namespace tyndall {
+struct Snapshot;
+
 // Local lights whose glow shows in the picture; none where it does not matter where in a pixel samples lie.
 std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot);
 

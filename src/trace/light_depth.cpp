@@ -7,7 +7,9 @@
 #include "trace/light_froxels.h"
 #include "trace/light_grid.h"
 
+#include "trace/kept.h"
 #include "trace/light_depth_simd.h"
+#include "trace/snapshot.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

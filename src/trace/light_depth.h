@@ -10,14 +10,17 @@
 // Or at the corners of froxels: cells of the picture times slices of planar depth, each slice thicker than the one
 // before it by the same length.
 #pragma once
-#include "trace/light_ray.h"
-#include "trace/snapshot.h"
-#include "trace/view.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "trace/light_transmittance.h"
 
+#include <memory>
 #include <vector>
 
 namespace tyndall {
-enum class LightTransmittance { off, average, froxel, grid, marched };
+struct Medium;
+struct Snapshot;
+struct View;
 
 // Of any number of copies, frames and users.
 using SharedFloats = std::shared_ptr<const std::vector<float>>;

@@ -1,8 +1,10 @@
 // Rays of a light into a box, as a unit square. Internal to light paths.
 #pragma once
-#include "trace/snapshot.h"
+#include "base/math.h"
 
 namespace tyndall {
+struct Light;
+
 struct LightSquare {
     const Light* light = nullptr;
     vec3 axis{0}, across{0}, up{0}; // orthonormal

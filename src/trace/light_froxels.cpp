@@ -7,6 +7,7 @@
 #include "trace/light_froxels.h"
 
 #include "trace/light_depth_simd.h"
+#include "trace/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

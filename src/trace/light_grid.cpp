@@ -1,5 +1,7 @@
 // Where a light's grid lies: tightly around the bricks that the light can reach.
 #include "trace/light_grid.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <cmath>
 

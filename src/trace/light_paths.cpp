@@ -1,6 +1,9 @@
 #include "trace/light_paths.h"
 
+#include "scene/light.h"
 #include "trace/light_emission.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
 #include "volume/tracking.h"
 
 #include <algorithm>

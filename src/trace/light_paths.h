@@ -1,11 +1,13 @@
 // Paths of light the way light goes: from the lights through fog and over surfaces.
 #pragma once
-#include "trace/snapshot.h"
+#include "base/math.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct Snapshot;
+
 // A straight stretch of a path after its first scattering: `light` is the power it carries.
 struct Flight {
     vec3 from{0}, direction{0}; // direction: unit, of travel
@@ -32,11 +34,11 @@ Emission even_emission(const Snapshot& snapshot, const Box& reach, int side);
 
 // What a number of paths brought.
 struct LightPathResult {
-    std::vector<Flight> flights;     // in the order of the paths
-    int64_t first_scatterings = 0;   // in fog, of light straight from lights
-    double scattered_once = 0;       // power that fog scattered which came straight from lights ...
-    double scattered_more = 0;       // ... and which had been scattered before, by fog or surfaces
-    int64_t hits = 0;                // paths with flights that were noted
+    std::vector<Flight> flights;   // in the order of the paths
+    int64_t first_scatterings = 0; // in fog, of light straight from lights
+    double scattered_once = 0;     // power that fog scattered which came straight from lights ...
+    double scattered_more = 0;     // ... and which had been scattered before, by fog or surfaces
+    int64_t hits = 0;              // paths with flights that were noted
     std::vector<float> of_stratum{}; // per stratum: Σ over paths of (power · length of the flights)²; empty = not asked
 };
 

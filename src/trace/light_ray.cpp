@@ -1,4 +1,5 @@
 #include "trace/light_ray.h"
+#include "scene/light.h"
 
 namespace tyndall {
 namespace {

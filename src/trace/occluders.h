@@ -1,6 +1,6 @@
 // The triangles of a moment in Embree: what a ray meets, and whether light gets through. The only user of Embree.
 #pragma once
-#include "scene/scene.h"
+#include "base/math.h"
 
 #include <array>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 namespace tyndall {
+struct Scene;
 struct ShadowMesh;
 struct ShadowSlices;
 

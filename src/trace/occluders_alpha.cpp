@@ -20,11 +20,6 @@ bool passed_before(ShadowContext& context, int lane, uint32_t geometry, float t,
 }
 }
 
-ShadowContext::ShadowContext() {
-    rtcInitIntersectContext(&embree);
-    embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-}
-
 void ShadowContext::forget() {
     for (int lane = 0; lane < 16; ++lane) left[lane] = 1, count[lane] = 0;
 }

@@ -1,6 +1,7 @@
 // Triangles of instances, moved to world space, checked, and built into an Embree scene.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "scene/scene.h"
 #include "trace/occluders_scene.h"
 
 namespace tyndall {

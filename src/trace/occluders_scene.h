@@ -1,8 +1,8 @@
 // Inside the occluders: Embree's device, and one set of triangles with its acceleration structure.
 #pragma once
+#include "scene/mesh.h"
+#include "trace/embree.h"
 #include "trace/occluders.h"
-
-#include <embree3/rtcore.h>
 
 #include <mutex>
 
@@ -82,7 +82,7 @@ std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::ve
 // What shadow rays gather on their way: Embree's context with the light each lane has left.
 struct ShadowContext {
     static constexpr int remembered = 4;
-    RTCIntersectContext embree;
+    QueryContext embree;
     double left[16];
     struct Passed {
         uint32_t geometry;
@@ -90,7 +90,6 @@ struct ShadowContext {
     } passed[16][remembered]; // the last sheets each lane went through
     int count[16];
 
-    ShadowContext();
     void forget(); // all light left, no sheet passed; needed before Embree meets geometries with alpha
 };
 

@@ -8,20 +8,6 @@ namespace {
 bool in_range(float value) { return std::abs(value) <= largest_coordinate; } // false for NaN
 bool in_range(vec3 v) { return in_range(v.x) && in_range(v.y) && in_range(v.z); }
 
-// Packets by width, so that one piece of code serves 8 and 16 lanes.
-void intersect(RTCScene scene, const int* valid, RTCIntersectContext* context, RTCRayHit8& packet) {
-    rtcIntersect8(valid, scene, context, &packet);
-}
-void intersect(RTCScene scene, const int* valid, RTCIntersectContext* context, RTCRayHit16& packet) {
-    rtcIntersect16(valid, scene, context, &packet);
-}
-void occlude(RTCScene scene, const int* valid, RTCIntersectContext* context, RTCRay8& packet) {
-    rtcOccluded8(valid, scene, context, &packet);
-}
-void occlude(RTCScene scene, const int* valid, RTCIntersectContext* context, RTCRay16& packet) {
-    rtcOccluded16(valid, scene, context, &packet);
-}
-
 // Lane `i` of a packet, made from a ray; false when the ray is unfit.
 template<class Packet> bool put_ray(const Ray& ray, float t_min, Packet& packet, int i, uint32_t id) {
     if (!in_range(ray.origin) || !in_range(ray.direction) || !(ray.t_max >= t_min) || !(t_min >= 0)) return false;
@@ -47,10 +33,8 @@ void trace_closest(const OccluderSet& set, std::span<const Ray> rays, float t_mi
         if (hits.instance[lane] >= 0) ray.t_max = hits.t[lane];
         valid[i] = put_ray(ray, t_min, packet.ray, i, static_cast<uint32_t>(lane)) ? -1 : 0;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    intersect(set.scene, valid, &context, packet);
+    QueryContext context;
+    intersect(set.scene, valid, context, coherent ? coherent_query : incoherent_query, packet);
     for (int i = 0; i < width; ++i) {
         if (!valid[i] || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         const OccluderGeometry& geometry = set.geometries[packet.hit.geomID[i]];
@@ -95,7 +79,7 @@ void trace_transmission(const OccluderSet* const* sets, const Occluders::ShadowR
         const OccluderSet& set = *sets[which];
         if (set.triangles == 0) continue;
         if (set.has_alpha) context.forget();
-        occlude(set.scene, valid, &context.embree, packet);
+        occlude(set.scene, valid, context.embree, coherent_query, packet);
         for (int i = 0; i < width; ++i) {
             const int blocked = packet.tfar[i] < 0;
             visibility[base + i] = blocked & valid[i] ? 0.0f : visibility[base + i];
@@ -151,7 +135,7 @@ float Occluders::transmission(const Ray& ray, float t_min) const {
                       ~0u,
                       0,
                       0};
-        rtcOccluded1(set->scene, &context.embree, &single);
+        occlude(set->scene, context.embree, coherent_query, single);
         if (single.tfar < 0) return 0;
         if (set->has_alpha) visibility *= static_cast<float>(context.left[0]);
     }

@@ -2,6 +2,10 @@
 
 #include "base/parallel.h"
 #include "trace/light_paths.h"
+#include "trace/occluders_scene.h"
+#include "trace/snapshot.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 

@@ -1,8 +1,11 @@
 // How much light fog scatters more than once, as a share of what it scatters once: whether single scattering will do.
 #pragma once
-#include "trace/snapshot.h"
+#include <cstdint>
 
 namespace tyndall {
+struct Medium;
+struct Snapshot;
+
 // The power that fog scatters of light that has been scattered before, over that of light straight from the lights.
 struct ScatteringRatio {
     double ratio = 0, low = 0, high = 0; // low..high: 95 % confidence

@@ -1,4 +1,6 @@
 #include "trace/seen_space.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,11 +1,12 @@
 // The space that the rays of a picture cross on their way through fog.
 #pragma once
-#include "trace/snapshot.h"
 #include "trace/view.h"
 
 #include <vector>
 
 namespace tyndall {
+struct Snapshot;
+
 // normal · (point - anchor) >= -offset
 struct HalfSpace {
     vec3 normal{0};

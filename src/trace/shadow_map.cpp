@@ -5,7 +5,10 @@
 
 #include "trace/shadow_map.h"
 
+#include "scene/light.h"
+#include "trace/occluders_scene.h"
 #include "trace/shadow_map_simd.h"
+#include "trace/snapshot.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

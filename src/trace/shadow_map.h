@@ -8,13 +8,17 @@
 // the same on both sides of a cube's seams. Every picture reaches some texels further than it is asked for, so that
 // filters never meet its border.
 #pragma once
-#include "trace/snapshot.h"
-#include "trace/view.h"
+#include "base/math.h"
+#include "scene/light_kind.h"
 
 #include <array>
 #include <vector>
 
 namespace tyndall {
+struct Light;
+struct Snapshot;
+struct View;
+
 inline constexpr float shadow_guard = 2; // texels around a filtered look-up on each side that a picture has to spare
 
 inline constexpr int most_levels = 12; // of blocks: 8192 texels, in blocks of 4 to 8192

@@ -1,7 +1,10 @@
 // Where the orthographic pictures of a sun lie.
+#include "trace/occluders_scene.h"
 #include "trace/seen_space.h"
 #include "trace/shadow_map.h"
+#include "trace/snapshot.h"
 #include "volume/brick_walk.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

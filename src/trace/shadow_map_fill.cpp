@@ -1,7 +1,10 @@
 // Fills shadow maps with the first surface of rays from the light, a block of texels at a time.
 #include "base/parallel.h"
+#include "scene/light.h"
+#include "trace/occluders_scene.h"
 #include "trace/seen_space.h"
 #include "trace/shadow_blocks.h"
+#include "trace/snapshot.h"
 
 namespace tyndall {
 namespace {

@@ -2,7 +2,13 @@
 #include "trace/snapshot.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "scene/scene.h"
 #include "trace/fog.h"
+#include "trace/kept.h"
+#include "trace/occluders_scene.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {
@@ -124,5 +130,11 @@ int find_camera(const Scene& scene, const std::string& name) {
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] == name) return static_cast<int>(i);
     fail(ExitCode::usage, "camera", "no \"" + name + "\" here; there is " + joined(names, ", "));
+}
+
+Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
+
+bool casts(const Light& light, const Snapshot& snapshot) {
+    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
 }
 }

@@ -1,16 +1,23 @@
 // A scene at one moment, ready to trace.
 #pragma once
-#include "scene/camera.h"
-#include "scene/scene.h"
-#include "trace/kept.h"
-#include "trace/occluders.h"
-#include "volume/medium.h"
+#include "base/math.h"
+#include "scene/background_kind.h"
+#include "trace/moment.h"
+#include "volume/sequence.h"
 
 #include <memory>
 #include <string>
 #include <vector>
 
 namespace tyndall {
+struct BrickPool;
+struct Kept;
+struct Light;
+struct Medium;
+class Occluders;
+struct Scene;
+template<class T> struct Image;
+
 struct BackgroundNow {
     BackgroundKind kind = BackgroundKind::color;
     vec3 color{0}, zenith{0}, ground{0};
@@ -43,27 +50,14 @@ struct Snapshot {
     std::shared_ptr<Kept> kept_before;  // for the frame before; null of the first
 };
 
-struct Moment {
-    int frame = 0;
-    double seconds = 0;
-};
-inline Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
-
 // Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since
 // `previous` (of the same, unchanged Scene) is shared with it, and the result is the same without. The Scene must
 // outlive it. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error);
 
-Camera camera_at(const Scene& scene, int camera, double seconds);
-
-// Index of a camera by name; empty = the default. Throws Error (usage) listing the names.
-int find_camera(const Scene& scene, const std::string& name);
-
 // Whether surfaces shadow the light.
-inline bool casts(const Light& light, const Snapshot& snapshot) {
-    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
-}
+bool casts(const Light& light, const Snapshot& snapshot);
 
 // Radiance behind everything. `screen` is the position on the picture, 0..1 from the upper left (for plates).
 vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);

@@ -1,11 +1,15 @@
 // Surfaces behind the fog: Lambert, lit through the fog, shadowed, plus emission and ambient light.
 #pragma once
-#include "trace/light_depth.h"
+#include "base/math.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct LightDepth;
+struct Snapshot;
+struct SurfacePoint;
+
 // Radiance leaving each point towards the viewer. Up to 16 points; `u`, points × n pairs of numbers in [0,1), picks n
 // points on each soft light: n for the first point, then n for the next. per_light (optional) receives points × lights
 // radiances.

@@ -4,6 +4,7 @@
 #include "scene/camera.h"
 #include "trace/jitter.h"
 #include "trace/pixel_filter.h"
+#include "trace/sample_place.h"
 
 #include <cstdint>
 #include <memory>
@@ -53,11 +54,6 @@ struct View {
 // of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
 
-// A sample as part of a low-discrepancy sequence: each pixel and batch has its own.
-struct SamplePlace {
-    uint32_t sequence; // names the sequence
-    uint32_t index;    // place in it
-};
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
 
 // Where a sample lies and how much its light counts: 1 on the average.

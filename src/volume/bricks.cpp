@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "volume/half.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace tyndall {
 namespace {
 // The smallest world box around a local box, rounded outwards to floats.

@@ -4,7 +4,6 @@
 #include <hwy/foreach_target.h>
 
 #include "volume/medium.h"
-
 #include "volume/medium_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,6 +22,8 @@ HWY_EXPORT(densities_kernel);
 void densities(const Medium& medium, const float* x, const float* y, const float* z, float* density) {
     HWY_DYNAMIC_DISPATCH(densities_kernel)(medium, x, y, z, density);
 }
+
+float Medium::majorant() const { return optics.extinction * (kind == DensityKind::bricks ? bricks->highest : 1.0f); }
 
 float density_at(const Medium& medium, vec3 point) {
     if (medium.kind == DensityKind::bricks) return sample_density(*medium.bricks, point);

@@ -1,6 +1,6 @@
 // Fog at one moment: where it is, how dense, and what it does to light.
 #pragma once
-#include "volume/bricks.h"
+#include "base/math.h"
 #include "volume/phase.h"
 
 #include <memory>
@@ -9,6 +9,8 @@
 #include <vector>
 
 namespace tyndall {
+struct BrickPool;
+
 struct Optics {
     float extinction = 0.1f; // 1/m at density 1
     vec3 albedo{0.95f};      // scattered share of the extinction, 0..1
@@ -35,7 +37,7 @@ struct Medium {
     std::shared_ptr<const BrickPool> bricks;
 
     // Extinction no point of the medium exceeds, 1/m.
-    float majorant() const { return optics.extinction * (kind == DensityKind::bricks ? bricks->highest : 1.0f); }
+    float majorant() const;
 };
 
 // Density at a point; 0 outside the medium.

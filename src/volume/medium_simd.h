@@ -7,6 +7,7 @@
 #endif
 
 #include "base/simd.h"
+#include "volume/bricks.h"
 #include "volume/medium.h"
 
 HWY_BEFORE_NAMESPACE();

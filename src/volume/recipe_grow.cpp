@@ -5,6 +5,8 @@
 #include "volume/recipe_leaf.h"
 #include "volume/voxel_mask.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <array>
 #include <string>
 

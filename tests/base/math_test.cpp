@@ -1,6 +1,7 @@
 #include "base/math.h"
 #include "base/random.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace tyndall {

@@ -9,10 +9,21 @@
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
 #include "base/isa.h"
 #include "base/parallel.h"
+#include "modes/history.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/camera.h"
+#include "scene/light.h"
 #include "scene/scene.h"
+#include "trace/kept.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <benchmark/benchmark.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,7 @@
 // Shadow rays of froxel-like tiles: packets of 16 against single rays, in a hall with a slatted wall (about 20 000
 // triangles). Items are rays; the bar is packets ≥ 2× single.
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "trace/occluders.h"
 
 #include <benchmark/benchmark.h>

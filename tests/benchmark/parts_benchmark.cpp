@@ -7,6 +7,10 @@
 #include "modes/mode.h"
 #include "scene/scene.h"
 #include "trace/light_depth.h"
+#include "trace/light_ray.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/fog_reach.h"
 #include "volume/medium.h"
 

@@ -1,102 +1,15 @@
-"""The viewer in a window nobody sees: scenes, techniques, time, mouse and keys, and files equal to those of render."""
+"""The viewer: techniques, time, mouse and keys, and files equal to those of render."""
 import os
 import pathlib
-import re
-import shutil
-import struct
 import subprocess
 import time
 import unittest
-import zlib
 
 import random_actions
-from program import SANITIZED, SOURCE, TRIANGLE, TYNDALL, ProgramTest, gltf, run, scene
+from program import SANITIZED, TRIANGLE, TYNDALL, gltf, run, scene
+from viewer import VIEWER, XVFB, ViewerTest
 
-VIEWER = pathlib.Path(TYNDALL).parent / "tyndall-view"
-XVFB = shutil.which("xvfb-run")
-SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
 MODES = ("march", "froxel", "shadow-map", "shadow-volume", "cone", "billboard", "radial-blur", "path")
-WINDOW = (1280, 800)
-
-
-def read_png(path):
-    """Width, height and rows of an 8-bit RGB picture."""
-    data, at, packed = path.read_bytes(), 8, b""
-    width, height = struct.unpack(">II", data[16:24])
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        if kind == b"IDAT":
-            packed += data[at + 8:at + 8 + length]
-        at += 12 + length
-    raw, rows, stride = zlib.decompress(packed), [], 3 * width
-    before = bytearray(stride)
-    for y in range(height):
-        kind, line = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
-        for i in range(stride):
-            left, up = line[i - 3] if i >= 3 else 0, before[i]
-            corner = before[i - 3] if i >= 3 else 0
-            guess = left + up - corner
-            nearest = min((abs(guess - left), 0, left), (abs(guess - up), 1, up), (abs(guess - corner), 2, corner))[2]
-            line[i] = (line[i] + (0, left, up, (left + up) // 2, nearest)[kind]) & 255
-        rows.append(bytes(line))
-        before = line
-    return width, height, rows
-
-
-@unittest.skipUnless(VIEWER.exists(), "tyndall-view was not built")
-class ViewerTest(ProgramTest):
-    def command(self, *arguments):
-        # The exit code goes into a file: xvfb-run has one of its own when it fails to tidy up.
-        return ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", "sh", "-c", '"$@"; echo $? > "$0"',
-                self.path("exit_code"), VIEWER, *map(str, arguments)]
-
-    def exit_code(self):
-        return int(self.path("exit_code").read_text())
-
-    def environment(self):
-        return {**os.environ, "ASAN_OPTIONS": "detect_leaks=0"}  # of the graphics driver
-
-    def view(self, film, lines, *more, code=0, timeout=240):
-        """Opens a scene, does what the lines say and quits; what it printed."""
-        script = self.write("script.txt", "\n".join([*lines, "quit"]))
-        result = subprocess.run(self.command(film, "--script", script, "--stats", *more), text=True, timeout=timeout,
-                                capture_output=True, env=self.environment())
-        self.assertEqual(self.exit_code(), code, result.stderr)
-        return result.stdout if code == 0 else result.stderr
-
-    def attributes(self, name):
-        return self.succeed("info", "--json", self.path(name)).stdout
-
-
-@unittest.skipUnless(XVFB, "xvfb-run is not installed")
-class Scenes(ViewerTest):
-    def test_the_first_picture_of_every_scene_comes_soon(self):
-        for name in SCENES:
-            most, seconds = 15 if SANITIZED else 1.5, []
-            while len(seconds) < 3 and (not seconds or min(seconds) >= most):  # the machine may be busy
-                told = self.view(SOURCE / f"scenes/{name}.json", ["wait samples 1"])
-                seconds.append(float(re.search(r"first after ([\d.]+) s", told).group(1)))
-            self.assertLess(min(seconds), most, name)
-
-    def test_every_scene_plays_and_the_interface_does_not_wait(self):
-        for name in SCENES:
-            told = self.view(SOURCE / f"scenes/{name}.json", ["wait samples 1", "play 24"], "--res", "160x90")
-            if name != "cloud":  # a single frame
-                self.assertGreaterEqual(int(re.search(r"(\d+) while things moved", told).group(1)), 23, told)
-            half = float(re.search(r"interface: .*half below ([\d.]+) ms", told).group(1))
-            self.assertLess(half, 330 if SANITIZED else 33, told)
-
-    def test_the_window_shows_picture_and_panels(self):
-        self.view(SOURCE / "scenes/window.json",
-                  ["wait samples 4", f"screenshot {self.path('a.png')}", "panels off", "wait 0.1",
-                   f"screenshot {self.path('b.png')}"], "--samples", "4")
-        width, height, rows = read_png(self.path("a.png"))
-        self.assertEqual((width, height), WINDOW)
-        picture = {row[3 * x:3 * x + 3] for row in rows[150:600:5] for x in range(0, 900, 5)}
-        panel = {row[3 * x:3 * x + 3] for row in rows[::5] for x in range(1000, 1280, 5)}
-        self.assertGreater(len(picture), 100)
-        self.assertGreater(len(panel), 5)
-        self.assertNotEqual(rows, read_png(self.path("b.png"))[2])
 
 
 @unittest.skipUnless(XVFB, "xvfb-run is not installed")

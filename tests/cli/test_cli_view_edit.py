@@ -6,7 +6,7 @@ import time
 import unittest
 
 from program import SOURCE, TRIANGLE, gltf, scene
-from test_cli_view import XVFB, ViewerTest
+from viewer import XVFB, ViewerTest
 
 FILM = """{
   // lit by hand

@@ -4,7 +4,7 @@ import time
 import unittest
 
 from program import SANITIZED, TRIANGLE, gltf, recipe, scene
-from test_cli_view import XVFB, ViewerTest
+from viewer import XVFB, ViewerTest
 
 
 @unittest.skipUnless(XVFB, "xvfb-run is not installed")

@@ -3,7 +3,7 @@ import shutil
 import unittest
 
 from program import TRIANGLE, gltf, recipe, scene
-from test_cli_view import XVFB, ViewerTest, read_png
+from viewer import XVFB, ViewerTest, read_png
 
 
 def area(rows):

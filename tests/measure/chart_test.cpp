@@ -2,6 +2,7 @@
 #include "base/json.h"
 #include "base/random.h"
 #include "measure/chart_report.h"
+#include "modes/mode.h"
 
 #include <gtest/gtest.h>
 

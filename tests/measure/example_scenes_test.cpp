@@ -1,8 +1,6 @@
 // The proof of a scene, on the scenes that come with the program.
 #include "measure/verify.h"
 
-#include "scene/scene.h"
-
 #include <gtest/gtest.h>
 
 namespace tyndall::test {

@@ -1,6 +1,9 @@
 // References until their noise is small: as good as asked for, and right on average though most samples are quick ones.
 #include "measure/chart_errors.h"
+#include "scene/light.h"
 #include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,11 @@
 
 #include "base/parallel.h"
 #include "modes/fog_picture.h"
+#include "modes/history.h"
+#include "scene/light.h"
+#include "trace/occluders.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 
@@ -109,11 +114,11 @@ TEST(MutationCheck, NoRejectionOfHistory) {
     const Mode stubborn =
         broken("froxel", [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
             if (history && history->frames > 0) { // look the same to whoever compares
-            History same;
-            follow(same, view, snapshot, settings);
-            history->view = same.view, history->settings = same.settings;
-            history->scene = same.scene, history->lights = same.lights;
-        }
+                History same;
+                follow(same, view, snapshot, settings);
+                history->view = same.view, history->settings = same.settings;
+                history->scene = same.scene, history->lights = same.lights;
+            }
             return find_mode("froxel").prepare(view, snapshot, settings, history);
         });
     expect_caught("cut", stubborn);
@@ -162,19 +167,21 @@ TEST(MutationCheck, LightInADarkRoom) {
 }
 
 TEST(MutationCheck, ShadowsAside) {
-    expect_caught("slit", broken("shadow-map", [](const View& view, const Snapshot& snapshot, const Settings& settings,
-                                                  History* history) {
-                      const auto scene = std::make_shared<Scene>(*snapshot.scene);
-                      for (Mesh& mesh : scene->meshes)
-                          for (vec3& position : mesh.positions) position.x += 0.3f;
-                      Snapshot aside = snapshot;
-                      aside.scene = scene.get(), aside.occluders = Occluders::make(*scene, 0, nullptr);
-                      const ScatterFunction scatter =
-                          find_mode("shadow-map").prepare(view, aside, settings, history);
-                      return ScatterFunction([scatter, scene](const RayBatch& batch, std::span<Scatter> results) {
-                          scatter(batch, results);
-                      });
-                  }), Verdict::degrades);
+    expect_caught(
+        "slit",
+        broken("shadow-map",
+               [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+                   const auto scene = std::make_shared<Scene>(*snapshot.scene);
+                   for (Mesh& mesh : scene->meshes)
+                       for (vec3& position : mesh.positions) position.x += 0.3f;
+                   Snapshot aside = snapshot;
+                   aside.scene = scene.get(), aside.occluders = Occluders::make(*scene, 0, nullptr);
+                   const ScatterFunction scatter = find_mode("shadow-map").prepare(view, aside, settings, history);
+                   return ScatterFunction([scatter, scene](const RayBatch& batch, std::span<Scatter> results) {
+                       scatter(batch, results);
+                   });
+               }),
+        Verdict::degrades);
 }
 
 TEST(MutationCheck, PathsATenthTooDark) {

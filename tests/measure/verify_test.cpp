@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace tyndall::test {

@@ -1,6 +1,9 @@
 // Beam cards: where they are placed, and what they do to a picture.
 #include "modes/billboard.h"
 #include "run_mode.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
 
 #include <gtest/gtest.h>
 

@@ -5,6 +5,7 @@
 #include "run_mode.h"
 #include "trace/fluence.h"
 #include "trace/light_paths.h"
+#include "trace/light_transmittance.h"
 
 #include <gtest/gtest.h>
 

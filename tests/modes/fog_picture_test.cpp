@@ -1,5 +1,6 @@
 // Fog computed for a smaller picture and spread over the full one, alone and from frame to frame.
 #include "modes/fog_picture.h"
+#include "modes/history.h"
 #include "modes/techniques.h"
 #include "tiny_scenes.h"
 

@@ -1,5 +1,6 @@
 // Pictures of tiny scenes by the froxel mode and by the reference.
 #pragma once
+#include "scene/camera.h"
 #include "stage.h"
 
 namespace tyndall::test {

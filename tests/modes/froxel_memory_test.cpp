@@ -2,6 +2,7 @@
 #include "modes/froxel_memory.h"
 
 #include "froxel_fixtures.h"
+#include "modes/history.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,8 @@
 #include "modes/froxel_memory.h"
 
 #include "froxel_fixtures.h"
+#include "modes/history.h"
+#include "render/provenance.h"
 
 #include <gtest/gtest.h>
 

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "modes/history.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,8 @@
 #include "modes/history.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

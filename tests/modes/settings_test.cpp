@@ -1,6 +1,7 @@
 #include "modes/mode.h"
 
 #include "base/error.h"
+#include "modes/settings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,6 +3,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "tiny_scenes.h"
 
 #include <gmock/gmock.h>

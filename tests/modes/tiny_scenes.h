@@ -1,7 +1,16 @@
 // Scenes of one medium and one light, made in memory.
 #pragma once
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
 #include "volume/sparse_volume.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 #include <cmath>
 #include <functional>

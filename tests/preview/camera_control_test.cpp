@@ -1,5 +1,7 @@
 #include "fixtures.h"
 #include "preview/camera_control.h"
+#include "trace/moment.h"
+#include "trace/snapshot.h"
 
 namespace tyndall::test {
 namespace {

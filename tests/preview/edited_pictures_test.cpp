@@ -1,8 +1,12 @@
 // What is seen after an edit is what the saved file gives, to the bit.
 #include "editing.h"
+#include "modes/mode.h"
 #include "preview/scene_session.h"
 #include "render/frame.h"
+#include "scene/light.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <cstring>
 

@@ -5,6 +5,8 @@
 #include "scene/scene_fixtures.h"
 #include "volume/vdb.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <bit>
 #include <string>
 

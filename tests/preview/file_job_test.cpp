@@ -44,9 +44,7 @@ struct FileJobs : testing::Test {
     RenderJob sequence(const char* range, bool png = false) const {
         return sequence_job(state, path("out.####.exr"), range, png, "avx2");
     }
-    RenderFiles frames(const char* range, bool png = false) const {
-        return render_files(state, sequence(range, png));
-    }
+    RenderFiles frames(const char* range, bool png = false) const { return render_files(state, sequence(range, png)); }
 };
 
 std::vector<float> pixels(const std::filesystem::path& file) {
@@ -122,7 +120,8 @@ TEST_F(FileJobs, MistakesSayWhatIsWrong) {
     EXPECT_NE(usage([&] { bake_files(state, "haze", "fog.####.vdb", ""); }).find("wisps"), std::string::npos);
     EXPECT_NE(usage([&] { bake_files(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
     std::ofstream(path("file")) << "in the way";
-    EXPECT_EQ(run(render_files(state, sequence_job(state, path("file/out.####.exr"), "", false, ""))).code, ExitCode::unwritable);
+    EXPECT_EQ(run(render_files(state, sequence_job(state, path("file/out.####.exr"), "", false, ""))).code,
+              ExitCode::unwritable);
     const std::string endless(300, 'a'); // longer than any file system's names
     EXPECT_EQ(run(render_files(state, sequence_job(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
               ExitCode::unwritable);
@@ -138,8 +137,7 @@ TEST_F(FileJobs, TheCommandSaysWhatIsShown) {
     apply(state, parse_action("exposure 1"));
     const std::string command = command_of(state, sequence("1-3", true));
     for (const char* part : {"tyndall render ", "scene.json -o ", "out.####.exr' --frames 1-3 ", "--mode froxel ",
-                             "--quality final ", "--set pixel.samples=16",
-                             "--set froxel.tile=4", "--png --exposure 1"})
+                             "--quality final ", "--set pixel.samples=16", "--set froxel.tile=4", "--png --exposure 1"})
         EXPECT_NE(command.find(part), std::string::npos) << command;
     EXPECT_EQ(command.find("march.step_depth"), std::string::npos) << command; // final's own again
     apply(state, parse_action("orbit 5 5"));

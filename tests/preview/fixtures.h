@@ -1,7 +1,10 @@
 // A small scene in memory: fog, a sun, a plane and two cameras.
 #pragma once
 #include "base/error.h"
+#include "preview/scene_loader.h"
 #include "preview/view_state.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,9 @@
 #include "painting.h"
 #include "preview/missing_frames.h"
 #include "preview/view_state.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "volume/medium.h"
 #include "volume/vdb.h"
 
 namespace tyndall::test {

@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "preview/light_handles.h"
+#include "scene/scene.h"
 
 #include <gtest/gtest.h>
 

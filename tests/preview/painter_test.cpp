@@ -1,7 +1,13 @@
 #include "base/parallel.h"
+#include "base/progress.h"
+#include "modes/mode.h"
 #include "painting.h"
 #include "preview/save_picture.h"
+#include "render/frame.h"
 #include "render/png.h"
+#include "render/sequence.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 #include <fstream>
 #include <sstream>

@@ -3,8 +3,11 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "fixtures.h"
+#include "modes/mode.h"
 #include "preview/painter.h"
 #include "preview/view_state.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 #include <thread>
 

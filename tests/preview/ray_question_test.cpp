@@ -1,7 +1,10 @@
 #include "base/parallel.h"
 #include "measure/explain_curves.h"
+#include "modes/mode.h"
 #include "painting.h"
 #include "preview/view_state.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -1,6 +1,10 @@
 #include "base/parallel.h"
+#include "modes/mode.h"
 #include "painting.h"
 #include "render/candidates.h"
+#include "render/frame.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

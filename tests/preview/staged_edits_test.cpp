@@ -4,6 +4,8 @@
 #include "preview/edit_actions.h"
 #include "preview/painter.h"
 #include "preview/save_picture.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

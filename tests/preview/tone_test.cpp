@@ -1,4 +1,5 @@
 #include "preview/tone.h"
+#include "render/layers.h"
 #include "render/png.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 #include "fixtures.h"
+#include "modes/mode.h"
 #include "preview/script_player.h"
 #include "preview/setting_groups.h"
 

@@ -2,7 +2,11 @@
 #include "measure/heatmap.h"
 #include "painting.h"
 #include "preview/view_state.h"
+#include "scene/light.h"
+#include "volume/medium.h"
 #include "volume/vdb.h"
+
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall::test {
 namespace {

@@ -1,5 +1,6 @@
 // More rays where neighbouring pixels differ.
 #include "fixtures.h"
+#include "modes/promise.h"
 #include "render/edges.h"
 
 namespace tyndall::test {
@@ -52,8 +53,8 @@ TEST(Edges, TakeMoreRaysThereAndNowhereElse) {
     rendered(edge, edge_view(1), plain);
     EXPECT_EQ(plain.camera_rays, 512u * samples);
     rendered(edge, edge_view(4), more);
-    // One probe a pixel. The square spans 8.7 to 23.3 and 0.7 to 15.3: its edges run through tiles of columns 2 to 5 and
-    // rows 0 to 3, all but the four in its middle.
+    // One probe a pixel. The square spans 8.7 to 23.3 and 0.7 to 15.3: its edges run through tiles of columns 2 to 5
+    // and rows 0 to 3, all but the four in its middle.
     EXPECT_EQ(more.camera_rays, 512u + 512u * samples + 12u * 16 * 3 * samples);
 }
 

@@ -2,8 +2,14 @@
 #include "base/file.h"
 #include "base/scratch.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/bake.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

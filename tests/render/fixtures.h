@@ -3,7 +3,15 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/random.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
 #include "render/frame.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,8 @@
 #include "fixtures.h"
 #include "render/frame.h"
 
+#include <glm/gtc/quaternion.hpp>
+
 #include <cstring>
 #include <mutex>
 

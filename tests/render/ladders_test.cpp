@@ -1,4 +1,5 @@
 // Ladders hold what charts and plans compare.
+#include "modes/mode.h"
 #include "render/ladders.h"
 
 #include <gtest/gtest.h>

@@ -2,6 +2,7 @@
 #include "base/frames.h"
 #include "fixtures.h"
 #include "render/sequence.h"
+#include "trace/kept.h"
 
 #include <fstream>
 
@@ -63,7 +64,7 @@ RenderJob job_for(const Scene& scene, const std::string& mode, const std::string
 RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode, LoadedFrame first = {}) {
     Progress progress(ProgressStyle::none, "render", static_cast<double>(job.frames.size()));
     std::atomic<bool> cancel = false;
-    return render_sequence(scene, job, mode, progress, cancel, std::move(first));
+    return render_sequence(scene, job, mode, progress, cancel, &first);
 }
 
 // A thing that counts how often it was made and how many of it there are.

@@ -14,7 +14,8 @@ Result to_target(const View& view, double target, FrameOptions options = {},
     static const Scene scene;
     const Snapshot snapshot = snapshot_of(scene);
     Result result;
-    result.layers = render_to_target(mode, view, snapshot, Settings{}, {target, 0, Quality::preview, {}}, options, result.stats);
+    result.layers =
+        render_to_target(mode, view, snapshot, Settings{}, {target, 0, Quality::preview, {}}, options, result.stats);
     return result;
 }
 

@@ -1,6 +1,5 @@
 // What a glTF holds arrives in the scene.
 #include "images.h"
-#include "scene/light.h"
 #include "scene_fixtures.h"
 
 namespace tyndall {

@@ -1,5 +1,6 @@
 #include "scene/keyed.h"
 
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 namespace tyndall {

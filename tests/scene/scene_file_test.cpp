@@ -1,7 +1,8 @@
 #include "images.h"
-#include "scene/scene.h"
 #include "scene_fixtures.h"
 #include "volume/vdb.h"
+
+#include <glm/gtc/quaternion.hpp>
 
 namespace tyndall {
 namespace {

@@ -1,9 +1,13 @@
 #include "trace/kept_shadows.h"
 
 #include "base/parallel.h"
+#include "trace/kept.h"
 #include "trace/light_depth.h"
 #include "trace/scene_fixtures.h"
 #include "trace/shadow_slices.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 #include "volume/recipe.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,10 @@
-#include "trace/light_depth.h"
 
 #include "trace/light_grid.h"
 #include "trace/scene_fixtures.h"
+#include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace tyndall {

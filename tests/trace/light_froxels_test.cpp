@@ -3,6 +3,8 @@
 
 #include "base/parallel.h"
 #include "trace/scene_fixtures.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/fog_fixtures.h"
 
 #include <gtest/gtest.h>

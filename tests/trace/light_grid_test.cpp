@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "trace/scene_fixtures.h"
+#include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
 #include "volume/noise.h"
 

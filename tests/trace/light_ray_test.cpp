@@ -1,6 +1,7 @@
 #include "trace/light_ray.h"
 
 #include "base/random.h"
+#include "scene/light.h"
 
 #include <gtest/gtest.h>
 

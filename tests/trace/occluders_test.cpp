@@ -1,4 +1,3 @@
-#include "trace/occluders.h"
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // Small scenes made in memory.
 #pragma once
 #include "base/random.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "trace/occluders.h"
 
 namespace tyndall::test {

@@ -2,7 +2,11 @@
 #include "scene_fixtures.h"
 
 #include "base/random.h"
+#include "scene/light.h"
 #include "trace/shadow_map.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,6 @@
 
 #include "base/random.h"
 #include "scene_fixtures.h"
-#include "trace/snapshot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,9 @@
 // Lit stretches against hand-computed ones and against thousands of shadow rays.
 #include "trace/shadow_slices.h"
 
+#include "scene/camera.h"
 #include "scene_fixtures.h"
-#include "trace/snapshot.h"
+#include "trace/moment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,15 @@
-#include "trace/snapshot.h"
 
 #include "base/error.h"
 #include "base/scratch.h"
+#include "scene/camera.h"
+#include "scene/light.h"
 #include "trace/fog.h"
 #include "trace/scene_fixtures.h"
 #include "volume/fog_fixtures.h"
 #include "volume/vdb.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gmock/gmock.h>
 
 namespace tyndall {

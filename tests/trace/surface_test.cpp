@@ -1,6 +1,9 @@
 #include "trace/surface.h"
 
+#include "trace/light_depth.h"
+#include "trace/light_transmittance.h"
 #include "trace/scene_fixtures.h"
+#include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
 
 #include <gtest/gtest.h>

@@ -4,6 +4,8 @@
 #include "volume/fog_fixtures.h"
 #include "volume/half.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace tyndall::test {
 namespace {
 // Leaves and tiles on both sides of the origin: noise, a constant leaf, an aligned tile, one that is not.

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "fog_fixtures.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
 
 namespace tyndall::test {

@@ -3,11 +3,13 @@
 #include "volume/fog_fixtures.h"
 #include "volume/medium_simd.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <cstring>
 
 namespace tyndall::test {
 namespace {
-using namespace HWY_NAMESPACE; // the baseline's kernels, as this file is compiled once
+using namespace HWY_NAMESPACE; // AVX2's kernels, as this file is compiled once
 
 struct Points {
     alignas(64) float x[16], y[16], z[16];
@@ -73,20 +75,6 @@ TEST(Densities, SameBitsOnEveryVectorInstructionSet) {
             EXPECT_EQ(std::memcmp(wide.data(), narrow.data(), sizeof wide), 0);
         }
     set_isa("auto");
-}
-
-// The kernels without vector instructions, and the way of pools too large for them.
-TEST(Densities, BaselineAgreesToRounding) {
-    const Medium bricks = medium_of(varied_volume()), height = height_fog(1, 2, 3);
-    for (const Medium* medium : {&bricks, &height})
-        for (uint32_t packet = 0; packet < 200; ++packet) {
-            const Points points = random_points(vec3(-20), vec3(30), packet);
-            const Vec3s vectors{load(points.x), load(points.y), load(points.z)};
-            alignas(64) float baseline[16];
-            store(density16(*medium, vectors), baseline);
-            const auto best = densities_at(*medium, points);
-            for (int lane = 0; lane < 16; ++lane) EXPECT_NEAR(best[lane], baseline[lane], 2e-5);
-        }
 }
 
 TEST(Densities, LargePoolsSampleTheSame) {

@@ -3,6 +3,7 @@
 #include "volume/vdb_fixtures.h"
 #include "volume/vdb_prewalk.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
 
 #include <cstring>

@@ -3,6 +3,8 @@
 
 #include "volume/fog_fixtures.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace tyndall::test {
 namespace {
 std::vector<Step> steps_of(const Ray& ray, std::span<const Medium> media, const StepRule& rule = {}) {

@@ -3,6 +3,8 @@
 
 #include "volume/fog_fixtures.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 namespace tyndall::test {
 namespace {
 constexpr double limit = 4.5; // standard errors: chance of a false alarm 7e-6

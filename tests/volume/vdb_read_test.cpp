@@ -2,6 +2,7 @@
 #include "volume/vdb.h"
 #include "volume/vdb_fixtures.h"
 
+#include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
 
 #include <sys/resource.h>

@@ -7,7 +7,7 @@ import sys
 LAYERS = ["base", "volume", "scene", "trace", "modes", "render", "measure", "preview"]
 OWNERS = {  # header prefix -> where it may be included
     "tbb/": ["src/base"], "nlohmann/": ["src/base"], "valijson/": ["src/base"], "openvdb/": ["src/volume/vdb"],
-    "nanovdb/": ["tests"], "embree3/": ["src/trace/occluders"], "tiny_gltf": ["src/scene"],
+    "nanovdb/": ["tests"], "embree": ["src/trace/embree.h"], "tiny_gltf": ["src/scene"],
     "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/exr"],
     "Imf": ["src/render/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "GL/": ["apps"], "imgui": ["apps"],
 }

@@ -1,0 +1,6 @@
+// What lies behind everything.
+#pragma once
+
+namespace tyndall {
+enum class BackgroundKind { color, sky, image };
+}

@@ -1,0 +1,12 @@
+// How files of scenes are to be understood.
+#pragma once
+
+namespace tyndall {
+enum class LightUnits { spec, unitless, raw };
+
+struct LoadOptions {
+    // Of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
+    // (points and spots also spread over the sphere, 683 / 4 pi).
+    LightUnits light_units = LightUnits::spec;
+};
+}

@@ -1,0 +1,10 @@
+// A sample as part of a low-discrepancy sequence: each pixel and batch has its own.
+#pragma once
+#include <cstdint>
+
+namespace tyndall {
+struct SamplePlace {
+    uint32_t sequence; // names the sequence
+    uint32_t index;    // place in it
+};
+}
