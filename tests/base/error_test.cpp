@@ -1,6 +1,6 @@
-#include "base/expect_error.h"
 #include "base/text.h"
 #include "base/utf8.h"
+#include "support/expect_error.h"
 
 namespace tyndall {
 namespace {

@@ -1,6 +1,6 @@
-#include "base/expect_error.h"
 #include "base/file.h"
-#include "base/scratch.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #include <sys/socket.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
-#include "base/expect_error.h"
 #include "base/file.h"
-#include "base/scratch.h"
 #include "base/temporary.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #include <fcntl.h>
 #include <signal.h>

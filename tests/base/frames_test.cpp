@@ -1,5 +1,5 @@
-#include "base/expect_error.h"
 #include "base/frames.h"
+#include "support/expect_error.h"
 
 #include <algorithm>
 #include <climits>

@@ -1,5 +1,5 @@
-#include "base/expect_error.h"
 #include "base/json.h"
+#include "support/expect_error.h"
 
 #include <cfloat>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "base/expect_error.h"
 #include "base/file.h"
 #include "base/json.h"
 #include "base/schema_problem.h"
-#include "base/scratch.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #include <random>
 

@@ -9,8 +9,6 @@ import pathlib
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(__file__).parents[2]
-
 
 def compile_seconds(build):
     """Seconds each object (or precompiled header) took to compile, the last time it was."""
@@ -25,7 +23,9 @@ def compile_seconds(build):
 def headers_of_objects(build):
     """The project's own headers that each object includes."""
     listed = subprocess.run(["ninja", "-C", build, "-t", "deps"], capture_output=True, text=True, check=True).stdout
-    root, headers, used = str(SOURCE.resolve()) + "/", [], {}
+    cache = (build / "CMakeCache.txt").read_text()
+    root = next(line.split("=", 1)[1] for line in cache.splitlines() if line.startswith("CMAKE_HOME_DIRECTORY:")) + "/"
+    headers, used = [], {}
     for line in listed.splitlines():
         if line.startswith(" "):
             headers.append(line.strip().removeprefix(root))

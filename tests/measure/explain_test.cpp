@@ -1,7 +1,14 @@
 // One ray's story against closed forms, against the reference, and against whole pictures.
 #include "measure/explain_report.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/meshes.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
-#include "modes/stage.h"
 #include "render/candidates.h"
 #include "render/frame.h"
 

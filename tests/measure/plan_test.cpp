@@ -1,8 +1,15 @@
 // Plans of scenes of which it is known what they need.
 #include "measure/plan.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include "measure/halves.h"
-#include "modes/stage.h"
 #include "render/to_target.h"
 #include "scene/scene_file.h"
 

@@ -1,9 +1,15 @@
 // Beam cards: where they are placed, and what they do to a picture.
 #include "modes/billboard.h"
-#include "run_mode.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
 #include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,13 @@
 // Analytic light cones against adaptive quadrature in double, closed forms and geometry.
 #include "cone_integral.h"
-#include "run_mode.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include "base/parallel.h"
 #include "base/random.h"

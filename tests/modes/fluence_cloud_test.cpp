@@ -1,6 +1,15 @@
 // The example cloud by march with the grid of fluence, against path tracing.
 #include "base/parallel.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
 #include "path_rays.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,22 @@
 // Light that scatters more than once, by the grid of fluence: closed forms, conservation, and path tracing.
+#include "base/parallel.h"
 #include "froxel_fixtures.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
 #include "path_rays.h"
 #include "path_scenes.h"
-#include "run_mode.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/integral.h"
+#include "support/meshes.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
 #include "trace/fluence.h"
 #include "trace/light_paths.h"
 #include "trace/light_transmittance.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

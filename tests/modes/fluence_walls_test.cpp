@@ -1,8 +1,11 @@
 // Fluence beside surfaces and at the rim of the fog.
 #include "base/random.h"
 #include "path_scenes.h"
-#include "run_mode.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "support/tiny_scenes.h"
 #include "trace/fluence.h"
+#include "trace/snapshot.h"
 
 #include <gtest/gtest.h>
 

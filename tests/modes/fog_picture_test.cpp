@@ -1,8 +1,11 @@
 // Fog computed for a smaller picture and spread over the full one, alone and from frame to frame.
 #include "modes/fog_picture.h"
 #include "modes/history.h"
+#include "modes/settings.h"
 #include "modes/techniques.h"
-#include "tiny_scenes.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <gtest/gtest.h>
 

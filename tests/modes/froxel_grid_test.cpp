@@ -1,5 +1,7 @@
 // Froxels and where they lie.
 #include "modes/froxel_grid.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
 
 #include "froxel_fixtures.h"
 #include "modes/froxel_tiles.h"

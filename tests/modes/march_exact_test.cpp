@@ -1,5 +1,13 @@
 // The exact march against closed forms, quadrature of the light equation, and the sampled march.
 #include "busy_stage.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
+#include "modes/ray_batch.h"
+#include "modes/settings.h"
+#include "support/integral.h"
+#include "support/run_mode.h"
+#include "trace/occluders.h"
+#include "trace/view.h"
 
 #include "base/parallel.h"
 #include "trace/light_ray.h"

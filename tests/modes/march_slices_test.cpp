@@ -1,5 +1,12 @@
 // Steps between exact shadows: against the exact march, in every kind of fog and light.
 #include "busy_stage.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
+#include "modes/ray_batch.h"
+#include "modes/settings.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/view.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,14 @@
 // Soft lights where shadows are cut out exactly: in steps between them, and in the exact march.
-#include "stage.h"
 
 #include "base/random.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
 #include "trace/light_ray.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <gtest/gtest.h>
 

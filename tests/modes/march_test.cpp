@@ -1,7 +1,14 @@
 // The march against closed forms and quadrature of the light equation.
-#include "tiny_scenes.h"
 
 #include "base/random.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/integral.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+#include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,14 @@
 // The path tracer against closed forms, published values and conservation laws.
+#include "base/random.h"
 #include "path_scenes.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,10 @@
 // The radial blur: what it must leave alone, how it fades, and that its sum does not depend on how many samples it has.
 #include "modes/radial_blur.h"
+#include "modes/settings.h"
 #include "modes/techniques.h"
-#include "tiny_scenes.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <gtest/gtest.h>
 

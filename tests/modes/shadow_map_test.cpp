@@ -1,8 +1,18 @@
 // The march with shadow maps against closed forms, the reference and traced shadows.
-#include "../trace/scene_fixtures.h"
-#include "tiny_scenes.h"
 
 #include "base/parallel.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/integral.h"
+#include "support/meshes.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -19,15 +29,7 @@ View tiny_view() {
 
 std::vector<Scatter> run(std::string_view mode, const Snapshot& snapshot, const Settings& settings,
                          const std::vector<Ray>& rays) {
-    const ScatterFunction scatter = find_mode(mode).prepare(tiny_view(), snapshot, settings, nullptr);
-    std::vector<Scatter> results(rays.size());
-    const std::vector<uint32_t> ids(16, 7);
-    for (size_t first = 0; first < rays.size(); first += 16) {
-        const size_t count = std::min<size_t>(16, rays.size() - first);
-        scatter({std::span(rays).subspan(first, count), std::span(ids).first(count), {}, {}},
-                std::span(results).subspan(first, count));
-    }
-    return results;
+    return run_mode(mode, tiny_view(), snapshot, settings, rays);
 }
 Scatter run(const Snapshot& snapshot, const Settings& settings, const Ray& ray) {
     return run("shadow-map", snapshot, settings, std::vector{ray})[0];

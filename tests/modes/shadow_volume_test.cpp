@@ -1,11 +1,19 @@
 // Fog between shadow volumes, against closed forms and the deterministic reference.
 #include "modes/lit_fog.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
-#include "tiny_scenes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

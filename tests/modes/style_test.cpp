@@ -1,6 +1,13 @@
 // Artist's controls against the closed forms they bend.
+#include "modes/mode.h"
+#include "modes/settings.h"
 #include "modes/style.h"
-#include "run_mode.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,12 @@
 // Editing through actions, as hands and scripts do it.
+#include "base/file.h"
 #include "editing.h"
 #include "fixtures.h"
 #include "preview/edit_actions.h"
+#include "preview/scene_edit.h"
+#include "preview/scene_loader.h"
+#include "preview/view_state.h"
+#include "scene/scene.h"
 
 #include <bit>
 
@@ -116,7 +121,7 @@ TEST(EditActions, UnsavedEditsSurviveReadingAgainAndLostOnesAreTold) {
     const size_t stage = text.find("    { \"name\": \"stage\""), next = text.find("    { \"type\": \"spot\"");
     text.erase(stage, next - stage);
     edited("select lights/evening");
-    edited.studio.write("scene.json", text);
+    edited.studio.put("scene.json", text);
     edited.state.reloading = true;
     edited.open(edited.studio.file);
     EXPECT_EQ(edited.state.scene->lights.back().intensity.at(0), 31);
@@ -159,7 +164,7 @@ TEST(EditActions, ActionsOfEditsAreTheirWords) {
         EXPECT_EQ(again.part, edit.part) << action.words[0];
         EXPECT_EQ(again.index, edit.index) << action.words[0];
         EXPECT_EQ(again.property, edit.property);
-        EXPECT_EQ(bits(again.value), bits(edit.value)) << action.words[1];
+        EXPECT_EQ(again.value, edit.value) << action.words[1];
     }
 }
 
@@ -220,7 +225,7 @@ TEST(EditActions, WhatCannotBeSavedIsAskedOn) {
     Edited edited;
     edited("edit ambient 0.3");
     edited("close");
-    edited.studio.write("scene.json", "{}"); // by somebody else
+    edited.studio.put("scene.json", "{}"); // by somebody else
     error_text(ExitCode::refused, [&] { edited("answer save"); });
     EXPECT_TRUE(edited.state.asked);
     EXPECT_FALSE(edited.state.leaving);

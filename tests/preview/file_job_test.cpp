@@ -3,9 +3,17 @@
 #include "preview/edit_actions.h"
 #include "preview/job_thread.h"
 #include "preview/save_picture.h"
+#include "preview/scene_loader.h"
+#include "preview/scene_session.h"
+#include "preview/scene_text.h"
+#include "preview/view_state.h"
 #include "render/exr.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
 #include "volume/bake.h"
 
+#include <fstream>
 #include <thread>
 
 namespace tyndall::test {
@@ -14,11 +22,11 @@ using namespace std::chrono_literals;
 
 // A scene of one sun over a patch of fog from a recipe, read from files.
 struct FileJobs : testing::Test {
-    TemporaryDirectory directory;
+    Scratch directory;
     ViewState state;
     std::atomic<bool> cancel{false};
 
-    std::filesystem::path path(const char* name) const { return directory.path / name; }
+    std::filesystem::path path(const char* name) const { return directory.path() / name; }
 
     void SetUp() override {
         std::ofstream(path("fog.json")) << R"({"bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]}, "voxel_size": 0.25,
@@ -166,7 +174,7 @@ TEST_F(FileJobs, AThreadDoesOneAtATimeAndStops) {
     EXPECT_NE(result->message.find("of 400 frames"), std::string::npos) << result->message;
     EXPECT_FALSE(thread.status());
     EXPECT_TRUE(comes([&] { return news == 1; }));
-    for (const auto& entry : std::filesystem::directory_iterator(directory.path))
+    for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
         if (entry.path().extension() == ".exr") read_exr(entry.path()); // throws when it is partial
 
     state.settings.pixel.samples = 1;

@@ -37,13 +37,13 @@ SparseVolume one_voxel() {
 }
 
 // Frames 1 to 5 of a sequence that has 1, 2 and 4.
-std::shared_ptr<Scene> scene_with_gap(const TemporaryDirectory& directory) {
+std::shared_ptr<Scene> scene_with_gap(const Scratch& directory) {
     for (const char* name : {"smoke.0001.vdb", "smoke.0002.vdb", "smoke.0004.vdb"})
-        write_vdb(directory.path / name, one_voxel());
+        write_vdb(directory.path() / name, one_voxel());
     Scene scene = *small_scene();
     scene.last_frame = 5;
     scene.media[0].name = "smoke", scene.media[0].kind = MediumKind::vdb;
-    scene.media[0].sequence = find_sequence("smoke.####.vdb", directory.path);
+    scene.media[0].sequence = find_sequence("smoke.####.vdb", directory.path());
     return std::make_shared<Scene>(std::move(scene));
 }
 }
@@ -99,7 +99,7 @@ TEST(FrameStore, TheNextFrameIsMadeAheadOnce) {
 }
 
 TEST(FrameStore, AFileThatIsMissingIsSaidWhenItsFrameIsAskedFor) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const auto scene = scene_with_gap(directory);
     FrameStore store;
     store.begin(scene, MissingFrame::error);
@@ -141,7 +141,7 @@ TEST(FrameStore, WhilePlayingThePainterMakesTheNextFrameAfterThePicture) {
 }
 
 TEST(MissingFrames, GapsAreListedAndSaid) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const auto scene = scene_with_gap(directory);
     EXPECT_EQ(missing_frames(*scene), std::vector<int>{3}) << "5 holds the last, which is no gap";
     EXPECT_EQ(missing_text(*scene, 2, MissingFrame::error), "");
@@ -153,7 +153,7 @@ TEST(MissingFrames, GapsAreListedAndSaid) {
 }
 
 TEST(MissingFrames, ThePolicyIsAnActionAndOtherPictures) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     ViewState state;
     take_scene(state, scene_with_gap(directory));
     EXPECT_EQ(state.gaps, std::vector<int>{3});

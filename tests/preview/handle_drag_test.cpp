@@ -2,6 +2,7 @@
 #include "fixtures.h"
 #include "preview/edit_actions.h"
 #include "preview/handle_drag.h"
+#include "preview/scene_session.h"
 
 namespace tyndall::test {
 namespace {

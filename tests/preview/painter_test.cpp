@@ -185,8 +185,8 @@ TEST(Painter, AStillPictureThatHasBegunIsNotReplacedByAQuickOne) {
 
 TEST(SavePicture, FilesAreThoseOfRender) {
     flush_denormals();
-    TemporaryDirectory directory;
-    const std::filesystem::path file = directory.path / "scene.json";
+    Scratch directory;
+    const std::filesystem::path file = directory.path() / "scene.json";
     std::ofstream(file) << "{}";
     Scene copy = *small_scene(file);
     copy.inputs = {file};
@@ -198,28 +198,28 @@ TEST(SavePicture, FilesAreThoseOfRender) {
         Painter painter; // with something before
         paint_all(painter, save.request);
         for (const char* name : {"a.exr", "a.png"}) {
-            save.file = directory.path / name;
+            save.file = directory.path() / name;
             save_picture(save, &painter.snapshot, never, {});
         }
         RenderJob job;
-        job.scene_file = file, job.output = (directory.path / "b.exr").string(), job.frames = {1};
+        job.scene_file = file, job.output = (directory.path() / "b.exr").string(), job.frames = {1};
         job.mode = mode, job.settings = settings_for(Quality::preview), job.isa = "avx2", job.png = true;
         Progress progress(ProgressStyle::silent, "render", 1);
         render_sequence(*scene, job, progress, never);
         // The size is the scene's either way; only the command in the header spells it out.
-        EXPECT_EQ(content(directory.path / "a.exr"), content(directory.path / "b.exr")) << mode;
-        EXPECT_EQ(content(directory.path / "a.png"), content(directory.path / "b.png")) << mode;
+        EXPECT_EQ(content(directory.path() / "a.exr"), content(directory.path() / "b.exr")) << mode;
+        EXPECT_EQ(content(directory.path() / "a.png"), content(directory.path() / "b.png")) << mode;
     }
 }
 
 TEST(SavePicture, RefusesOtherKindsAndTheScenesOwnFiles) {
-    TemporaryDirectory directory;
+    Scratch directory;
     Scene copy = *small_scene();
-    copy.inputs = {directory.path / "plate.png"};
+    copy.inputs = {directory.path() / "plate.png"};
     std::ofstream(copy.inputs[0]) << "x";
     SaveJob save;
     save.request = request_for(std::make_shared<Scene>(copy));
-    save.file = directory.path / "a.jpg";
+    save.file = directory.path() / "a.jpg";
     error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
     save.file = copy.inputs[0];
     error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });

@@ -1,5 +1,6 @@
 #include "editing.h"
 #include "preview/property_words.h"
+#include "scene/scene.h"
 
 #include <set>
 

@@ -3,6 +3,7 @@
 #include "preview/scene_loader.h"
 
 #include <chrono>
+#include <fstream>
 
 namespace tyndall::test {
 namespace {
@@ -82,11 +83,11 @@ TEST(RenderThread, MovingRequestsDoNotStarve) {
 }
 
 TEST(RenderThread, WritesFilesAndSaysWhatWentWrong) {
-    TemporaryDirectory directory;
+    Scratch directory;
     RenderThread thread;
     SaveJob save;
     save.request = request_for(small_scene());
-    save.file = directory.path / "a.png";
+    save.file = directory.path() / "a.png";
     thread.save(save);
     save.file = "/proc/nowhere/a.png";
     thread.save(save);
@@ -97,7 +98,7 @@ TEST(RenderThread, WritesFilesAndSaysWhatWentWrong) {
     });
     ASSERT_EQ(saved.size(), 2u);
     EXPECT_EQ(saved[0].error, "");
-    EXPECT_TRUE(std::filesystem::exists(directory.path / "a.png"));
+    EXPECT_TRUE(std::filesystem::exists(directory.path() / "a.png"));
     EXPECT_EQ(static_cast<int>(saved[1].code), static_cast<int>(ExitCode::unwritable));
     EXPECT_TRUE(comes([&] { return thread.idle(); }));
 }
@@ -121,8 +122,8 @@ TEST(SceneLoader, ReadsBesideAndSaysWhatWentWrong) {
 }
 
 TEST(SceneLoader, FilesAreKnownAsTheyWereRead) {
-    TemporaryDirectory directory;
-    const std::filesystem::path file = directory.path / "a.json";
+    Scratch directory;
+    const std::filesystem::path file = directory.path() / "a.json";
     std::ofstream(file) << R"({"tyndall": 1, "camera": {"position": [0, 0, 1], "target": [0, 0, 0]}})";
     const auto now = std::filesystem::file_time_type::clock::now();
     for (const auto written : {now - 1min, now + 1min}) { // the clock of a file server may be ahead

@@ -1,6 +1,8 @@
 #include "base/error.h"
 #include "editing.h"
 #include "preview/key_place.h"
+#include "preview/scene_edit.h"
+#include "scene/scene.h"
 
 #include <gmock/gmock.h>
 

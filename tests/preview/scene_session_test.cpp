@@ -20,7 +20,7 @@ float exposure(const SceneSession& session) { return session.scene.exposure.at(0
 // Writes with a time of change that differs from all before.
 void write_later(const Studio& studio, const std::string& name, std::string_view text) {
     static int seconds = 10;
-    std::filesystem::last_write_time(studio.write(name, text),
+    std::filesystem::last_write_time(studio.put(name, text),
                                      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(++seconds));
 }
 }
@@ -121,7 +121,7 @@ TEST(SceneSession, SavesNothingOverSomebodyElsesChange) {
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "1");
     const std::string other = replaced(rich_scene, "0.02", "0.5");
-    studio.write("scene.json", other);
+    studio.put("scene.json", other);
     EXPECT_THROW(save(session), Error);
     EXPECT_EQ(bytes_of(studio.file), other);
     EXPECT_TRUE(has_unsaved_changes(session));
@@ -147,7 +147,7 @@ TEST(SceneSession, SavesElsewhereAndGoesOnThere) {
 TEST(SceneSession, ABareModelIsSavedAsAScene) {
     const Studio studio;
     GltfBuilder plain = triangle_gltf();
-    studio.write("plain.gltf", plain.json());
+    studio.put("plain.gltf", plain.json());
     for (const char* name : {"plain.gltf", "room.gltf"}) {
         SceneSession session = open_session(studio / name);
         EXPECT_THROW(save(session), Error) << "has no scene file";
@@ -189,7 +189,7 @@ TEST(SceneSession, ABareVolumeIsSavedAsAScene) {
 TEST(SceneSession, NoticesFilesThatChange) {
     const Studio studio;
     write_ball(studio / "ball.vdb");
-    const std::filesystem::path file = studio.write(
+    const std::filesystem::path file = studio.put(
         "with_vdb.json", R"({"tyndall": 1, "gltf": "room.gltf", "media": [{"type": "vdb", "file": "ball.vdb"},
                              {"type": "noise", "recipe": "fog/dust.json"}]})");
     const SceneSession session = open_session(file);

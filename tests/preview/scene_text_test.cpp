@@ -4,6 +4,7 @@
 #include "editing.h"
 #include "preview/json_text.h"
 #include "preview/scene_text.h"
+#include "scene/scene.h"
 
 namespace tyndall::test {
 namespace {
@@ -21,7 +22,7 @@ struct Bench {
         for (const Edit& edit : apply(scene, parse_edit(scene, path, value, seconds))) edits.push_back(edit);
     }
     std::string written() const { return edited_text(text, scene, edits); }
-    Scene read() const { return load_scene(studio.write("scene.json", written())); }
+    Scene read() const { return load_scene(studio.put("scene.json", written())); }
 };
 
 std::string replaced(std::string text, std::string_view what, std::string_view by) {
@@ -183,7 +184,7 @@ TEST(SceneText, PathsMeanTheSameFilesFromAnotherFolder) {
     const std::string text = moved_text(rich_scene, folder, folder / "other/deep");
     EXPECT_NE(text.find("\"gltf\": \"../../room.gltf\""), text.npos);
     EXPECT_NE(text.find("\"recipe\": \"../../fog/dust.json\""), text.npos);
-    EXPECT_EQ(state_of(load_scene(bench.studio.write("other/deep/scene.json", text))), state_of(bench.scene));
+    EXPECT_EQ(state_of(load_scene(bench.studio.put("other/deep/scene.json", text))), state_of(bench.scene));
     EXPECT_EQ(moved_text(rich_scene, folder, folder / "other/.."), rich_scene);
 }
 }

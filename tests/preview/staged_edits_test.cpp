@@ -2,8 +2,10 @@
 #include "base/file.h"
 #include "fixtures.h"
 #include "preview/edit_actions.h"
+#include "preview/editable_parts.h"
 #include "preview/painter.h"
 #include "preview/save_picture.h"
+#include "preview/scene_edit.h"
 #include "scene/light.h"
 #include "volume/medium.h"
 
@@ -50,23 +52,23 @@ TEST(StagedEdits, PicturesFollowEditsAndKeepTheTriangles) {
 }
 
 TEST(StagedEdits, AFileHasTheEditsOfItsTimeAndLeavesTheNextPicturesAlone) {
-    TemporaryDirectory directory;
+    Scratch directory;
     ViewState state = small_state();
     act(state, "edit lights/sun/intensity 9");
     SaveJob before;
-    before.request = request_of(state, false), before.file = directory.path / "a.png";
+    before.request = request_of(state, false), before.file = directory.path() / "a.png";
     act(state, "edit lights/sun/intensity 2");
     const Request request = request_of(state, false);
     Painter painter, fresh;
     paint(painter, request, never_cancelled);
     save_picture(before, &painter.snapshot, never_cancelled, {});
     EXPECT_EQ(painted(painter, request), painted(fresh, request));
-    before.file = directory.path / "b.png";
+    before.file = directory.path() / "b.png";
     save_picture(before, nullptr, never_cancelled, {});
-    EXPECT_EQ(read_file(directory.path / "a.png"), read_file(directory.path / "b.png"));
-    before.request = request, before.file = directory.path / "c.png";
+    EXPECT_EQ(read_file(directory.path() / "a.png"), read_file(directory.path() / "b.png"));
+    before.request = request, before.file = directory.path() / "c.png";
     save_picture(before, nullptr, never_cancelled, {});
-    EXPECT_NE(read_file(directory.path / "a.png"), read_file(directory.path / "c.png"));
+    EXPECT_NE(read_file(directory.path() / "a.png"), read_file(directory.path() / "c.png"));
 }
 
 // A refused snapshot must not be taken for the one that was asked for.

@@ -2,6 +2,7 @@
 #include "modes/mode.h"
 #include "preview/script_player.h"
 #include "preview/setting_groups.h"
+#include "scene/scene.h"
 
 #include <set>
 

@@ -18,7 +18,7 @@ VolumePicture asked(const Request& request) {
 }
 
 // 16 x 8 x 8 voxels of 0.5 m, centres of the first at 0.25: the density rises along x only, 0 to 15 sixteenths.
-std::shared_ptr<Scene> scene_with_ramp(const TemporaryDirectory& directory) {
+std::shared_ptr<Scene> scene_with_ramp(const Scratch& directory) {
     SparseVolume volume;
     volume.index_to_world = glm::translate(dmat4(1), dvec3(0.25)) * glm::scale(dmat4(1), dvec3(0.5));
     volume.active_low = ivec3(0), volume.active_high = ivec3(15, 7, 7);
@@ -27,10 +27,10 @@ std::shared_ptr<Scene> scene_with_ramp(const TemporaryDirectory& directory) {
         one.origin = ivec3(8 * leaf, 0, 0);
         for (int i = 0; i < 512; ++i) one.values[static_cast<size_t>(i)] = static_cast<float>(8 * leaf + i / 64) / 16;
     }
-    write_vdb(directory.path / "ramp.vdb", volume);
-    Scene scene = *small_scene(directory.path / "scene.json");
+    write_vdb(directory.path() / "ramp.vdb", volume);
+    Scene scene = *small_scene(directory.path() / "scene.json");
     scene.media[0].name = "ramp", scene.media[0].kind = MediumKind::vdb;
-    scene.media[0].sequence = find_sequence("ramp.vdb", directory.path);
+    scene.media[0].sequence = find_sequence("ramp.vdb", directory.path());
     return std::make_shared<Scene>(std::move(scene));
 }
 
@@ -44,7 +44,7 @@ double lightness(glm::u8vec4 code) { return 0.2126 * code.x + 0.7152 * code.y + 
 }
 
 TEST(VolumePicture, ASliceShowsTheDensityWhereItIs) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Request request = request_for(scene_with_ramp(directory));
     request.volume = VolumeQuestion{"ramp", VolumeLook::slice, 2, 0.5f};
     const VolumePicture shown = asked(request);
@@ -68,7 +68,7 @@ TEST(VolumePicture, ASliceShowsTheDensityWhereItIs) {
 }
 
 TEST(VolumePicture, MaximumAndMeanAreAlongTheAxis) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Request request = request_for(scene_with_ramp(directory));
     request.volume = VolumeQuestion{"", VolumeLook::maximum, 0, 0};
     const VolumePicture most = asked(request);
@@ -81,7 +81,7 @@ TEST(VolumePicture, MaximumAndMeanAreAlongTheAxis) {
 }
 
 TEST(VolumePicture, FactsAreThoseOfTyndallInfo) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Request request = request_for(scene_with_ramp(directory));
     request.volume = VolumeQuestion{};
     const VolumePicture shown = asked(request);

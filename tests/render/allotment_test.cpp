@@ -1,7 +1,14 @@
 // Samples go where pictures spread: by hand, then in pictures that are rendered until they are right.
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
 #include "noise_fixtures.h"
 #include "render/allotment.h"
 #include "render/to_target.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

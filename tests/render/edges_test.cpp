@@ -1,7 +1,13 @@
 // More rays where neighbouring pixels differ.
 #include "fixtures.h"
+#include "modes/mode.h"
 #include "modes/promise.h"
 #include "render/edges.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -1,10 +1,10 @@
 // The example scenes through the whole chain: files, snapshot, march.
 #include "base/file.h"
-#include "base/scratch.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "support/scratch.h"
 #include "trace/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

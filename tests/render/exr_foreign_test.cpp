@@ -1,6 +1,7 @@
 // Files by others: valid ones of every kind, and a corpus that once crashed readers.
-#include "fixtures.h"
 #include "render/exr.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #include <cstring>
 #include <fstream>
@@ -59,7 +60,7 @@ struct HandMade {
 };
 
 std::string refusal(const std::string& bytes) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     std::ofstream(directory.file("x.exr"), std::ios::binary) << bytes;
     return error_text(ExitCode::refused, [&] { read_exr(directory.file("x.exr")); });
 }
@@ -71,7 +72,7 @@ void expect_refused(const std::string& bytes, const std::string& reason) {
 }
 
 TEST(ExrForeign, ReadsAMinimalFile) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     std::ofstream(directory.file("x.exr"), std::ios::binary) << HandMade{}.with_pixels();
     const ExrFile exr = read_exr(directory.file("x.exr"));
     EXPECT_EQ(exr.compression, "none");

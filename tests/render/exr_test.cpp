@@ -1,5 +1,7 @@
-#include "fixtures.h"
+#include "base/random.h"
 #include "render/exr.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #include <sys/resource.h>
 
@@ -56,7 +58,7 @@ void expect_color(const ExrFile& exr, const std::string& layer, const Image<vec3
 }
 
 TEST(Exr, ReadsBackWhatWasWritten) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const Layers layers = patterned({37, 29}, {5, 3}, {64, 40});
     write_exr(directory.file("a.exr"), layers, {}, all_layers);
     const ExrFile exr = read_exr(directory.file("a.exr"));
@@ -78,7 +80,7 @@ TEST(Exr, ReadsBackWhatWasWritten) {
 }
 
 TEST(Exr, WritesOnlyTheLayersAskedFor) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     write_exr(directory.file("a.exr"), layers, {}, {{}, false});
     EXPECT_EQ(read_exr(directory.file("a.exr")).channels.size(), 4u);
@@ -90,7 +92,7 @@ TEST(Exr, WritesOnlyTheLayersAskedFor) {
 }
 
 TEST(Exr, NamesItsChannelsBeforehand) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     layers.lights = {{"Key light", layers.color},
                      {"Key_light", layers.color},
@@ -113,7 +115,7 @@ TEST(Exr, NamesItsChannelsBeforehand) {
 }
 
 TEST(Exr, ClampsAndCountsWhatHalfCannotHold) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     layers.color.at(1, 2) = vec3(1e6f, -1e6f, 65504);
     write_exr(directory.file("half.exr"), layers, {}, {});
@@ -130,7 +132,7 @@ TEST(Exr, ClampsAndCountsWhatHalfCannotHold) {
 }
 
 TEST(Exr, StoredColorIsWhatTheFileHolds) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Layers layers = patterned({16, 16}, {0, 0}, {16, 16});
     for (size_t i = 0; i < layers.color.pixels.size(); ++i)
         layers.color.pixels[i] = vec3(to_unit(hash(i)), 1e6f * to_unit(hash(i, 1u)), 1e-6f * to_unit(hash(i, 2u)));
@@ -139,7 +141,7 @@ TEST(Exr, StoredColorIsWhatTheFileHolds) {
 }
 
 TEST(Exr, SameInputGivesSameBytes) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const Layers layers = patterned({100, 70}, {0, 0}, {100, 70});
     Provenance provenance;
     provenance.attributes["tyndall:mode"] = "march";
@@ -149,7 +151,7 @@ TEST(Exr, SameInputGivesSameBytes) {
 }
 
 TEST(Exr, RefusesAFileCutAnywhere) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     write_exr(directory.file("a.exr"), patterned({61, 40}, {0, 0}, {61, 40}), {}, all_layers);
     const std::string bytes = bytes_of(directory.file("a.exr"));
     for (size_t k = 0; k < 300; ++k) {
@@ -161,7 +163,7 @@ TEST(Exr, RefusesAFileCutAnywhere) {
 }
 
 TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     write_exr(directory.file("a.exr"), patterned({61, 40}, {0, 0}, {61, 40}), {}, all_layers);
     const std::string bytes = bytes_of(directory.file("a.exr"));
     int refused = 0;
@@ -182,7 +184,7 @@ TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
 }
 
 TEST(Exr, LeavesNothingOnAFullDisk) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     const Layers layers = patterned({200, 150}, {0, 0}, {200, 150});
     write_exr(directory.file("old.exr"), layers, {}, {});
     const std::string old = bytes_of(directory.file("old.exr"));

@@ -1,6 +1,15 @@
+#include "base/error.h"
 #include "base/parallel.h"
 #include "fixtures.h"
+#include "modes/mode.h"
 #include "render/frame.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 #include <glm/gtc/quaternion.hpp>
 

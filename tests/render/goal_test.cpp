@@ -1,8 +1,15 @@
 // Errors promised before they are known, and times kept by a clock of the test's own.
 #include "base/parallel.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
 #include "noise_fixtures.h"
 #include "render/to_target.h"
+#include "scene/camera.h"
+#include "scene/light.h"
 #include "scene/scene_file.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -1,13 +1,13 @@
 // What the header says about camera, time and colour.
-#include "fixtures.h"
 #include "render/exr.h"
+#include "support/scratch.h"
 
 #include <sstream>
 
 namespace tyndall::test {
 namespace {
 std::map<std::string, std::string> attributes_of(const Provenance& provenance, ivec2 display = {8, 4}) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Layers layers;
     layers.display = display, layers.size = {2, 2}, layers.low = {1, 1};
     layers.color = layers.inscatter = Image<vec3>(layers.size);

@@ -1,5 +1,16 @@
 // More rays around lamps, whose glow in the fog changes within a pixel.
 #include "fixtures.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
+#include "modes/settings.h"
+#include "render/frame.h"
+#include "render/layers.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -1,8 +1,14 @@
 // Noise in files, headers and reports of sequences.
+#include "base/error.h"
+#include "base/image.h"
 #include "base/json.h"
+#include "modes/mode.h"
 #include "noise_fixtures.h"
 #include "render/sequence.h"
 #include "render/to_target.h"
+#include "scene/scene.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 namespace tyndall::test {
 namespace {
@@ -13,7 +19,7 @@ Scene small_scene() {
     return scene;
 }
 
-RenderJob job_for(const TemporaryDirectory& out, std::vector<int> frames = {1}) {
+RenderJob job_for(const Scratch& out, std::vector<int> frames = {1}) {
     RenderJob job;
     job.scene_file = "scene.json";
     job.output = out.file("f.####.exr");
@@ -34,7 +40,7 @@ double number_of(const ExrFile& exr, const std::string& attribute) { return std:
 }
 
 TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     Layers layers;
     layers.display = layers.size = {3, 2};
     layers.color = layers.inscatter = Image<vec3>(layers.size, vec3(0.1f));
@@ -62,7 +68,7 @@ TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
 }
 
 TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
-    const TemporaryDirectory out;
+    const Scratch out;
     RenderJob job = job_for(out);
     job.settings.pixel.samples = 3;
     run(job);
@@ -97,7 +103,7 @@ TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
 }
 
 TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
-    const TemporaryDirectory out;
+    const Scratch out;
     RenderJob job = job_for(out, {1, 2});
     job.resume = true, job.target_error = 0.05;
     const RenderReport first = run(job), second = run(job);
@@ -117,7 +123,7 @@ TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
 }
 
 TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
-    const TemporaryDirectory out;
+    const Scratch out;
     RenderJob job = job_for(out);
     job.resolution = {2, 2};
     job.resume = true, job.target_error = 1e-4;
@@ -136,7 +142,7 @@ TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
 }
 
 TEST(NoiseFiles, TargetsNeedAModeWhoseErrorIsNoise) {
-    const TemporaryDirectory out;
+    const Scratch out;
     RenderJob job = job_for(out);
     job.target_error = 0.1;
     error_text(ExitCode::usage, [&] { run(job, mode_of(prepare_random)); });

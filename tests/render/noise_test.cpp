@@ -1,6 +1,15 @@
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
 #include "noise_fixtures.h"
 #include "render/noise.h"
 #include "render/pixel_sum.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 TEST(Noise, RunningMeanMatchesHandComputation) {

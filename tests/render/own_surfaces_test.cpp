@@ -1,5 +1,12 @@
 #include "base/parallel.h"
+#include "modes/mode.h"
 #include "noise_fixtures.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "trace/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/fog_reach.h"
 
 #include <mutex>

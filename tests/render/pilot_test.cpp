@@ -1,7 +1,13 @@
 // The few pixels that tell how wrong a picture will be.
+#include "modes/mode.h"
+#include "modes/settings.h"
 #include "render/pilot.h"
+#include "scene/light.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
-#include "modes/stage.h"
 #include "modes/techniques.h"
 #include "render/to_target.h"
 

@@ -1,5 +1,7 @@
-#include "fixtures.h"
+#include "base/file.h"
 #include "render/png.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
@@ -15,7 +17,7 @@ struct Decoded {
 };
 
 Decoded written(const Image<vec3>& image, float exposure = 0) {
-    const TemporaryDirectory directory;
+    const Scratch directory;
     write_png(directory.file("a.png"), image, exposure);
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
     const std::string bytes = read_file(directory.file("a.png"));
@@ -84,8 +86,8 @@ TEST(Png, ShowsWhatIsNoColourAsBlackOrWhite) {
 }
 
 TEST(Png, LeavesNothingWhereItCannotWrite) {
-    const TemporaryDirectory directory;
-    std::filesystem::create_directory(directory.path / "a.png");
+    const Scratch directory;
+    std::filesystem::create_directory(directory.path() / "a.png");
     error_text(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), 0); });
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
 }

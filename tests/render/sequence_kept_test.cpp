@@ -1,8 +1,15 @@
 // Frames that share what stands still: the same bits as alone, and nothing made twice.
+#include "base/file.h"
 #include "base/frames.h"
 #include "fixtures.h"
+#include "modes/mode.h"
 #include "render/sequence.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "support/scratch.h"
 #include "trace/kept.h"
+#include "volume/medium.h"
 
 #include <fstream>
 
@@ -13,7 +20,7 @@ enum class Moves { nothing, light, camera, mesh, fog, brightness };
 template<class T> void move(Keyed<T>& value, T from, T to) { value.times = {0, 1}, value.values = {from, to}; }
 
 // A slab with a gap's edge above a floor, drifting fog and a lamp; one of them moves.
-Scene small_scene(const TemporaryDirectory& directory, Moves moves) {
+Scene small_scene(const Scratch& directory, Moves moves) {
     Scene scene;
     scene.file = directory.file("scene.json");
     std::ofstream(scene.file) << "{}";
@@ -97,7 +104,7 @@ class SequenceOfMode : public testing::TestWithParam<const char*> {};
 TEST_P(SequenceOfMode, FramesAreTheSameAloneAndInARow) {
     for (const Moves moves :
          {Moves::nothing, Moves::light, Moves::camera, Moves::mesh, Moves::fog, Moves::brightness}) {
-        const TemporaryDirectory in, row, alone;
+        const Scratch in, row, alone;
         const Scene scene = small_scene(in, moves);
         const Mode& mode = find_mode(GetParam());
         RenderJob job = job_for(scene, GetParam(), row.file("f.####.exr"), {1, 2, 3});
@@ -121,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, SequenceOfMode,
 
 TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
     for (const char* visibility : {"maps", "slices"}) {
-        const TemporaryDirectory in, row, alone;
+        const Scratch in, row, alone;
         const Scene scene = small_scene(in, Moves::light);
         RenderJob job = job_for(scene, "march", row.file("f.####.exr"), {1, 2, 3});
         apply_setting(job.settings, std::string("march.visibility=") + visibility);
@@ -133,7 +140,7 @@ TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
 }
 
 TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
-    const TemporaryDirectory in, row, alone;
+    const Scratch in, row, alone;
     const Scene scene = small_scene(in, Moves::camera);
     RenderJob job = job_for(scene, "froxel", row.file("f.####.exr"), {1, 2, 3, 4});
     job.history = 2;
@@ -144,7 +151,7 @@ TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
 }
 
 TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = small_scene(in, Moves::camera);
     RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     each_frame_anew = false;
@@ -159,7 +166,7 @@ TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
 }
 
 TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = small_scene(in, Moves::camera);
     RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     each_frame_anew = true;
@@ -171,7 +178,7 @@ TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
 }
 
 TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = small_scene(in, Moves::fog);
     const RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2});
     LoadedFrame first = load_first_frame(scene, job);

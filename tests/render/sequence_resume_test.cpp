@@ -1,5 +1,8 @@
 // --resume: frames that are right are kept, the rest is made anew.
+#include "scene/scene.h"
 #include "sequence_fixtures.h"
+
+#include <fstream>
 
 namespace tyndall::test {
 namespace {
@@ -11,7 +14,7 @@ std::vector<bool> kept_of(const RenderReport& report) {
 }
 
 TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     job.png = true;
@@ -35,7 +38,7 @@ TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
 }
 
 TEST(Sequence, ResumeRendersAgainWhatIsStale) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2});
     job.resume = true;
@@ -70,7 +73,7 @@ TEST(Sequence, ResumeRendersAgainWhatIsStale) {
 }
 
 TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     Scene scene = moving_scene(in);
     for (const char* name : {"fog.0001.vdb", "fog.0002.vdb"}) std::ofstream(in.file(name)) << name;
     MediumSource fog;
@@ -88,7 +91,7 @@ TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
 }
 
 TEST(Sequence, MovingTheWholeProjectKeepsItsFrames) {
-    const TemporaryDirectory here, there;
+    const Scratch here, there;
     Scene scene = moving_scene(here);
     run(scene, job_for(scene, here.file("f.exr"), {1}));
     std::filesystem::copy_file(here.file("f.exr"), there.file("g.exr"));

@@ -1,10 +1,17 @@
 // What stops a sequence keeps the frames before it whole; what cannot work is refused before any is rendered.
+#include "base/error.h"
+#include "base/file.h"
+#include "modes/mode.h"
+#include "scene/scene.h"
 #include "sequence_fixtures.h"
+#include "support/expect_error.h"
+#include "trace/view.h"
 
 #include <sys/resource.h>
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 namespace tyndall::test {
@@ -33,7 +40,7 @@ ScatterFunction prepare_watching(const View& view, const Snapshot& snapshot, con
 }
 
 TEST(Sequence, AnErrorNamesItsFrameAndKeepsTheOnesBefore) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     const std::string text = error_text(ExitCode::refused, [&] { run(scene, job, mode_of(prepare_failing)); });
@@ -42,7 +49,7 @@ TEST(Sequence, AnErrorNamesItsFrameAndKeepsTheOnesBefore) {
 }
 
 TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     Scene scene = moving_scene(in);
     MediumSource fog;
     fog.name = "cloud", fog.kind = MediumKind::vdb, fog.extinction = Keyed<float>(0.0f);
@@ -58,7 +65,7 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
 }
 
 TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     rlimit limit{};
@@ -74,7 +81,7 @@ TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
 }
 
 TEST(Sequence, CancellingKeepsWholeFramesOnly) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     Progress progress(ProgressStyle::none, "render", 4);
@@ -88,7 +95,7 @@ TEST(Sequence, CancellingKeepsWholeFramesOnly) {
 }
 
 TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     run(scene, job);
@@ -104,7 +111,7 @@ TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
 }
 
 TEST(Sequence, RefusesWrongJobsBeforeAnyWork) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     Scene scene = moving_scene(in);
     const RenderJob good = job_for(scene, out.file("new/f.####.exr"), {1, 2});
     const auto expect_usage = [&](auto change, const std::string& reason) {
@@ -125,11 +132,11 @@ TEST(Sequence, RefusesWrongJobsBeforeAnyWork) {
 }
 
 TEST(Sequence, NeverWritesOverItsOwnScene) {
-    const TemporaryDirectory in;
+    const Scratch in;
     Scene scene = moving_scene(in);
     std::ofstream(in.file("sky.exr")) << "sky";
     std::ofstream(in.file("wall.png")) << "wall";
-    scene.inputs.push_back(in.path / "." / "sky.exr");
+    scene.inputs.push_back(in.path() / "." / "sky.exr");
     scene.inputs.push_back(in.file("wall.png"));
     error_text(ExitCode::usage, [&] { run(scene, job_for(scene, in.file("sky.exr"), {1})); });
     RenderJob job = job_for(scene, in.file("wall.exr"), {1});
@@ -142,13 +149,13 @@ TEST(Sequence, NeverWritesOverItsOwnScene) {
 }
 
 TEST(Sequence, SaysAtOnceThatItCannotWrite) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     std::ofstream(out.file("file")) << "x";
     error_text(ExitCode::unwritable, [&] {
         run(scene, job_for(scene, out.file("file/f.####.exr"), {1, 2}), mode_of(prepare_failing));
     });
-    std::filesystem::create_directories(out.path / "f.0002.exr");
+    std::filesystem::create_directories(out.path() / "f.0002.exr");
     error_text(ExitCode::unwritable, [&] { run(scene, job_for(scene, out.file("f.####.exr"), {1, 2})); });
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0002.exr", "file"}));
 }

@@ -2,7 +2,11 @@
 #include "base/frames.h"
 #include "base/json.h"
 #include "base/parallel.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
+#include "scene/scene.h"
 #include "sequence_fixtures.h"
+#include "trace/view.h"
 
 namespace tyndall::test {
 namespace {
@@ -14,7 +18,7 @@ ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Sett
 }
 
 TEST(Sequence, WritesEveryFrame) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 5, -3});
     job.png = true;
@@ -33,7 +37,7 @@ TEST(Sequence, WritesEveryFrame) {
 }
 
 TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
-    const TemporaryDirectory in, one, two;
+    const Scratch in, one, two;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
     job.png = true;
@@ -47,7 +51,7 @@ TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
 }
 
 TEST(Sequence, FramesDoNotDependOnTheOthers) {
-    const TemporaryDirectory in, all, single;
+    const Scratch in, all, single;
     const Scene scene = moving_scene(in);
     run(scene, job_for(scene, all.file("f.####.exr"), {1, 2, 3}));
     run(scene, job_for(scene, single.file("f.####.exr"), {3}));
@@ -55,7 +59,7 @@ TEST(Sequence, FramesDoNotDependOnTheOthers) {
 }
 
 TEST(Sequence, SaysHowItWasMade) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.exr"), {12});
     job.settings.pixel.samples = 3;
@@ -77,11 +81,11 @@ TEST(Sequence, SaysHowItWasMade) {
     const std::string command = attributes.at("tyndall:command");
     for (const char* part : {"--frames 12", "--seed 77", "--res 40x30", "--set pixel.samples=3", "--isa avx2"})
         EXPECT_NE(command.find(part), command.npos) << part << " in " << command;
-    for (const auto& [name, text] : attributes) EXPECT_EQ(text.find(out.path.string()), text.npos) << name;
+    for (const auto& [name, text] : attributes) EXPECT_EQ(text.find(out.path().string()), text.npos) << name;
 }
 
 TEST(Sequence, CountsSamplesThatAreNotFinite) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
@@ -93,7 +97,7 @@ TEST(Sequence, CountsSamplesThatAreNotFinite) {
 }
 
 TEST(Sequence, ReportsItselfAsJson) {
-    const TemporaryDirectory in, out;
+    const Scratch in, out;
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     const RenderReport report = run(scene, job, mode_of(prepare_not_finite));

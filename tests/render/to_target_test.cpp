@@ -1,6 +1,16 @@
+#include "base/error.h"
 #include "base/parallel.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/ray_batch.h"
 #include "noise_fixtures.h"
 #include "render/to_target.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/expect_error.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -1,7 +1,7 @@
 // glTF files by others: what is right loads, what is wrong is refused in one line or loads without harm.
 #include "base/file.h"
 #include "base/json.h"
-#include "scene_fixtures.h"
+#include "support/load_answer.h"
 
 #include <cmath>
 

@@ -1,7 +1,9 @@
 // Broken and hostile glTF: every field out of its range, cycles, ways out of the folder, cut and mutated files.
 #include "base/random.h"
 #include "images.h"
-#include "scene_fixtures.h"
+#include "support/gltf_builder.h"
+#include "support/load_answer.h"
+#include "support/scratch.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,10 +11,10 @@
 namespace tyndall {
 namespace {
 // The triangle with one member's text replaced.
-LoadAnswer with(const std::string& member, const std::string& value, const Folder& folder,
+LoadAnswer with(const std::string& member, const std::string& value, const Scratch& folder,
                 GltfBuilder gltf = triangle_gltf()) {
     gltf.members[member] = value;
-    return load(folder.write("bad.gltf", gltf.json()));
+    return load(folder.put("bad.gltf", gltf.json()));
 }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
@@ -22,9 +24,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(GltfErrors, EveryFieldOutOfRange) {
-    const Folder folder;
+    const Scratch folder;
     const GltfBuilder good = triangle_gltf();
-    ASSERT_TRUE(load(folder.write("good.gltf", good.json())).loaded);
+    ASSERT_TRUE(load(folder.put("good.gltf", good.json())).loaded);
     const std::pair<const char*, std::vector<const char*>> fields[] = {
         {"\"bufferView\":0", {"2", "2147483648", "9223372036854775808", "-1", "0.5", "\"0\"", "null", "1e300", "[]"}},
         {"\"componentType\":5126", {"5124", "5130", "0", "-1", "5126.5", "\"5126\"", "4294967296"}},
@@ -45,13 +47,13 @@ TEST(GltfErrors, EveryFieldOutOfRange) {
         for (const char* value : values) {
             SCOPED_TRACE(std::string(field) + " becomes " + value);
             const std::string name(field, std::string_view(field).find(':') + 1);
-            const LoadAnswer answer = load(folder.write("bad.gltf", replaced(good.json(), field, name + value)));
+            const LoadAnswer answer = load(folder.put("bad.gltf", replaced(good.json(), field, name + value)));
             expect_refusal(answer, "bad.gltf: /");
         }
 }
 
 TEST(GltfErrors, StridesAndSparse) {
-    const Folder folder;
+    const Scratch folder;
     const std::string view =
         R"([{"buffer":0,"byteLength":36,"byteStride":STRIDE},{"buffer":0,"byteOffset":36,"byteLength":6}])";
     for (const char* stride : {"0", "4", "8", "13", "256", "-4", "1.5", "16"})
@@ -61,7 +63,7 @@ TEST(GltfErrors, StridesAndSparse) {
         GltfBuilder gltf = triangle_gltf();
         gltf.view(std::string("\x09\0", 2));
         gltf.accessors[0] = replaced(gltf.accessors[0], "{", R"({"sparse":)" + text + ",");
-        return load(folder.write("bad.gltf", gltf.json()));
+        return load(folder.put("bad.gltf", gltf.json()));
     };
     const std::string values = R"("values":{"bufferView":0}})";
     expect_refusal(sparse(R"({"count":1,"indices":{"bufferView":2,"componentType":5123},)" + values), "element 9");
@@ -77,21 +79,21 @@ TEST(GltfErrors, StridesAndSparse) {
 }
 
 TEST(GltfErrors, IndicesBeyondTheVertices) {
-    const Folder folder;
+    const Scratch folder;
     for (const uint16_t index : {3, 255, 65535}) {
         GltfBuilder gltf = triangle_gltf();
         gltf.binary.replace(36, 6,
                             std::string("\0\0\1\0", 4) + static_cast<char>(index) + static_cast<char>(index >> 8));
-        expect_refusal(load(folder.write("bad.gltf", gltf.json())), "/meshes/0/primitives/0/indices");
+        expect_refusal(load(folder.put("bad.gltf", gltf.json())), "/meshes/0/primitives/0/indices");
     }
     GltfBuilder gltf = triangle_gltf();
     gltf.floats({1, 2}, "VEC2");
     gltf.members["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1}]}])";
-    expect_refusal(load(folder.write("bad.gltf", gltf.json())), "TEXCOORD_0");
+    expect_refusal(load(folder.put("bad.gltf", gltf.json())), "TEXCOORD_0");
 }
 
 TEST(GltfErrors, HugeCountsCostNothing) {
-    const Folder folder;
+    const Scratch folder;
     // Zeros without data, and a sparse accessor over nothing: a billion of either.
     expect_refusal(
         with(
@@ -105,13 +107,13 @@ TEST(GltfErrors, HugeCountsCostNothing) {
     expect_refusal(with("buffers", R"([{"byteLength":5,"uri":"data:;base64,A*AAAAAA"}])", folder), "/buffers/0/uri");
     expect_refusal(with("buffers", R"([{"byteLength":5,"uri":"data:nonsense"}])", folder), "/buffers/0/uri");
     // A sparse file of 20 GB beside a buffer of 42 bytes.
-    const auto big = folder.write("big.bin", "");
+    const auto big = folder.put("big.bin", "");
     std::filesystem::resize_file(big, uint64_t{20} << 30);
     expect_refusal(with("buffers", R"([{"byteLength":42,"uri":"big.bin"}])", folder), "/buffers/0/uri");
 }
 
 TEST(GltfErrors, NodesMustBeAForest) {
-    const Folder folder;
+    const Scratch folder;
     const auto chain = [](int count, const std::string& last) {
         std::string text = "[";
         for (int i = 0; i + 1 < count; ++i) text += R"({"children":[)" + std::to_string(i + 1) + "]},";
@@ -140,7 +142,7 @@ TEST(GltfErrors, NodesMustBeAForest) {
 }
 
 TEST(GltfErrors, PlacesThatAreNoPlaces) {
-    const Folder folder;
+    const Scratch folder;
     for (const char* node : {R"({"matrix":[1,2,3]})", R"({"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1e300,1]})",
                              R"({"translation":[0,1e39,0]})", R"({"translation":[0,0]})", R"({"rotation":[0,0,0]})",
                              R"({"scale":[1,"1",1]})", R"({"translation":"here"})"})
@@ -161,7 +163,7 @@ TEST(GltfErrors, PlacesThatAreNoPlaces) {
 }
 
 TEST(GltfErrors, DeepNestingEndsEarly) {
-    const Folder folder;
+    const Scratch folder;
     for (const char* key : {"extras", "extensions", "nodes", "anything"}) {
         for (const char bracket : {'[', '{'}) {
             std::string deep;
@@ -173,17 +175,17 @@ TEST(GltfErrors, DeepNestingEndsEarly) {
 
 // The canary has just the bytes the buffer needs: were it opened, the file would load.
 TEST(GltfErrors, NothingOutsideTheFolderIsOpened) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
-    const std::string canary = folder.write("secret.bin", gltf.binary).string();
-    folder.write("in/near.bin", gltf.binary);
+    const std::string canary = folder.put("secret.bin", gltf.binary).string();
+    folder.put("in/near.bin", gltf.binary);
     std::filesystem::create_symlink("../secret.bin", folder / "in/out.bin");
     std::filesystem::create_symlink("near.bin", folder / "in/same.bin");
     std::filesystem::create_directory_symlink("..", folder / "in/up");
     const auto buffer_at = [&](const std::string& uri) {
         gltf.members["buffers"] =
             R"([{"byteLength":)" + std::to_string(gltf.binary.size()) + R"(,"uri":")" + uri + "\"}]";
-        return load(folder.write("in/bad.gltf", gltf.json()));
+        return load(folder.put("in/bad.gltf", gltf.json()));
     };
     for (const std::string& uri :
          {std::string("../secret.bin"), std::string("%2e%2e/secret.bin"), std::string("%2E%2e%2fsecret.bin"),
@@ -207,7 +209,7 @@ TEST(GltfErrors, NothingOutsideTheFolderIsOpened) {
 }
 
 TEST(GltfErrors, OnlyRegularFiles) {
-    const Folder folder;
+    const Scratch folder;
     ASSERT_EQ(mkfifo((folder / "pipe.bin").c_str(), 0600), 0);
     std::filesystem::create_directory(folder / "folder.bin");
     for (const char* uri : {"pipe.bin", "folder.bin", "."})
@@ -216,7 +218,7 @@ TEST(GltfErrors, OnlyRegularFiles) {
 }
 
 TEST(GltfErrors, ImagesCannotHurt) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
     const int uv = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2");
     gltf.members["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":)" + std::to_string(uv) +
@@ -226,7 +228,7 @@ TEST(GltfErrors, ImagesCannotHurt) {
     gltf.members["textures"] = R"([{"source":0},{"source":1}])";
     const auto image = [&](const std::string& text) {
         gltf.members["images"] = "[" + text + R"(,{"uri":"../never opened.png"}])";
-        return load(folder.write("bad.gltf", gltf.json()));
+        return load(folder.put("bad.gltf", gltf.json()));
     };
     const auto data = [](const std::string& bytes) {
         return R"({"uri":"data:image/png;base64,)" + base64(bytes) + "\"}";
@@ -249,7 +251,7 @@ TEST(GltfErrors, ImagesCannotHurt) {
 }
 
 TEST(GltfErrors, ExtensionsThatAreNeeded) {
-    const Folder folder;
+    const Scratch folder;
     expect_refusal(with("extensionsRequired", R"(["KHR_draco_mesh_compression"])", folder),
                    "compressed with KHR_draco_mesh_compression");
     expect_refusal(with("extensionsRequired", R"(["EXT_meshopt_compression"])", folder), "EXT_meshopt_compression");
@@ -264,7 +266,7 @@ TEST(GltfErrors, ExtensionsThatAreNeeded) {
 }
 
 TEST(GltfErrors, AnimationsThatDoNotFit) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
     const int times = gltf.floats({0, 1, 1}, "SCALAR"), moves = gltf.floats({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3");
     const int few = gltf.floats({0, 0, 0}, "VEC3"), broken = gltf.floats({0, NAN, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
@@ -289,21 +291,21 @@ TEST(GltfErrors, AnimationsThatDoNotFit) {
 }
 
 TEST(GltfErrors, GlbCutAnywhere) {
-    const Folder folder;
+    const Scratch folder;
     const GltfBuilder gltf = triangle_gltf();
     const std::string whole = glb_of(gltf.json(false), gltf.binary);
     // Every place near the start and the end, one in seven between: chunks begin at multiples of four.
     for (size_t size = 0; size < whole.size(); size += size < 64 || size + 64 > whole.size() ? 1 : 7) {
-        const LoadAnswer answer = load(folder.write("cut.glb", whole.substr(0, size)));
+        const LoadAnswer answer = load(folder.put("cut.glb", whole.substr(0, size)));
         expect_refusal(answer, "cut.glb");
     }
-    EXPECT_TRUE(load(folder.write("cut.glb", whole)).loaded);
-    const LoadAnswer longer = load(folder.write("cut.glb", whole + "more"));
+    EXPECT_TRUE(load(folder.put("cut.glb", whole)).loaded);
+    const LoadAnswer longer = load(folder.put("cut.glb", whole + "more"));
     EXPECT_TRUE(longer.loaded && has_warning(longer.scene, "4 bytes after the end"));
 }
 
 TEST(GltfErrors, GlbHeadersAndChunks) {
-    const Folder folder;
+    const Scratch folder;
     const GltfBuilder gltf = triangle_gltf();
     const std::string json = gltf.json(false), whole = glb_of(json, gltf.binary);
     const auto put = [&](size_t offset, uint32_t value) {
@@ -337,23 +339,23 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
                                      built(text + text),
                                      built(text + data + "abc"),
                                      built(text + data + "abcd")}) {
-        const LoadAnswer answer = load(folder.write("bad.glb", bytes));
+        const LoadAnswer answer = load(folder.put("bad.glb", bytes));
         if (answer.loaded)
             EXPECT_TRUE(has_warning(answer.scene, "no data")) << "a missing chunk leaves the mesh out";
         else
             expect_refusal(answer, "bad.glb");
     }
-    EXPECT_TRUE(load(folder.write("good.glb", built(text + data + chunk("ABCD", "more", ' ')))).loaded)
+    EXPECT_TRUE(load(folder.put("good.glb", built(text + data + chunk("ABCD", "more", ' ')))).loaded)
         << "unknown chunks are skipped";
-    expect_refusal(load(folder.write("lfs.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n")),
+    expect_refusal(load(folder.put("lfs.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n")),
                    "Git LFS");
-    expect_refusal(load(folder.write("text.gltf", "not json")), "neither");
+    expect_refusal(load(folder.put("text.gltf", "not json")), "neither");
     expect_refusal(load(folder / "none.glb"), "none.glb", ExitCode::unreadable);
 }
 
 // Bytes changed at random: a scene or one line, never anything else. Returns how many were refused.
 int refused_mutants(uint32_t first, uint32_t last) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
     const int uv = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2"),
               image = gltf.view(png_of({2, 2}, std::vector<std::array<uint8_t, 4>>(4)));
@@ -367,7 +369,7 @@ int refused_mutants(uint32_t first, uint32_t last) {
         R"([{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":[{"input":)" +
         std::to_string(times) + R"(,"output":)" + std::to_string(moves) + "}]}]";
     const std::string whole = glb_of(gltf.json(false), gltf.binary);
-    EXPECT_TRUE(load(folder.write("mutant.glb", whole)).loaded);
+    EXPECT_TRUE(load(folder.put("mutant.glb", whole)).loaded);
     const std::string digits = "0123456789-.,:[]{}\"e";
     int refused = 0;
     for (uint32_t round = first; round < last; ++round) {
@@ -378,7 +380,7 @@ int refused_mutants(uint32_t first, uint32_t last) {
             const uint32_t value = hash(round, i, 2u);
             bytes[place] = value & 1 ? digits[(value >> 8) % digits.size()] : static_cast<char>(value >> 8);
         }
-        const LoadAnswer answer = load(folder.write("mutant.glb", bytes));
+        const LoadAnswer answer = load(folder.put("mutant.glb", bytes));
         if (answer.loaded) continue;
         expect_one_line(answer.message);
         ++refused;

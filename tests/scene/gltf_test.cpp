@@ -1,14 +1,16 @@
 // What a glTF holds arrives in the scene.
 #include "images.h"
-#include "scene_fixtures.h"
+#include "support/gltf_builder.h"
+#include "support/load_answer.h"
+#include "support/scratch.h"
 
 namespace tyndall {
 namespace {
 Scene loaded(const GltfBuilder& gltf, const LoadOptions& options = {}) {
-    const Folder folder;
-    const LoadAnswer answer = load(folder.write("scene.gltf", gltf.json()), options);
+    const Scratch folder;
+    const LoadAnswer answer = load(folder.put("scene.gltf", gltf.json()), options);
     EXPECT_TRUE(answer.loaded) << answer.message;
-    const LoadAnswer same = load(folder.write("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
+    const LoadAnswer same = load(folder.put("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
     EXPECT_TRUE(same.loaded) << same.message;
     EXPECT_EQ(same.scene.meshes.size(), answer.scene.meshes.size());
     EXPECT_EQ(same.scene.nodes.size(), answer.scene.nodes.size());
@@ -298,16 +300,16 @@ TEST(Gltf, MaterialsAndTextures) {
 }
 
 TEST(Gltf, NamesInUris) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
     const std::string name = "b\xc3\xa4 r 100%.bin";
-    folder.write("parts/" + name, gltf.binary);
-    folder.write("100%25.bin", gltf.binary);
+    folder.put("parts/" + name, gltf.binary);
+    folder.put("100%25.bin", gltf.binary);
     for (const char* uri :
          {"parts/b%C3%A4%20r%20100%25.bin", "parts/b\xc3\xa4 r 100%.bin", "./parts/../x", "100%25.bin"}) {
         gltf.members["buffers"] =
             R"([{"byteLength":)" + std::to_string(gltf.binary.size()) + R"(,"uri":")" + uri + "\"}]";
-        const LoadAnswer answer = load(folder.write("scene.gltf", gltf.json()));
+        const LoadAnswer answer = load(folder.put("scene.gltf", gltf.json()));
         if (std::string_view(uri).find("..") != std::string_view::npos) {
             expect_refusal(answer, "/buffers/0/uri");
             continue;

@@ -1,6 +1,8 @@
 // Every mistake in a scene file is answered with the place and the reason.
 #include "images.h"
-#include "scene_fixtures.h"
+#include "support/gltf_builder.h"
+#include "support/load_answer.h"
+#include "support/scratch.h"
 
 #include <sys/stat.h>
 
@@ -104,11 +106,11 @@ const Mistake mistakes[] = {
 };
 
 TEST(SceneFileErrors, NameFileFieldAndReason) {
-    const Folder folder;
+    const Scratch folder;
     for (const Mistake& mistake : mistakes) {
         SCOPED_TRACE(mistake.fields);
         const LoadAnswer answer =
-            load(folder.write("bad.json", R"({"tyndall": 1, )" + std::string(mistake.fields) + "}"));
+            load(folder.put("bad.json", R"({"tyndall": 1, )" + std::string(mistake.fields) + "}"));
         expect_refusal(answer, "bad.json: " + std::string(mistake.pointer));
         // The pointer ends there, or goes on to a part of the field.
         const std::string behind =
@@ -119,10 +121,10 @@ TEST(SceneFileErrors, NameFileFieldAndReason) {
 }
 
 TEST(SceneFileErrors, TheDocumentAsAWhole) {
-    const Folder folder;
+    const Scratch folder;
     const auto refused = [&](const std::string& text, const char* part) {
         SCOPED_TRACE(text.substr(0, 60));
-        expect_refusal(load(folder.write("bad.json", text)), part);
+        expect_refusal(load(folder.put("bad.json", text)), part);
     };
     refused("", "bad.json");
     refused("[]", "bad.json");
@@ -138,7 +140,7 @@ TEST(SceneFileErrors, TheDocumentAsAWhole) {
 }
 
 TEST(SceneFileErrors, MissingFilesAreUnreadable) {
-    const Folder folder;
+    const Scratch folder;
     for (const auto& [fields, pointer] : std::map<std::string, std::string>{
              {R"("gltf": "none.glb")", "/gltf"},
              {R"("gltf": ".")", "/gltf"},
@@ -147,7 +149,7 @@ TEST(SceneFileErrors, MissingFilesAreUnreadable) {
              {R"("media": [{"type": "vdb", "file": "none.####.vdb"}])", "/media/0/file"},
              {R"("background": {"image": "none.png"})", "/background/image"}}) {
         SCOPED_TRACE(fields);
-        const LoadAnswer answer = load(folder.write("scene.json", R"({"tyndall": 1, )" + fields + "}"));
+        const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
         expect_refusal(answer, "scene.json: " + pointer, ExitCode::unreadable);
         EXPECT_NE(
             answer.message.find(pointer == "/gltf" && fields.find("none") == std::string::npos ? "directory" : "none"),
@@ -159,24 +161,24 @@ TEST(SceneFileErrors, MissingFilesAreUnreadable) {
 }
 
 TEST(SceneFileErrors, APipeIsNotWaitedFor) {
-    const Folder folder;
+    const Scratch folder;
     ASSERT_EQ(mkfifo((folder / "pipe.png").c_str(), 0600), 0);
     ASSERT_EQ(mkfifo((folder / "pipe.json").c_str(), 0600), 0);
-    expect_refusal(load(folder.write("scene.json", R"({"tyndall": 1, "background": {"image": "pipe.png"}})")),
+    expect_refusal(load(folder.put("scene.json", R"({"tyndall": 1, "background": {"image": "pipe.png"}})")),
                    "/background/image", ExitCode::unreadable);
     expect_refusal(load(folder / "pipe.json"), "pipe.json", ExitCode::unreadable);
 }
 
 TEST(SceneFileErrors, BrokenFilesThatAreNamed) {
-    const Folder folder;
-    folder.write("bad.json", "{");
-    folder.write("bad.vdb", "version https://git-lfs.github.com/spec/v1\n");
-    folder.write("bad.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8));
-    folder.write("huge.png", png_of({20000, 20000}, {}));
-    folder.write("fog.vdb", "no volume");
+    const Scratch folder;
+    folder.put("bad.json", "{");
+    folder.put("bad.vdb", "version https://git-lfs.github.com/spec/v1\n");
+    folder.put("bad.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8));
+    folder.put("huge.png", png_of({20000, 20000}, {}));
+    folder.put("fog.vdb", "no volume");
     const auto refused = [&](const char* fields, const char* part) {
         SCOPED_TRACE(fields);
-        expect_refusal(load(folder.write("scene.json", R"({"tyndall": 1, )" + std::string(fields) + "}")), part);
+        expect_refusal(load(folder.put("scene.json", R"({"tyndall": 1, )" + std::string(fields) + "}")), part);
     };
     refused(R"("media": [{"type": "noise", "recipe": "bad.json"}])", "bad.json");
     refused(R"("media": [{"type": "vdb", "file": "bad.vdb"}])", "/media/0/file");
@@ -187,20 +189,20 @@ TEST(SceneFileErrors, BrokenFilesThatAreNamed) {
 }
 
 TEST(SceneFileErrors, TheGltfsLightsKeepTheirType) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf;
     gltf.members["extensions"] = R"({"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
     gltf.members["nodes"] = R"([{"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}])";
     gltf.members["scenes"] = R"([{"nodes":[0]}])";
-    folder.write("room.gltf", gltf.json());
+    folder.put("room.gltf", gltf.json());
     const auto refused = [&](const char* light, const char* part) {
         const std::string text = R"({"tyndall": 1, "gltf": "room.gltf", "lights": [)" + std::string(light) + "]}";
-        expect_refusal(load(folder.write("scene.json", text)), part);
+        expect_refusal(load(folder.put("scene.json", text)), part);
     };
     refused(R"({"name": "lamp", "type": "spot"})", "/lights/0/type");
     refused(R"({"name": "lamp", "outer_cone": 20})", "/lights/0/outer_cone");
     refused(R"({"name": "lamb", "intensity": 20})", "no light of the glTF has the name");
-    expect_refusal(load(folder.write("scene.json", R"({"tyndall": 1, "gltf": "room.gltf", "camera": "main"})")),
+    expect_refusal(load(folder.put("scene.json", R"({"tyndall": 1, "gltf": "room.gltf", "camera": "main"})")),
                    "/camera");
 }
 }

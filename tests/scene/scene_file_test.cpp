@@ -1,19 +1,21 @@
 #include "images.h"
-#include "scene_fixtures.h"
+#include "support/gltf_builder.h"
+#include "support/load_answer.h"
+#include "support/scratch.h"
 #include "volume/vdb.h"
 
 #include <glm/gtc/quaternion.hpp>
 
 namespace tyndall {
 namespace {
-Scene loaded(const Folder& folder, const std::string& text) {
-    const LoadAnswer answer = load(folder.write("scene.json", text));
+Scene loaded(const Scratch& folder, const std::string& text) {
+    const LoadAnswer answer = load(folder.put("scene.json", text));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }
 
 TEST(SceneFile, TheLeastThatIsAScene) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1})");
     EXPECT_EQ(scene.frame_rate, 24);
     EXPECT_EQ(scene.first_frame, 1);
@@ -27,10 +29,10 @@ TEST(SceneFile, TheLeastThatIsAScene) {
 }
 
 TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
-    const Folder folder;
+    const Scratch folder;
     const std::string text = R"({"tyndall": 1, "lights": [{"name": "a", "type": "sun", "direction": [0, -1, 0],
         "intensity": 1}], "media": [{"type": "noise", "recipe": "fog/dust.json"}]})";
-    folder.write("fog/dust.json", R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 0.1})");
+    folder.put("fog/dust.json", R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 0.1})");
     EXPECT_THROW(load_scene_text("{", folder / "no.json"), Error);
     EXPECT_THROW(load_scene_text(R"({"tyndall": 2})", folder / "no.json"), Error);
     const Scene scene = load_scene_text(text, folder / "no.json"), other = loaded(folder, text);
@@ -43,7 +45,7 @@ TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
 }
 
 TEST(SceneFile, GeneralFields) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "frame_rate": 25, "frames": "-4--2", "resolution": [320, 200],
         "exposure": {"keys": [[0, 1], [2, 3]], "interpolation": "smooth"}, "ambient": 0.25 // comments are fine
     })");
@@ -56,7 +58,7 @@ TEST(SceneFile, GeneralFields) {
 }
 
 TEST(SceneFile, Cameras) {
-    const Folder folder;
+    const Scratch folder;
     const std::string list =
         R"("cameras": [{"name": "wide", "position": [0, 1, 5], "target": [0, 1, 0], "vertical_fov": 90},
         {"name": "plan", "position": [0, 9, 0], "target": [0, 0, 0], "up": [0, 0, -1], "ortho_height": 12, "near": 1, "far": 20}])";
@@ -74,7 +76,7 @@ TEST(SceneFile, Cameras) {
 }
 
 TEST(SceneFile, Lights) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "lights": [
         {"name": "key", "type": "spot", "position": [0, 5, 0], "target": [3, 1, 0], "color": [1, 0.5, 0.25], "intensity": 800,
          "inner_cone": 10, "outer_cone": 20, "range": 40, "radius": 0.1, "volume_scale": 2, "surface_scale": 0.5},
@@ -98,7 +100,7 @@ TEST(SceneFile, Lights) {
 
 // A light that aims at something while both move keeps pointing at it.
 TEST(SceneFile, TargetsAreFollowed) {
-    const Folder folder;
+    const Scratch folder;
     for (const char* how : {"linear", "smooth", "step"}) {
         const std::string other = std::string(how) == "linear" ? "smooth" : "linear";
         const Scene scene = loaded(folder, R"({"tyndall": 1, "lights": [{"type": "spot", "intensity": 1,
@@ -118,7 +120,7 @@ TEST(SceneFile, TargetsAreFollowed) {
 }
 
 TEST(SceneFile, ALoopingAimLoops) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene =
         loaded(folder, R"({"tyndall": 1, "lights": [{"type": "spot", "intensity": 1, "position": [0, 5, 0],
         "target": {"keys": [[0, [0, 0, 0]], [1, [4, 0, 0]], [2, [0, 0, 0]]], "interpolation": "smooth", "loop": true}}]})");
@@ -127,14 +129,14 @@ TEST(SceneFile, ALoopingAimLoops) {
 }
 
 TEST(SceneFile, LightsOfTheGltfCanBeChanged) {
-    const Folder folder;
+    const Scratch folder;
     GltfBuilder gltf = triangle_gltf();
     gltf.members["extensions"] = R"({"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":5,"color":[1,0,0],
         "spot":{"outerConeAngle":0.5}},{"type":"point","intensity":3}]}})";
     gltf.members["nodes"] = R"([{"name":"lamp","translation":[1,2,3],"extensions":{"KHR_lights_punctual":{"light":0}}},
         {"name":"bulb","extensions":{"KHR_lights_punctual":{"light":1}}}])";
     gltf.members["scenes"] = R"([{"nodes":[0,1]}])";
-    folder.write("room.gltf", gltf.json());
+    folder.put("room.gltf", gltf.json());
     const Scene scene = loaded(folder, R"({"tyndall": 1, "gltf": "room.gltf", "lights": [
         {"name": "lamp", "intensity": 50, "outer_cone": 60}, {"name": "bulb", "position": [0, 9, 0]},
         {"name": "sun", "type": "sun", "direction": [0, -1, 0], "intensity": 1}]})");
@@ -153,8 +155,8 @@ constexpr const char* recipe = R"({"bounds": {"low": [-1, 0, -1], "high": [1, 2,
     "optics": {"extinction": 3, "albedo": [0.9, 0.8, 0.7], "g": 0.4}})";
 
 TEST(SceneFile, Media) {
-    const Folder folder;
-    folder.write("dust.json", recipe);
+    const Scratch folder;
+    folder.put("dust.json", recipe);
     const Scene scene = loaded(folder, R"({"tyndall": 1, "media": [
         {"type": "homogeneous", "extinction": {"keys": [[0, 1], [1, 3]]}, "albedo": 0.5, "bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]},
          "translate": [0, 1, 0], "rotate": [0, 90, 0], "scale": 2, "emission": [0, 1, 0]},
@@ -184,7 +186,7 @@ TEST(SceneFile, Media) {
 
 // About X first, then Y, then Z, and turns over half a circle go all the way.
 TEST(SceneFile, RotationOfMedia) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "media": [
         {"type": "homogeneous", "extinction": 1, "rotate": [90, 90, 0]},
         {"type": "homogeneous", "extinction": 1, "rotate": {"keys": [[0, [0, 0, 0]], [1, [0, 720, 0]]]}}]})");
@@ -196,7 +198,7 @@ TEST(SceneFile, RotationOfMedia) {
 }
 
 TEST(SceneFile, VolumesBringTheirOptics) {
-    const Folder folder;
+    const Scratch folder;
     SparseVolume volume;
     volume.leaves.resize(1);
     volume.leaves[0].values.fill(1);
@@ -221,14 +223,14 @@ TEST(SceneFile, VolumesBringTheirOptics) {
 }
 
 TEST(SceneFile, Backgrounds) {
-    const Folder folder;
-    folder.write("plate.png", png_of({1, 1}, {{255, 0, 0, 255}}));
+    const Scratch folder;
+    folder.put("plate.png", png_of({1, 1}, {{255, 0, 0, 255}}));
     const Scene plate = loaded(folder, R"({"tyndall": 1, "background": {"image": "plate.png", "intensity": 2}})");
     ASSERT_EQ(plate.background.kind, BackgroundKind::image);
     EXPECT_EQ(plate.background.image->at(0, 0), vec3(1, 0, 0));
     EXPECT_FALSE(plate.background.lat_long);
     EXPECT_EQ(plate.inputs.size(), 2u);
-    folder.write("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
+    folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
     const Scene dome = loaded(
         folder, R"({"tyndall": 1, "background": {"image": "sky.hdr", "projection": "lat_long", "rotation": 90}})");
     EXPECT_TRUE(dome.background.lat_long);
@@ -240,7 +242,7 @@ TEST(SceneFile, Backgrounds) {
 }
 
 TEST(SceneFile, Billboards) {
-    const Folder folder;
+    const Scratch folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1,
         "lights": [{"name": "sun", "type": "sun", "direction": [0, -1, 0], "intensity": 1}],
         "billboards": [{"light": "sun", "from": [0, 3, 0], "to": [1, 0, 0], "width_to": 2, "tint": 0.5, "intensity": 3}]})");

@@ -1,7 +1,8 @@
+#include "base/error.h"
 #include "images.h"
 #include "scene/image_file.h"
 #include "scene/mesh.h"
-#include "scene_fixtures.h"
+#include "support/scratch.h"
 
 namespace tyndall {
 namespace {
@@ -97,9 +98,9 @@ TEST(ImageFile, HalvedKeepsTheLight) {
 }
 
 TEST(ImageFile, RadianceKeepsItsRange) {
-    const Folder folder;
+    const Scratch folder;
     // RGBE: mantissa / 256 · 2^(exponent - 128).
-    const auto file = folder.write("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
+    const auto file = folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
     const Image<vec3> image = read_picture(file, "test");
     ASSERT_EQ(image.size, ivec2(2, 1));
     EXPECT_EQ(image.at(0, 0), vec3(8, 4, 0));

@@ -1,9 +1,12 @@
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
 #include "trace/kept_shadows.h"
+#include "trace/occluders.h"
 
 #include "base/parallel.h"
 #include "trace/kept.h"
 #include "trace/light_depth.h"
-#include "trace/scene_fixtures.h"
 #include "trace/shadow_slices.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -1,9 +1,9 @@
 // Where local lights show in a picture, and the beams of spots there.
 #include "scene/light.h"
 #include "scene/mesh.h"
-#include "scene_fixtures.h"
 #include "trace/lamp_samples.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 
 #include <gtest/gtest.h>

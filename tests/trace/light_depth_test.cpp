@@ -1,8 +1,11 @@
 
+#include "scene/light.h"
+#include "support/random_points.h"
 #include "trace/light_grid.h"
-#include "trace/scene_fixtures.h"
 #include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
+#include "volume/medium.h"
+#include "volume/sparse_volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>

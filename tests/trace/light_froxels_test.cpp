@@ -1,8 +1,9 @@
 // Optical depth to a light from froxels, against the exact march.
+#include "scene/light.h"
+#include "support/random_points.h"
 #include "trace/light_froxels.h"
 
 #include "base/parallel.h"
-#include "trace/scene_fixtures.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/fog_fixtures.h"

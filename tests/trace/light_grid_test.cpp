@@ -1,8 +1,10 @@
 // How far light-aligned grids are from the exact optical depth.
+#include "scene/light.h"
+#include "support/random_points.h"
 #include "trace/light_grid.h"
+#include "volume/medium.h"
 
 #include "base/parallel.h"
-#include "trace/scene_fixtures.h"
 #include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
 #include "volume/noise.h"

@@ -1,4 +1,8 @@
-#include "trace/scene_fixtures.h"
+
+#include "scene/scene.h"
+#include "shadow_rays.h"
+#include "support/meshes.h"
+#include "trace/occluders.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,12 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "trace/scene_fixtures.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "shadow_rays.h"
+#include "support/meshes.h"
+#include "support/random_points.h"
+#include "trace/occluders.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,10 @@
 // Boxes decided by blocks of a shadow map's texels against single look-ups, and texels left out against all of them.
-#include "scene_fixtures.h"
 
 #include "base/random.h"
 #include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "trace/occluders.h"
 #include "trace/shadow_map.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

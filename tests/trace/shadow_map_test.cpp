@@ -1,8 +1,12 @@
 // Shadow maps against distances worked out by hand.
-#include "scene_fixtures.h"
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "support/random_points.h"
+#include "trace/occluders.h"
 #include "trace/shadow_map.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

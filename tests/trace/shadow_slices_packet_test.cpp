@@ -1,8 +1,10 @@
 // Lit stretches of sixteen rays at once against those of one ray at a time.
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "trace/occluders.h"
 #include "trace/shadow_slices.h"
 
 #include "base/random.h"
-#include "scene_fixtures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,13 @@
 // Lit stretches against hand-computed ones and against thousands of shadow rays.
+#include "base/random.h"
+#include "scene/scene.h"
+#include "shadow_rays.h"
+#include "support/meshes.h"
+#include "support/random_points.h"
+#include "trace/occluders.h"
 #include "trace/shadow_slices.h"
 
 #include "scene/camera.h"
-#include "scene_fixtures.h"
 #include "trace/moment.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 // Shadow volumes against triangles counted one by one, and against the slices of trace/shadow_slices.h.
+#include "support/meshes.h"
+#include "support/random_points.h"
 #include "trace/shadow_view.h"
 
-#include "scene_fixtures.h"
 #include "trace/shadow_slices.h"
 
 #include <gtest/gtest.h>

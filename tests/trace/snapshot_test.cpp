@@ -1,11 +1,15 @@
 
 #include "base/error.h"
-#include "base/scratch.h"
 #include "scene/camera.h"
 #include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "support/scratch.h"
 #include "trace/fog.h"
-#include "trace/scene_fixtures.h"
+#include "trace/snapshot.h"
+#include "volume/bricks.h"
 #include "volume/fog_fixtures.h"
+#include "volume/sparse_volume.h"
 #include "volume/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,8 +1,12 @@
+#include "base/random.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "trace/occluders.h"
 #include "trace/surface.h"
 
 #include "trace/light_depth.h"
 #include "trace/light_transmittance.h"
-#include "trace/scene_fixtures.h"
 #include "trace/snapshot.h"
 #include "volume/fog_fixtures.h"
 

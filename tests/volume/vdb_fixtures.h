@@ -2,7 +2,7 @@
 #pragma once
 #include "base/error.h"
 #include "base/math.h"
-#include "base/scratch.h"
+#include "support/scratch.h"
 #include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>

@@ -1,15 +1,9 @@
-// Checks of what a user is told when something is refused.
-#pragma once
-#include "base/error.h"
+#include "support/expect_error.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace tyndall {
-// The message of the Error that `action` throws, which must carry `code`; empty (and a failure) when it throws none.
-template<class Action> std::string error_text(ExitCode code, Action action) {
+std::string error_text(ExitCode code, const std::function<void()>& action) {
     try {
         action();
     } catch (const Error& error) {

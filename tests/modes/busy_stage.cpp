@@ -1,0 +1,41 @@
+#include "modes/busy_stage.h"
+
+#include "base/random.h"
+#include "scene/scene.h"
+
+namespace tyndall::test {
+float wavy(vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 13 * p.z); }
+
+Stage busy_stage() {
+    std::vector<Medium> media{grid_fog(2, unit_grid(24, wavy)), even_fog(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
+    media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.5f}, media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
+    media[1].optics.phase = {PhaseKind::rayleigh, 0};
+    Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
+    spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
+    spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
+    return stage_of(media, {sun({0.3f, -1, 0.1f}), spot},
+                    {shade(0.35f, 1.2f), box_mesh(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}, vec3(0.1f));
+}
+
+std::vector<Ray> busy_rays(int count) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+        const Sample2 from = sample2(i, 5), to = sample2(i, 6);
+        const vec3 origin(0.1f + 0.8f * from.x, 0.55f + 0.4f * from.y, 2);
+        rays.push_back({origin, glm::normalize(vec3(0.1f + 0.8f * to.x, 0.55f + 0.4f * to.y, -1) - origin), 4});
+    }
+    return rays;
+}
+
+double mean_of(const std::vector<Scatter>& results) {
+    double sum = 0;
+    for (const Scatter& result : results) sum += luminance(result.radiance);
+    return sum / results.size();
+}
+
+double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(luminance(a[i].radiance) - luminance(b[i].radiance), 2);
+    return std::sqrt(sum / a.size());
+}
+}

@@ -1,0 +1,31 @@
+// A directory of its own for a test, removed at the end.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+class Scratch {
+public:
+    Scratch();
+    ~Scratch();
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path operator/(std::string_view name) const { return path_ / name; }
+    std::string file(std::string_view name) const { return (path_ / name).string(); }
+
+    // Writes a file, in folders made for it; returns its path.
+    std::filesystem::path put(std::string_view name, std::string_view bytes) const;
+
+    // Names of files and folders in it, sorted.
+    std::vector<std::string> names() const;
+
+private:
+    std::filesystem::path path_;
+};
+
+std::string bytes_of(const std::filesystem::path& path);
+}
