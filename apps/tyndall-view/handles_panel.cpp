@@ -1,3 +1,6 @@
+#include "preview/scene_edit.h"
+#include "scene/scene.h"
+#include "scene/light_kind.h"
 #include "handles_panel.h"
 
 #include "base/text.h"

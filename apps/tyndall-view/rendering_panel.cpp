@@ -1,4 +1,5 @@
 // The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
+#include "scene/scene.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"

@@ -1,4 +1,6 @@
 // The bar of time.
+#include "preview/view_state.h"
+#include "scene/scene.h"
 #include "base/text.h"
 #include "panels.h"
 #include "theme.h"

@@ -1,3 +1,4 @@
+#include "scene/scene.h"
 #include "volume_panel.h"
 
 #include "base/text.h"

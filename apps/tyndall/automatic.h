@@ -3,9 +3,10 @@
 #include "common.h"
 #include "measure/plan.h"
 #include "render/job.h"
-#include "scene/scene.h"
 
 namespace tyndall {
+struct Scene;
+
 inline constexpr std::string_view automatic = "auto";
 
 // The error that is asked for when only a quality is.

@@ -6,6 +6,7 @@
 #include "base/frames.h"
 #include "modes/mode.h"
 #include "render/provenance.h"
+#include "render/loaded_frame.h"
 #include "render/sequence.h"
 #include "render_options.h"
 #include "scene/light.h"

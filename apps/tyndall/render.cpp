@@ -8,6 +8,7 @@
 #include "modes/mode.h"
 #include "modes/promise.h"
 #include "render/contact_sheet.h"
+#include "render/loaded_frame.h"
 #include "render/sequence.h"
 #include "render/to_target.h"
 #include "render_options.h"

@@ -1,4 +1,5 @@
 // tyndall stress: the stability suite, mode by case.
+#include "modes/mode.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output.h"

@@ -1,4 +1,5 @@
 // tyndall verify: proves this program right, on its own scenes or on the user's.
+#include "scene/scene.h"
 #include "measure/verify.h"
 #include "base/error.h"
 #include "base/output.h"

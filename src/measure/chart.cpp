@@ -8,7 +8,6 @@
 #include "measure/chart.h"
 #include "measure/chart_point.h"
 #include "modes/mode.h"
-#include "render/sequence.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"

@@ -1,5 +1,4 @@
 #include "measure/chart_errors.h"
-#include "render/sequence.h"
 
 #include <cassert>
 #include <limits>

@@ -1,6 +1,5 @@
 #include "measure/chart.h"
 #include "modes/mode.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 #include <cmath>

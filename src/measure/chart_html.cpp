@@ -4,7 +4,6 @@
 #include "measure/svg.h"
 
 #include "base/file.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -8,7 +8,7 @@
 #include "measure/json_values.h"
 #include "modes/mode.h"
 #include "render/png.h"
-#include "render/sequence.h"
+#include "render/job.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

@@ -4,7 +4,6 @@
 #include "base/json.h"
 #include "measure/chart_kept.h"
 #include "measure/json_values.h"
-#include "render/sequence.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>

@@ -1,7 +1,6 @@
 // The picture of a chart, as SVG.
 #include "measure/chart_report.h"
 #include "modes/mode.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,3 +1,6 @@
+#include "render/frame.h"
+#include "trace/view.h"
+#include "trace/snapshot.h"
 #include "measure/reference.h"
 
 #include "base/error.h"
@@ -6,7 +9,8 @@
 #include "base/text.h"
 #include "modes/mode.h"
 #include "render/resume.h"
-#include "render/sequence.h"
+#include "render/layers.h"
+#include "render/job.h"
 #include "render/to_target.h"
 #include "scene/light.h"
 #include "trace/kept.h"

@@ -1,4 +1,9 @@
 // Runs the cases and judges them.
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
+#include "modes/promise.h"
+#include "modes/mode.h"
 #include "measure/stress.h"
 
 #include "base/error.h"

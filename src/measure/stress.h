@@ -2,30 +2,18 @@
 // to hard, rendered by every mode that claims to handle it. A mode may hold, or say beforehand that it will not; what
 // it must not do is fail in silence.
 #pragma once
-#include "modes/mode.h"
-#include "modes/settings.h"
-#include "scene/scene.h"
-#include "trace/snapshot.h"
-#include "trace/view.h"
-
 #include <atomic>
+#include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace tyndall {
-// What is rendered at one value of a sweep.
-struct StressScene {
-    std::shared_ptr<Scene> scene; // of the snapshot's surfaces; null = none
-    Snapshot snapshot;
-    View view;
-    Settings settings;
-};
-
-struct Trial; // of measure/stress_trial.h
+struct Mode;
+struct StressScene;
+struct Trial; // both of measure/stress_trial.h
 
 // How an error is measured, and how large it may be.
 struct StressMeasure {

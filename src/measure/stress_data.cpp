@@ -1,4 +1,7 @@
 // Fog from grids: odd transforms and sizes, sheets and single voxels, detail that gets fine or thick.
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
 #include "measure/stress_volumes.h"
 #include "volume/medium.h"
 

@@ -1,4 +1,8 @@
 // Light that scatters more than once: left out, added by a grid of fluence, and kept out by walls.
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
+#include "modes/mode.h"
 #include "measure/stress_trial.h"
 #include "scene/light.h"
 #include "volume/medium.h"

@@ -1,4 +1,9 @@
 // Surfaces in the way of the light: slits, wires, rooms, meshes of every quality, eyes in shadow.
+#include "scene/scene.h"
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
+#include "modes/mode.h"
 #include "measure/stress_trial.h"
 #include "scene/light.h"
 #include "volume/medium.h"

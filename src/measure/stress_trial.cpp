@@ -1,4 +1,9 @@
 // Renders the tiny scenes of the stability suite, counts what is no light, and measures.
+#include "scene/scene.h"
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
+#include "modes/mode.h"
 #include "measure/stress_trial.h"
 
 #include "measure/halves.h"

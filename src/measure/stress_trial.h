@@ -2,11 +2,21 @@
 #pragma once
 #include "measure/stress.h"
 #include "measure/verify_rays.h"
+#include "modes/settings.h"
 #include "render/frame.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 
 #include <optional>
 
 namespace tyndall {
+// What is rendered at one value of a sweep.
+struct StressScene {
+    std::shared_ptr<Scene> scene; // of the snapshot's surfaces; null = none
+    Snapshot snapshot;
+    View view;
+    Settings settings;
+};
 // What no picture may hold.
 struct Faults {
     uint64_t non_finite = 0, negative = 0;

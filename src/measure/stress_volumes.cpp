@@ -1,3 +1,6 @@
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
 #include "measure/stress_volumes.h"
 
 #include "volume/medium.h"

@@ -1,7 +1,7 @@
 // Proof that this program computes what it says: closed forms, published values, conservation laws and invariances,
 // measured by the code that renders.
 #pragma once
-#include "scene/scene.h"
+#include "base/math.h"
 
 #include <atomic>
 #include <functional>
@@ -9,6 +9,8 @@
 #include <vector>
 
 namespace tyndall {
+struct Scene;
+
 // One statement: `measured` lies within `tolerance` of `expected`.
 struct Check {
     std::string topic, name;

@@ -1,4 +1,7 @@
 // Scenes made in memory and estimates along rays.
+#include "scene/mesh.h"
+#include "volume/sparse_volume.h"
+#include "volume/phase.h"
 #include "measure/verify_rays.h"
 
 #include "base/error.h"

@@ -1,6 +1,5 @@
 // What each action does to the state.
 #include "preview/verb_actions.h"
-#include "render/sequence.h"
 
 #include <map>
 

@@ -1,3 +1,4 @@
+#include "trace/moment.h"
 #include "preview/edit_actions.h"
 
 #include "base/error.h"
@@ -5,7 +6,6 @@
 #include "base/text.h"
 #include "preview/scene_session.h"
 #include "preview/verb_actions.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 #include <utility>

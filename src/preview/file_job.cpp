@@ -1,3 +1,4 @@
+#include "trace/moment.h"
 #include "preview/file_job.h"
 
 #include "base/frames.h"

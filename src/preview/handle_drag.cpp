@@ -1,7 +1,7 @@
+#include "scene/scene.h"
 #include "preview/handle_drag.h"
 
 #include "preview/edit_actions.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 
@@ -41,7 +41,8 @@ HandleDrag begin_drag(const ViewState& state, ivec2 size, const LightIcon& icon,
                       uint64_t number) {
     HandleDrag drag;
     drag.number = number;
-    drag.before.lights = state.scene->lights, drag.before.nodes = state.scene->nodes;
+    drag.before = std::make_shared<Scene>();
+    drag.before->lights = state.scene->lights, drag.before->nodes = state.scene->nodes;
     drag.camera = camera_now(state), drag.size = size, drag.seconds = seconds_of(state);
     drag.icon = icon, drag.handle = handle, drag.from = from, drag.length = length;
     return drag;
@@ -49,9 +50,9 @@ HandleDrag begin_drag(const ViewState& state, ivec2 size, const LightIcon& icon,
 
 std::vector<Action> drag_actions(const HandleDrag& drag, vec2 to) {
     std::vector<Action> actions;
-    for (const Edit& edit : drag_light(drag.camera, drag.size, drag.before, drag.icon, drag.handle, drag.from, to,
+    for (const Edit& edit : drag_light(drag.camera, drag.size, *drag.before, drag.icon, drag.handle, drag.from, to,
                                        drag.seconds, drag.length))
-        actions.push_back(action_of(drag.before, edit, drag.number));
+        actions.push_back(action_of(*drag.before, edit, drag.number));
     return actions;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 #include "preview/light_handles.h"
 #include "preview/view_state.h"
-#include "scene/scene.h"
 
 namespace tyndall {
 // As light_icons. Suns without a place of their own stand side by side near the upper edge of the picture, `gap` pixels
@@ -14,7 +13,7 @@ const LightIcon* nearest_icon(std::span<const LightIcon> icons, vec2 pixel, floa
 
 struct HandleDrag {
     uint64_t number = 0; // as in edit()
-    Scene before;        // lights and nodes only, as they were when the drag began
+    std::shared_ptr<Scene> before; // lights and nodes only, as they were when the drag began
     Camera camera;
     ivec2 size{0};
     LightIcon icon;

@@ -1,7 +1,6 @@
 #include "preview/job_thread.h"
 
 #include "base/parallel.h"
-#include "render/sequence.h"
 
 #include <utility>
 

@@ -1,7 +1,6 @@
 // What keys do.
 #include "modes/mode.h"
 #include "preview/view_state.h"
-#include "render/sequence.h"
 
 namespace tyndall {
 namespace {

@@ -2,7 +2,6 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "preview/verb_actions.h"
-#include "render/sequence.h"
 #include "scene/scene.h"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include "modes/mode.h"
 #include "preview/request.h"
 #include "render/provenance.h"
-#include "render/sequence.h"
 #include "trace/view.h"
 
 #include <chrono>

@@ -6,7 +6,7 @@
 #include "preview/request.h"
 #include "preview/setting_groups.h"
 #include "render/candidates.h"
-#include "render/sequence.h"
+#include "render/layers.h"
 #include "trace/kept.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "preview/editable_parts.h"
 #include "render/provenance.h"
-#include "render/sequence.h"
+#include "render/job.h"
 #include "trace/view.h"
 
 namespace tyndall {

@@ -5,7 +5,7 @@
 #include "preview/request.h"
 #include "render/frame.h"
 #include "render/layers_mean.h"
-#include "render/sequence.h"
+#include "render/layers.h"
 #include "trace/light_depth.h"
 #include "trace/view.h"
 

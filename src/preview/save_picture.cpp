@@ -1,3 +1,4 @@
+#include "trace/snapshot.h"
 #include "preview/save_picture.h"
 
 #include "base/error.h"
@@ -6,7 +7,8 @@
 #include "render/frame.h"
 #include "render/png.h"
 #include "render/provenance.h"
-#include "render/sequence.h"
+#include "render/layers.h"
+#include "render/job.h"
 #include "scene/light.h"
 #include "trace/view.h"
 #include "volume/medium.h"

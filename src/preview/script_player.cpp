@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "render/sequence.h"
 
 #include <cstdlib>
 

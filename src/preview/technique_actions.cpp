@@ -4,7 +4,6 @@
 #include "preview/reference_picture.h"
 #include "preview/setting_groups.h"
 #include "preview/verb_actions.h"
-#include "render/sequence.h"
 
 namespace tyndall {
 namespace {

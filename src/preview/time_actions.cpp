@@ -1,6 +1,5 @@
 // Frames, playing, and frames that are missing.
 #include "preview/verb_actions.h"
-#include "render/sequence.h"
 #include "scene/scene.h"
 
 #include <algorithm>

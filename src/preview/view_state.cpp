@@ -1,3 +1,5 @@
+#include "scene/camera.h"
+#include "trace/moment.h"
 #include "preview/view_state.h"
 #include "preview/scene_loader.h"
 
@@ -7,7 +9,6 @@
 #include "preview/edit_actions.h"
 #include "preview/missing_frames.h"
 #include "preview/scene_session.h"
-#include "render/sequence.h"
 
 #include <algorithm>
 #include <utility>

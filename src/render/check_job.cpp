@@ -1,10 +1,11 @@
+#include "trace/moment.h"
 #include "render/check_job.h"
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/frames.h"
 #include "modes/mode.h"
-#include "render/sequence.h"
+#include "render/job.h"
 #include "render/to_target.h"
 #include "scene/scene.h"
 

@@ -1,10 +1,11 @@
 // What can be said about a job before any frame is loaded.
 #pragma once
-#include "modes/mode.h"
 #include "render/job.h"
-#include "scene/scene.h"
 
 namespace tyndall {
+struct Mode;
+struct Scene;
+
 inline std::filesystem::path png_name(const std::string& exr) {
     return std::filesystem::path(exr).replace_extension(".png");
 }

@@ -1,4 +1,6 @@
 // Hashes and header texts of a frame.
+#include "scene/camera.h"
+#include "trace/moment.h"
 #include "render/provenance.h"
 
 #include "base/error.h"
@@ -8,7 +10,8 @@
 #include "modes/mode.h"
 #include "modes/style.h"
 #include "render/frame.h"
-#include "render/sequence.h"
+#include "render/layers.h"
+#include "render/job.h"
 #include "render/to_target.h"
 #include "scene/scene.h"
 

@@ -1,12 +1,12 @@
 // What a frame is made from, as a view to render, a hash to compare and attributes to keep.
 #pragma once
 #include "render/job.h"
-#include "scene/scene.h"
 
 #include <map>
 #include <string>
 
 namespace tyndall {
+struct Scene;
 struct View;
 
 View view_of(const Scene& scene, const RenderJob& job, int frame);

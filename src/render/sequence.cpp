@@ -1,4 +1,5 @@
 // The pipeline over frames: one is rendered while the one before is written and the one after is loaded.
+#include "render/loaded_frame.h"
 #include "render/sequence.h"
 
 #include "base/error.h"

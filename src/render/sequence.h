@@ -2,13 +2,14 @@
 #pragma once
 #include "base/progress.h"
 #include "render/job.h"
-#include "trace/snapshot.h"
+#include "render/layers.h"
 
 #include <atomic>
 #include <string>
 #include <vector>
 
 namespace tyndall {
+struct LoadedFrame;
 struct Mode;
 struct Scene;
 
@@ -28,16 +29,6 @@ struct RenderReport {
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
-
-// A frame of a job, loaded.
-struct LoadedFrame {
-    Snapshot snapshot;
-    double seconds = 0; // it took
-};
-
-// Loads a job's first frame, to look at it before the others. What stands still is shared with `previous`, when that
-// is a frame of the same scene. Throws Error.
-LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot* previous = nullptr);
 
 // Renders the job's frames; while one renders, the next is loaded and the last is written. `first` (may be null)
 // holds the first frame, which is taken out of it and not loaded again. Output names are tested and

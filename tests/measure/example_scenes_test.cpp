@@ -1,4 +1,5 @@
 // The proof of a scene, on the scenes that come with the program.
+#include "scene/scene.h"
 #include "measure/verify.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,6 @@
 // The stability suite, case by case, and that its judgement is sound.
+#include "trace/view.h"
+#include "modes/mode.h"
 #include "measure/stress.h"
 
 #include "base/error.h"

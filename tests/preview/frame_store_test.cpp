@@ -1,3 +1,4 @@
+#include "scene/scene.h"
 #include "painting.h"
 #include "preview/missing_frames.h"
 #include "preview/view_state.h"

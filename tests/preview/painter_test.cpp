@@ -1,3 +1,4 @@
+#include "scene/scene.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "modes/mode.h"

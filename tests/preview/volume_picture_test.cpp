@@ -1,3 +1,4 @@
+#include "scene/scene.h"
 #include "base/parallel.h"
 #include "measure/heatmap.h"
 #include "painting.h"

@@ -3,6 +3,7 @@
 #include "base/frames.h"
 #include "fixtures.h"
 #include "modes/mode.h"
+#include "render/loaded_frame.h"
 #include "render/sequence.h"
 #include "scene/light.h"
 #include "scene/light_kind.h"
