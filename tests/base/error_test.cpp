@@ -2,6 +2,8 @@
 #include "base/utf8.h"
 #include "support/expect_error.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall {
 namespace {
 TEST(Printable, KeepsOrdinaryTextToTheLastByte) {

@@ -2,6 +2,9 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>

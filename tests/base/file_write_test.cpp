@@ -3,6 +3,9 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/mount.h>

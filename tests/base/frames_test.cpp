@@ -1,6 +1,9 @@
 #include "base/frames.h"
 #include "support/expect_error.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <climits>
 #include <random>

@@ -1,6 +1,9 @@
 #include "base/json.h"
 #include "support/expect_error.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <cfloat>
 #include <cmath>
 #include <random>

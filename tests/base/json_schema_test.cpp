@@ -4,6 +4,9 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
 #include <random>
 
 namespace tyndall {

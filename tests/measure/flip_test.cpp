@@ -6,6 +6,8 @@
 #include "measure/flip_color.h"
 #include "measure/tone.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 const ivec2 size{64, 48};

@@ -3,6 +3,8 @@
 #include "base/random.h"
 #include "measure/halves.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 const ivec2 size{40, 24};

@@ -3,6 +3,8 @@
 #include "measure/heatmap.h"
 #include "render/lettering.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 // CIE lightness of an sRGB colour, 0..100.

@@ -2,6 +2,8 @@
 
 #include "measure/metrics.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();

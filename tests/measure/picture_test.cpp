@@ -5,6 +5,7 @@
 #include "measure/ssim.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {

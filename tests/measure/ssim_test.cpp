@@ -3,6 +3,8 @@
 #include "measure/ssim.h"
 #include "measure/tone.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 constexpr double c1 = 1e-4, c2 = 9e-4; // 0.01² and 0.03²

@@ -1,6 +1,8 @@
 #include "fixtures.h"
 #include "preview/action.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 TEST(Script, LinesBecomeActions) {
     const auto actions = parse_script("# a look around\n\norbit 30 -5.5 # slowly\n  camera \"my camera\"\ncamera\n"

@@ -3,6 +3,8 @@
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 constexpr float tolerance = 1e-5f; // a few roundings of numbers up to 10

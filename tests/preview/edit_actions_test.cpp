@@ -8,6 +8,8 @@
 #include "preview/view_state.h"
 #include "scene/scene.h"
 
+#include <gtest/gtest.h>
+
 #include <bit>
 
 namespace tyndall::test {

@@ -8,6 +8,8 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 
 namespace tyndall::test {

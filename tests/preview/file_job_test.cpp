@@ -13,6 +13,8 @@
 #include "trace/moment.h"
 #include "volume/bake.h"
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <thread>
 

@@ -1,11 +1,13 @@
-#include "scene/scene.h"
 #include "painting.h"
 #include "preview/missing_frames.h"
 #include "preview/view_state.h"
 #include "scene/light.h"
+#include "scene/scene.h"
 #include "trace/kept.h"
 #include "volume/medium.h"
 #include "volume/vdb.h"
+
+#include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {

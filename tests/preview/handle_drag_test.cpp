@@ -4,6 +4,8 @@
 #include "preview/handle_drag.h"
 #include "preview/scene_session.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 LightSource light_of(const char* name, LightKind kind, vec3 position) {

@@ -2,6 +2,8 @@
 #include "preview/property_words.h"
 #include "scene/scene.h"
 
+#include <gtest/gtest.h>
+
 #include <set>
 
 namespace tyndall::test {

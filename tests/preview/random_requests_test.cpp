@@ -9,6 +9,8 @@
 #include "scene/light.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 #include <thread>
 
 namespace tyndall::test {

@@ -6,6 +6,8 @@
 #include "scene/light.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 Request ray_request() {

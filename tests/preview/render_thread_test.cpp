@@ -2,6 +2,8 @@
 #include "preview/render_thread.h"
 #include "preview/scene_loader.h"
 
+#include <gtest/gtest.h>
+
 #include <chrono>
 #include <fstream>
 

@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {

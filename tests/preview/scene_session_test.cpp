@@ -3,6 +3,8 @@
 #include "preview/scene_session.h"
 #include "scene/camera.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 void set(SceneSession& session, std::string_view path, std::string_view value, uint64_t drag = 0, double seconds = 0) {

@@ -6,6 +6,8 @@
 #include "preview/scene_text.h"
 #include "scene/scene.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 // The text after edits that were also made in memory; the two must then say the same.

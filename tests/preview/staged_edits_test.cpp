@@ -9,6 +9,8 @@
 #include "scene/light.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 std::atomic<bool> never_cancelled = false;

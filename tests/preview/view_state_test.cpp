@@ -4,6 +4,8 @@
 #include "preview/setting_groups.h"
 #include "scene/scene.h"
 
+#include <gtest/gtest.h>
+
 #include <set>
 
 namespace tyndall::test {

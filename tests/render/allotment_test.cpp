@@ -10,6 +10,8 @@
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 // Two tiles side by side, of mean 1 and of these variances.

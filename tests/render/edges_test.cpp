@@ -9,6 +9,8 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 constexpr ivec2 size(32, 16);

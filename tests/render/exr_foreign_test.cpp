@@ -3,6 +3,8 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <fstream>
 #include <map>

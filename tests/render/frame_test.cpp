@@ -11,6 +11,8 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 #include <glm/gtc/quaternion.hpp>
 
 #include <cstring>

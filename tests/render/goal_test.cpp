@@ -11,6 +11,8 @@
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 // A moment of an example scene at a small size, and its exact picture as two independent halves.

@@ -2,6 +2,8 @@
 #include "render/exr.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 #include <sstream>
 
 namespace tyndall::test {

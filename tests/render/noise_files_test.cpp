@@ -10,6 +10,8 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 Scene small_scene() {

@@ -11,6 +11,8 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 TEST(Noise, RunningMeanMatchesHandComputation) {
     RunningMean mean;

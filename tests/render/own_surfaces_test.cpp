@@ -9,6 +9,8 @@
 #include "trace/view.h"
 #include "volume/fog_reach.h"
 
+#include <gtest/gtest.h>
+
 #include <mutex>
 
 namespace tyndall::test {

@@ -3,6 +3,8 @@
 #include "support/expect_error.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG

@@ -12,6 +12,8 @@
 #include "trace/kept.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 
 namespace tyndall::test {

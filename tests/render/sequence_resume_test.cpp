@@ -2,6 +2,8 @@
 #include "scene/scene.h"
 #include "sequence_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 
 namespace tyndall::test {

@@ -7,6 +7,8 @@
 #include "support/expect_error.h"
 #include "trace/view.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/resource.h>
 
 #include <chrono>

@@ -8,6 +8,8 @@
 #include "sequence_fixtures.h"
 #include "trace/view.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Settings&, History*) {

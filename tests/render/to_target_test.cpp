@@ -12,6 +12,8 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::test {
 namespace {
 struct Result {

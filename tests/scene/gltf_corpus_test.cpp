@@ -3,6 +3,8 @@
 #include "base/json.h"
 #include "support/load_answer.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 
 namespace tyndall {

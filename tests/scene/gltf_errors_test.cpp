@@ -5,6 +5,8 @@
 #include "support/load_answer.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/stat.h>
 #include <unistd.h>
 

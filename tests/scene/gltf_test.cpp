@@ -4,6 +4,8 @@
 #include "support/load_answer.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall {
 namespace {
 Scene loaded(const GltfBuilder& gltf, const LoadOptions& options = {}) {

@@ -4,6 +4,8 @@
 #include "support/load_answer.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/stat.h>
 
 namespace tyndall {

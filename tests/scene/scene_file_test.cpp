@@ -4,6 +4,8 @@
 #include "support/scratch.h"
 #include "volume/vdb.h"
 
+#include <gtest/gtest.h>
+
 #include <glm/gtc/quaternion.hpp>
 
 namespace tyndall {

@@ -4,6 +4,8 @@
 #include "scene/mesh.h"
 #include "support/scratch.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall {
 namespace {
 // Red, green, blue, white: two by two.

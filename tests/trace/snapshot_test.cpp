@@ -15,6 +15,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace tyndall {
 namespace {

@@ -4,6 +4,8 @@
 #include "vdb_fixtures.h"
 #include "volume/bake.h"
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <map>
 

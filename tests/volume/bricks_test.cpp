@@ -4,6 +4,8 @@
 #include "volume/fog_fixtures.h"
 #include "volume/half.h"
 
+#include <gtest/gtest.h>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall::test {

@@ -3,6 +3,8 @@
 #include "volume/fog_fixtures.h"
 #include "volume/medium_simd.h"
 
+#include <gtest/gtest.h>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <cstring>

@@ -1,5 +1,7 @@
 #include "noise_fixtures.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::testing {
 namespace {
 // The largest value over unit gradients of a term that is linear in them is the sum of the lengths of their factors.

@@ -1,5 +1,7 @@
 #include "noise_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <bit>
 #include <cstring>
 

@@ -5,6 +5,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cstring>
 

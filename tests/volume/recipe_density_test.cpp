@@ -1,5 +1,7 @@
 #include "recipe_fixtures.h"
 
+#include <gtest/gtest.h>
+
 namespace tyndall::testing {
 namespace {
 float smoothstep(float t) {

@@ -1,6 +1,8 @@
 #include "base/parallel.h"
 #include "recipe_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <cstring>
 
 namespace tyndall::testing {

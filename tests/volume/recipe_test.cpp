@@ -2,6 +2,8 @@
 #include "vdb_fixtures.h"
 #include "volume/recipe.h"
 
+#include <gtest/gtest.h>
+
 #include <set>
 
 namespace tyndall::testing {

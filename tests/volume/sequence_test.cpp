@@ -2,6 +2,7 @@
 #include "volume/vdb_fixtures.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 namespace tyndall {
 namespace {

@@ -3,6 +3,8 @@
 
 #include "volume/fog_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall::test {

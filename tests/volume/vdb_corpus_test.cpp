@@ -3,6 +3,7 @@
 #include "volume/vdb_fixtures.h"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cstring>
 

@@ -1,5 +1,7 @@
 #include "volume/vdb_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 

@@ -5,6 +5,8 @@
 #include "volume/vdb_prewalk.h"
 #include "volume/voxel_mask.h"
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <random>
 

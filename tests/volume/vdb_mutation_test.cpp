@@ -3,6 +3,8 @@
 #include "volume/vdb.h"
 #include "volume/vdb_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

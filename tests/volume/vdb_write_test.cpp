@@ -2,6 +2,8 @@
 #include "volume/vdb.h"
 #include "volume/vdb_fixtures.h"
 
+#include <gtest/gtest.h>
+
 #include <sys/mount.h>
 #include <sys/resource.h>
 
