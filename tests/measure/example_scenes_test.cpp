@@ -1,6 +1,6 @@
 // The proof of a scene, on the scenes that come with the program.
-#include "scene/scene.h"
 #include "measure/verify.h"
+#include "scene/scene.h"
 
 #include <gtest/gtest.h>
 

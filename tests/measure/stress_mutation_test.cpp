@@ -1,11 +1,11 @@
 // The stability suite has to notice: modes broken on purpose, each caught by a case that the mode itself passes.
-#include "scene/scene.h"
-#include "scene/mesh.h"
+#include "measure/stress.h"
 #include "modes/ray_batch.h"
 #include "modes/settings.h"
-#include "trace/view.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "trace/snapshot.h"
-#include "measure/stress.h"
+#include "trace/view.h"
 
 #include "base/parallel.h"
 #include "modes/fog_picture.h"

@@ -1,7 +1,7 @@
 // The stability suite, case by case, and that its judgement is sound.
-#include "trace/view.h"
-#include "modes/mode.h"
 #include "measure/stress.h"
+#include "modes/mode.h"
+#include "trace/view.h"
 
 #include "base/error.h"
 #include "base/random.h"

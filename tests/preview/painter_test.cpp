@@ -1,4 +1,3 @@
-#include "scene/scene.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "modes/mode.h"
@@ -8,6 +7,7 @@
 #include "render/png.h"
 #include "render/sequence.h"
 #include "scene/light.h"
+#include "scene/scene.h"
 #include "volume/medium.h"
 
 #include <fstream>

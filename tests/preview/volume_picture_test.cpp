@@ -1,9 +1,9 @@
-#include "scene/scene.h"
 #include "base/parallel.h"
 #include "measure/heatmap.h"
 #include "painting.h"
 #include "preview/view_state.h"
 #include "scene/light.h"
+#include "scene/scene.h"
 #include "volume/medium.h"
 #include "volume/vdb.h"
 
