@@ -1,11 +1,11 @@
-#include "preview/scene_edit.h"
-#include "scene/scene.h"
-#include "scene/light_kind.h"
 #include "handles_panel.h"
 
 #include "base/text.h"
 #include "lights_panel.h"
 #include "preview/edit_actions.h"
+#include "preview/scene_edit.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
 #include "theme.h"
 
 #include <algorithm>

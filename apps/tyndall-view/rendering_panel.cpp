@@ -1,9 +1,9 @@
 // The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
-#include "scene/scene.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"
 #include "preview/reference_picture.h"
+#include "scene/scene.h"
 #include "theme.h"
 
 namespace tyndall {

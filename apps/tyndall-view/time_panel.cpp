@@ -1,8 +1,8 @@
 // The bar of time.
-#include "preview/view_state.h"
-#include "scene/scene.h"
 #include "base/text.h"
 #include "panels.h"
+#include "preview/view_state.h"
+#include "scene/scene.h"
 #include "theme.h"
 #include "trace/moment.h"
 

@@ -1,10 +1,10 @@
-#include "scene/scene.h"
 #include "volume_panel.h"
 
 #include "base/text.h"
 #include "measure/heatmap.h"
 #include "plot.h"
 #include "preview/volume_picture.h"
+#include "scene/scene.h"
 #include "theme.h"
 
 #include <algorithm>

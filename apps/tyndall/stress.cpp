@@ -1,8 +1,8 @@
 // tyndall stress: the stability suite, mode by case.
-#include "modes/mode.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/output.h"
+#include "modes/mode.h"
 #include "stress_report.h"
 
 #include <chrono>

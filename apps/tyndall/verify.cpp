@@ -1,11 +1,11 @@
 // tyndall verify: proves this program right, on its own scenes or on the user's.
-#include "scene/scene.h"
 #include "measure/verify.h"
+
 #include "base/error.h"
 #include "base/output.h"
-#include "common.h"
-
 #include "base/text.h"
+#include "common.h"
+#include "scene/scene.h"
 
 #include <optional>
 

@@ -7,8 +7,8 @@
 #include "measure/heatmap.h"
 #include "measure/json_values.h"
 #include "modes/mode.h"
-#include "render/png.h"
 #include "render/job.h"
+#include "render/png.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

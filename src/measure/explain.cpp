@@ -1,5 +1,6 @@
 // The camera ray from surface to surface, and the deterministic reference on it.
 #include "measure/explain_parts.h"
+#include "volume/medium.h"
 
 #include "base/error.h"
 #include "base/random.h"

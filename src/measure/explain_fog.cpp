@@ -1,5 +1,6 @@
 // The fog of one part of the ray in steps, and what each light does there.
 #include "measure/explain_parts.h"
+#include "volume/medium.h"
 
 #include "modes/style.h"
 #include "scene/cone.h"

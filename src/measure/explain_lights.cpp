@@ -1,5 +1,6 @@
 // Where one part of the ray sees a light, and what stands in its way.
 #include "measure/explain_parts.h"
+#include "volume/medium.h"
 
 #include "modes/light_point.h"
 #include "trace/shadow_slices.h"

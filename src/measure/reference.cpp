@@ -1,6 +1,3 @@
-#include "render/frame.h"
-#include "trace/view.h"
-#include "trace/snapshot.h"
 #include "measure/reference.h"
 
 #include "base/error.h"
@@ -8,12 +5,15 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "modes/mode.h"
-#include "render/resume.h"
-#include "render/layers.h"
+#include "render/frame.h"
 #include "render/job.h"
+#include "render/layers.h"
+#include "render/resume.h"
 #include "render/to_target.h"
 #include "scene/light.h"
 #include "trace/kept.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 
 #include <algorithm>

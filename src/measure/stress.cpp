@@ -1,15 +1,15 @@
 // Runs the cases and judges them.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
-#include "modes/promise.h"
-#include "modes/mode.h"
 #include "measure/stress.h"
 
 #include "base/error.h"
 #include "measure/stress_trial.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include <chrono>
 

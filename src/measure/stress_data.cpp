@@ -1,9 +1,9 @@
 // Fog from grids: odd transforms and sizes, sheets and single voxels, detail that gets fine or thick.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_volumes.h"
+#include "scene/mesh.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

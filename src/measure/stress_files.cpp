@@ -1,8 +1,8 @@
 // Grids as files hold them: bad voxels, tiles, a background, nothing at all.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_volumes.h"
+#include "scene/mesh.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "base/random.h"
 #include "volume/medium.h"

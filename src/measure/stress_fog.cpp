@@ -1,8 +1,8 @@
 // Fog without surfaces: thin, thick, layered, thin sheets, several at once, and what closed forms say of it.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
+#include "scene/mesh.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "base/random.h"
 #include "scene/light.h"

@@ -1,10 +1,10 @@
 // Modes that look back at the frames before: lights that move, dim and go out, cuts, a bad frame; and the voxels of
 // the view that hold this light.
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "modes/fog_picture.h"
 #include "modes/history.h"

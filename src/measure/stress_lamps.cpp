@@ -1,10 +1,10 @@
 // Local lights in even fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

@@ -1,11 +1,11 @@
 // The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

@@ -1,11 +1,11 @@
 // Light that scatters more than once: left out, added by a grid of fluence, and kept out by walls.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
-#include "modes/mode.h"
 #include "measure/stress_trial.h"
+#include "modes/mode.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

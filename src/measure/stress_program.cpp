@@ -1,8 +1,8 @@
 // What all modes stand on: numbers near the ends of their range, threads, crops, phase functions, noise, metrics.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
+#include "scene/mesh.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "base/parallel.h"
 #include "base/random.h"

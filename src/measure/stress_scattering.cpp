@@ -1,10 +1,10 @@
 // How fog spreads light: lobes, signs, colours, layers.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/stress_trial.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

@@ -1,12 +1,12 @@
 // Surfaces in the way of the light: slits, wires, rooms, meshes of every quality, eyes in shadow.
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
-#include "modes/mode.h"
 #include "measure/stress_trial.h"
+#include "modes/mode.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

@@ -1,17 +1,17 @@
 // Renders the tiny scenes of the stability suite, counts what is no light, and measures.
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
-#include "modes/mode.h"
 #include "measure/stress_trial.h"
 
 #include "measure/halves.h"
 #include "measure/metrics.h"
+#include "modes/mode.h"
 #include "render/candidates.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "trace/occluders_scene.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

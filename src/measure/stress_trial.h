@@ -4,8 +4,12 @@
 #include "measure/verify_rays.h"
 #include "modes/settings.h"
 #include "render/frame.h"
+#include "scene/camera.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
+#include "volume/medium.h"
 
 #include <optional>
 

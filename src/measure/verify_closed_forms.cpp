@@ -1,9 +1,9 @@
 // Checks against closed forms and published single-scattering values.
-#include "volume/medium.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/verify_rays.h"
+#include "scene/mesh.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "scene/light.h"
 #include "trace/snapshot.h"

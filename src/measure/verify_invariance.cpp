@@ -1,10 +1,10 @@
 // Checks that need no expected value: what must not change when the same fog or scene is said in another way.
-#include "scene/light_kind.h"
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/verify_rays.h"
+#include "scene/light_kind.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include "base/random.h"
 #include "scene/light.h"

@@ -1,7 +1,4 @@
 // Scenes made in memory and estimates along rays.
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/verify_rays.h"
 
 #include "base/error.h"
@@ -9,11 +6,14 @@
 #include "base/random.h"
 #include "modes/mode.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
 #include "trace/occluders_scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/bricks.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -3,6 +3,9 @@
 #include "measure/verify.h"
 #include "modes/ray_batch.h"
 #include "modes/settings.h"
+#include "scene/mesh.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 struct Light;

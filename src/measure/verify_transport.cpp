@@ -1,12 +1,12 @@
 // Checks of light that scatters many times: conservation of energy and published tables.
-#include "scene/scene.h"
-#include "scene/mesh.h"
-#include "volume/sparse_volume.h"
-#include "volume/phase.h"
 #include "measure/verify_rays.h"
 #include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
+#include "volume/phase.h"
+#include "volume/sparse_volume.h"
 
 namespace tyndall {
 namespace {

@@ -10,6 +10,7 @@
 #include "trace/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/fog_reach.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

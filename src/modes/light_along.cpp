@@ -1,6 +1,7 @@
 #include "modes/light_along.h"
 
 #include "scene/cone.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,13 +1,15 @@
 // One light as one camera ray sees it: on which stretches its light arrives, and how much of it where.
 #pragma once
+#include "base/math.h"
 #include "scene/light.h"
 #include "trace/shadow_slices.h"
-#include "volume/medium.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct Medium;
+
 struct LightAlong {
     const Light* light = nullptr;
     LightPoint point;                       // that casts the shadows of this ray

@@ -1,5 +1,8 @@
 #include "modes/lit_fog.h"
+
+#include "trace/snapshot.h"
 #include "trace/view.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 

@@ -1,5 +1,6 @@
 // Where rays are cut: where the fog changes its kind, or into steps.
 #include "modes/lit_fog.h"
+#include "volume/medium.h"
 
 #include "volume/spans.h"
 

@@ -4,12 +4,14 @@
 #include "modes/lit_fog.h"
 #include "modes/march_exact.h"
 #include "modes/march_kernel.h"
+#include "modes/promise.h"
 #include "modes/shadow_map_kernel.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "trace/view.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -4,6 +4,7 @@
 #include "modes/light_point.h"
 #include "modes/style.h"
 #include "volume/fog_pieces.h"
+#include "volume/medium.h"
 
 #include <array>
 #include <utility>

@@ -4,6 +4,7 @@
 #include "scene/light.h"
 #include "trace/light_ray.h"
 #include "trace/occluders_scene.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

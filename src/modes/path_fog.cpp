@@ -2,6 +2,7 @@
 #include "modes/path_line.h"
 #include "scene/light.h"
 #include "volume/bricks.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -4,6 +4,7 @@
 #include "modes/path_connect.h"
 #include "modes/path_lights.h"
 #include "trace/occluders.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 inline constexpr int most_layers = 64;   // BLEND surfaces on one line; the last counts as opaque

@@ -2,6 +2,7 @@
 #include "modes/path_tracer.h"
 
 #include "modes/path_line.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -4,11 +4,13 @@
 
 #include "modes/even_fog.h"
 #include "modes/fog_picture.h"
+#include "modes/promise.h"
 #include "modes/radial_blur_glow.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

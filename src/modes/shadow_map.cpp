@@ -7,6 +7,7 @@
 #include "modes/style.h"
 #include "modes/techniques.h"
 #include "scene/scene.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -2,6 +2,7 @@
 #include "modes/shadow_map_kernel.h"
 #include "scene/cone.h"
 #include "volume/fog_reach.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride) {

@@ -3,6 +3,7 @@
 #include "modes/lit_fog.h"
 #include "modes/style.h"
 #include "modes/techniques.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,7 +1,7 @@
 // Where the camera stands, and how many pixels it has.
-#include "trace/moment.h"
 #include "base/error.h"
 #include "preview/verb_actions.h"
+#include "trace/moment.h"
 
 namespace tyndall {
 namespace {

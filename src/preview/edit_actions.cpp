@@ -1,4 +1,3 @@
-#include "trace/moment.h"
 #include "preview/edit_actions.h"
 
 #include "base/error.h"
@@ -6,6 +5,7 @@
 #include "base/text.h"
 #include "preview/scene_session.h"
 #include "preview/verb_actions.h"
+#include "trace/moment.h"
 
 #include <algorithm>
 #include <utility>

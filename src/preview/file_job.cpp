@@ -1,4 +1,3 @@
-#include "trace/moment.h"
 #include "preview/file_job.h"
 
 #include "base/frames.h"
@@ -8,6 +7,7 @@
 #include "preview/scene_session.h"
 #include "render/provenance.h"
 #include "render/sequence.h"
+#include "trace/moment.h"
 #include "volume/bake.h"
 
 #include <algorithm>

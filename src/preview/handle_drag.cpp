@@ -1,7 +1,7 @@
-#include "scene/scene.h"
 #include "preview/handle_drag.h"
 
 #include "preview/edit_actions.h"
+#include "scene/scene.h"
 
 #include <algorithm>
 

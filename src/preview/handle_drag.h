@@ -12,7 +12,7 @@ std::vector<LightIcon> icons_in_view(const ViewState& state, ivec2 size, float g
 const LightIcon* nearest_icon(std::span<const LightIcon> icons, vec2 pixel, float reach);
 
 struct HandleDrag {
-    uint64_t number = 0; // as in edit()
+    uint64_t number = 0;           // as in edit()
     std::shared_ptr<Scene> before; // lights and nodes only, as they were when the drag began
     Camera camera;
     ivec2 size{0};

@@ -2,6 +2,8 @@
 #pragma once
 #include "measure/explain.h"
 
+#include <memory>
+
 namespace tyndall {
 struct Request;
 struct Snapshot;

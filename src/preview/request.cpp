@@ -1,8 +1,8 @@
 #include "preview/request.h"
 
 #include "preview/editable_parts.h"
-#include "render/provenance.h"
 #include "render/job.h"
+#include "render/provenance.h"
 #include "trace/view.h"
 
 namespace tyndall {

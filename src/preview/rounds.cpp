@@ -4,8 +4,8 @@
 #include "modes/mode.h"
 #include "preview/request.h"
 #include "render/frame.h"
-#include "render/layers_mean.h"
 #include "render/layers.h"
+#include "render/layers_mean.h"
 #include "trace/light_depth.h"
 #include "trace/view.h"
 

@@ -1,15 +1,15 @@
-#include "trace/snapshot.h"
 #include "preview/save_picture.h"
 
 #include "base/error.h"
 #include "modes/mode.h"
 #include "render/check_job.h"
 #include "render/frame.h"
+#include "render/job.h"
+#include "render/layers.h"
 #include "render/png.h"
 #include "render/provenance.h"
-#include "render/layers.h"
-#include "render/job.h"
 #include "scene/light.h"
+#include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 

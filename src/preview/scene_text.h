@@ -2,6 +2,8 @@
 #pragma once
 #include "preview/scene_edit.h"
 
+#include <filesystem>
+
 namespace tyndall {
 // The text with the edits made, in their order. `scene` is what was read from the text, with or without the edits.
 // Lights of the glTF get an entry of their name; a camera that stood in for a missing one is written down. The result

@@ -1,14 +1,14 @@
-#include "scene/camera.h"
-#include "trace/moment.h"
 #include "preview/view_state.h"
-#include "preview/scene_loader.h"
 
 #include "base/error.h"
 #include "base/frames.h"
 #include "base/text.h"
 #include "preview/edit_actions.h"
 #include "preview/missing_frames.h"
+#include "preview/scene_loader.h"
 #include "preview/scene_session.h"
+#include "scene/camera.h"
+#include "trace/moment.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,3 @@
-#include "trace/moment.h"
 #include "render/check_job.h"
 
 #include "base/error.h"
@@ -8,6 +7,7 @@
 #include "render/job.h"
 #include "render/to_target.h"
 #include "scene/scene.h"
+#include "trace/moment.h"
 
 #include <set>
 

@@ -2,6 +2,8 @@
 #pragma once
 #include "modes/settings.h"
 
+#include <span>
+
 namespace tyndall {
 struct Mode;
 

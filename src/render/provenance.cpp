@@ -1,6 +1,4 @@
 // Hashes and header texts of a frame.
-#include "scene/camera.h"
-#include "trace/moment.h"
 #include "render/provenance.h"
 
 #include "base/error.h"
@@ -10,10 +8,12 @@
 #include "modes/mode.h"
 #include "modes/style.h"
 #include "render/frame.h"
-#include "render/layers.h"
 #include "render/job.h"
+#include "render/layers.h"
 #include "render/to_target.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
+#include "trace/moment.h"
 
 #include <algorithm>
 #include <cstdio>

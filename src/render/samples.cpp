@@ -6,6 +6,7 @@
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "volume/fog_reach.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,5 +1,4 @@
 // The pipeline over frames: one is rendered while the one before is written and the one after is loaded.
-#include "render/loaded_frame.h"
 #include "render/sequence.h"
 
 #include "base/error.h"
@@ -8,6 +7,7 @@
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/check_job.h"
+#include "render/loaded_frame.h"
 #include "render/png.h"
 #include "render/provenance.h"
 #include "render/resume.h"

@@ -8,6 +8,7 @@
 
 #include "base/simd.h"
 #include "trace/fluence.h"
+#include "volume/medium.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

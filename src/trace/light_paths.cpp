@@ -4,6 +4,7 @@
 #include "trace/light_emission.h"
 #include "trace/occluders.h"
 #include "trace/snapshot.h"
+#include "volume/medium.h"
 #include "volume/tracking.h"
 
 #include <algorithm>

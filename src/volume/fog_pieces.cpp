@@ -1,7 +1,9 @@
 #include "volume/fog_pieces.h"
 
 #include "volume/brick_walk.h"
+#include "volume/bricks.h"
 #include "volume/half.h"
+#include "volume/medium.h"
 #include "volume/spans.h"
 
 namespace tyndall {

@@ -1,12 +1,14 @@
 // All fog along a ray in closed form, piece by piece: in every voxel cell trilinear density is a cubic along the ray,
 // height fog is an exponential, even fog a constant. Densities and optical depths are exact at every point.
 #pragma once
-#include "volume/medium.h"
+#include "base/math.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct Medium;
+
 // The density of one medium on low..high.
 struct DensityPiece {
     double low = 0, high = 0;

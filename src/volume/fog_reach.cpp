@@ -1,6 +1,8 @@
 // The end of unbounded fog, found by doubling on its closed-form optical depth.
 #include "volume/fog_reach.h"
 
+#include "volume/medium.h"
+
 namespace tyndall {
 namespace {
 constexpr float horizon = 1e9f;     // metres; no ray goes further

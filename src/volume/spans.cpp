@@ -1,6 +1,7 @@
 #include "volume/spans.h"
 
 #include "volume/brick_walk.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -1,5 +1,6 @@
 #include "volume/steps.h"
 
+#include "volume/medium.h"
 #include "volume/spans.h"
 
 #include <cassert>

@@ -1,11 +1,13 @@
 // Where along a ray to evaluate the fog: steps from local majorants, none in empty space.
 #pragma once
-#include "volume/medium.h"
+#include "base/math.h"
 
 #include <span>
 #include <vector>
 
 namespace tyndall {
+struct Medium;
+
 struct Step {
     float low, high; // metres along the ray
 };

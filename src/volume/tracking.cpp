@@ -3,6 +3,7 @@
 
 #include "volume/brick_walk.h"
 #include "volume/half.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

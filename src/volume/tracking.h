@@ -1,10 +1,12 @@
 // Light on its way through fog by null collisions: the fog is filled up to its local majorants with matter that does
 // nothing, so that free paths become exponential and no integral is needed. Unbiased for any density.
 #pragma once
+#include "base/math.h"
 #include "base/random.h"
-#include "volume/medium.h"
 
 namespace tyndall {
+struct Medium;
+
 // Distance along the ray, within `range`, of the first particle met; infinite when none is (delta tracking: Woodcock
 // 1965). `first` in [0,1) decides the first free path. Counts density look-ups in `lookups`.
 float collision_distance(const Medium& medium, const Ray& ray, Interval range, float first, RandomStream& random,

@@ -1,10 +1,10 @@
 #include "preview/fixtures.h"
-#include "scene/camera.h"
-#include "trace/moment.h"
 
 #include "preview/scene_loader.h"
 #include "preview/view_state.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
+#include "trace/moment.h"
 
 namespace tyndall::test {
 CameraSource camera_source(const char* name, vec3 position, vec3 target) {

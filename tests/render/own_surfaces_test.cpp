@@ -8,6 +8,7 @@
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/fog_reach.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "volume/fog_reach.h"
+#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 
