@@ -45,20 +45,32 @@ TEST(FluenceRim, ALayerBetweenTheCellsIsAsBrightAsOneOnThem) {
         EXPECT_NEAR(brightness((2 + shift) * cell), on_cells, 0.12 * on_cells) << shift;
 }
 
-// What lies below a floor is dark and takes nothing from the fog above.
+// What lies below a floor is dark and takes nothing from the fog above. Of the cells that the floor cuts little is
+// known where fog ends close below it: with eight times the paths they are 6 % off, with these noise adds 4 %.
 TEST(FluenceWalls, FogThatGoesOnBelowAFloorIsAsBrightAboveIt) {
-    const auto fluence = [](float low, float height) {
+    struct Place {
+        float height;
+        double tolerance;
+    };
+    constexpr std::array<Place, 4> places{{{0.01f, 0.06 + 3 * 0.04}, {0.08f, 0.1}, {0.2f, 1e-3}, {0.5f, 1e-3}}};
+    const auto fluences = [&](float low) {
         Scene scene;
         scene.materials = {lambert(vec3(0))};
         add_mesh(scene, floor_at(0, 6, 0));
         const Snapshot snapshot = with_surfaces(scene, {vec3(-1, low, -1), vec3(1)}, {0, -1, 0});
         const FluenceGrid grid = make_fluence(snapshot, twice);
-        return mean_fluence(grid, {vec3(-0.5f, height, -0.5f), vec3(0.5f, height + 0.02f, 0.5f)});
+        std::array<double, places.size()> result;
+        for (size_t i = 0; i < places.size(); ++i)
+            result[i] =
+                mean_fluence(grid, {vec3(-0.5f, places[i].height, -0.5f), vec3(0.5f, places[i].height + 0.02f, 0.5f)});
+        return result;
     };
-    for (const float height : {0.01f, 0.08f, 0.2f, 0.5f}) {
-        const double cut_off = fluence(0, height);
-        for (const float low : {-0.25f, -0.33f, -0.41f, -1.0f})
-            EXPECT_NEAR(fluence(low, height), cut_off, 0.1 * cut_off) << height << " above, fog from " << low;
+    const auto cut_off = fluences(0);
+    for (const float low : {-0.25f, -0.33f, -0.41f, -1.0f}) {
+        const auto whole = fluences(low);
+        for (size_t i = 0; i < places.size(); ++i)
+            EXPECT_NEAR(whole[i] / cut_off[i], 1, places[i].tolerance)
+                << places[i].height << " above, fog from " << low;
     }
 }
 
