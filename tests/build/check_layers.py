@@ -14,7 +14,7 @@ OWNERS = {  # header prefix -> where it may be included
 
 root = pathlib.Path(sys.argv[1])
 problems = []
-for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.glob("apps/**/*.cpp")]):
+for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.glob("apps/**/*.cpp"), *root.glob("apps/**/*.h")]):
     relative = path.relative_to(root).as_posix()
     own = relative.split("/")[1] if relative.startswith("src/") else None
     for number, line in enumerate(path.read_text().splitlines(), 1):
