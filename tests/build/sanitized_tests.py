@@ -76,17 +76,17 @@ def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--slow"]
     sanitized, release = map(pathlib.Path, arguments)
     seconds, programs = seconds_in_release(release), sorted((sanitized / "tests").glob("test_*"))
-    todo = [batch for program in programs if program.is_file() and os.access(program, os.X_OK)
+    waiting = [batch for program in programs if program.is_file() and os.access(program, os.X_OK)
             for batch in batches(program, seconds, "--slow" in sys.argv)]
-    todo.sort(key=lambda batch: -batch[2])
+    waiting.sort(key=lambda batch: -batch[2])
     failures = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for told in pool.map(lambda batch: run(*batch), todo):
+        for told in pool.map(lambda batch: run(*batch), waiting):
             failures += bool(told)
             if told:
                 print(told, flush=True)
-    print(f"{sum(len(names) for _, names, _ in todo)} tests in {len(todo)} processes, {failures} of them failed")
-    sys.exit(1 if failures or not todo else 0)
+    print(f"{sum(len(names) for _, names, _ in waiting)} tests in {len(waiting)} processes, {failures} of them failed")
+    sys.exit(1 if failures or not waiting else 0)
 
 
 main()
