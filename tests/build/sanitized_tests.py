@@ -1,10 +1,11 @@
-"""Runs the unit tests of a build with sanitizers: those that took less than two seconds in the last test run of another
+"""Runs the unit tests of a build with sanitizers: those that took less than two seconds in the last test run of a release
 build, or with --slow all others.
 
     sanitized_tests.py SANITIZED RELEASE [--slow]
 
 Many tests share a process, as starting one takes longer than most tests do. Prints the output of processes that fail."""
 import concurrent.futures
+import json
 import os
 import pathlib
 import subprocess
@@ -18,12 +19,13 @@ SHOWN_LINES = 60
 
 
 def seconds_in_release(build):
-    """Seconds of each test that ctest ran; its own average of several runs."""
-    costs = build / "Testing/Temporary/CTestCostData.txt"
-    if not costs.exists():
-        sys.exit(f"sanitized_tests: {costs} is missing: run the tests of {build} first")
-    lines = costs.read_text().split("---")[0].split("\n")
-    return {name: float(seconds) for name, _, seconds in (line.rsplit(" ", 2) for line in lines if line)}
+    """Seconds of each test, by part and name."""
+    reports = list((build / "test_times").glob("*.json"))
+    if not reports:
+        sys.exit(f"sanitized_tests: {build}/test_times is missing: run the tests of {build} first")
+    return {(report.name.split(".")[0], f"{suite['name']}.{test['name']}"): float(test["time"].removesuffix("s"))
+            for report in reports for suite in json.loads(report.read_text())["testsuites"]
+            for test in suite["testsuite"]}
 
 
 def tests_of(program):
@@ -43,7 +45,7 @@ def batches(program, seconds, slow):
     """Lists of tests, each about BATCH seconds in release; slow ones alone."""
     part, batch, sum_of_batch = program.name.removeprefix("test_"), [], 0
     for name in tests_of(program):
-        cost = seconds.get(f"{part}.{name}")
+        cost = seconds.get((part, name))
         if (cost is None or cost >= QUICK) != slow:
             continue
         batch.append(name)

@@ -2,11 +2,10 @@
 
     python3 tests/cli/random_actions.py build/asan/tyndall --minutes 30 --seed 1
 
-Wants xvfb-run. Says how the viewer ended and how its memory grew; exit code 1 when it failed or went on growing.
+Wants Xvfb. Says how the viewer ended and how its memory grew; exit code 1 when it failed or went on growing.
 """
 import argparse
 import json
-import os
 import pathlib
 import random
 import re
@@ -15,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 import time
+
+from viewer import display
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
@@ -231,30 +232,25 @@ def script(actions, seconds):
     return "\n".join([*lines, "stop-job", "quit"]) + "\n"
 
 
-def viewer_memory(parent):
-    """Bytes that the viewer among a process' descendants holds; 0 when there is none."""
-    for status in pathlib.Path("/proc").glob("[0-9]*/status"):
-        try:
-            text = status.read_text()
-            if "Name:\ttyndall-view" in text and os.getpgid(int(status.parent.name)) == os.getpgid(parent):
-                return 1024 * int(re.search(r"VmRSS:\s+(\d+)", text).group(1))
-        except (OSError, AttributeError):
-            pass  # it has ended
-    return 0
+def memory_of(process):
+    """Bytes that a process holds; 0 when it has ended."""
+    try:
+        return 1024 * int(re.search(r"VmRSS:\s+(\d+)", pathlib.Path(f"/proc/{process.pid}/status").read_text()).group(1))
+    except (OSError, AttributeError):
+        return 0
 
 
 def run(program, seconds, seed, directory):
     """Exit code, what was said, and (seconds, bytes) every second."""
     actions = Actions(seed, copies_of_scenes(directory), program)
     (directory / "actions.txt").write_text(script(actions, seconds))
-    command = ["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", pathlib.Path(program).resolve().parent / "tyndall-view",
-               actions.scenes[0], "--script", "actions.txt", "--stats"]
+    command = [pathlib.Path(program).resolve().parent / "tyndall-view", actions.scenes[0], "--script", "actions.txt",
+               "--stats"]
     start, memory = time.monotonic(), []
     with open(directory / "said.txt", "w") as said:
-        process = subprocess.Popen(command, cwd=directory, stdout=said, stderr=said, start_new_session=True,
-                                   env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})  # of the graphics driver
+        process = subprocess.Popen(command, cwd=directory, stdout=said, stderr=said, env=display())
         while process.poll() is None:
-            memory.append((time.monotonic() - start, viewer_memory(process.pid)))
+            memory.append((time.monotonic() - start, memory_of(process)))
             time.sleep(1)
     return process.returncode, (directory / "said.txt").read_text(), memory
 

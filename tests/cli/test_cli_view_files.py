@@ -1,13 +1,10 @@
 """Files in the viewer: jobs that write sequences, and recipes and volumes that change under it."""
-import subprocess
-import time
 import unittest
 
 from program import SANITIZED, TRIANGLE, gltf, recipe, scene
-from viewer import XVFB, ViewerTest
+from viewer import ViewerTest
 
 
-@unittest.skipUnless(XVFB, "xvfb-run is not installed")
 class Jobs(ViewerTest):
     def setUp(self):
         super().setUp()
@@ -51,22 +48,12 @@ class Jobs(ViewerTest):
         self.assertFalse(list(self.path(".").glob("*.tmp*")))
 
 
-@unittest.skipUnless(XVFB, "xvfb-run is not installed")
 class Reloading(ViewerTest):
     def changed(self, film, change):
         """Pictures before and after the change of a file, each as render has it."""
-        lines = ["wait samples 1", f"snapshot {self.path('a.exr')}", f"wait {12 if SANITIZED else 4}", f"snapshot {self.path('b.exr')}", "quit"]
-        script = self.write("script.txt", "\n".join(lines))
         self.succeed("render", film, "-o", self.path("before.exr"), "-q", "--frames", 1)
-        process = subprocess.Popen(self.command(film, "--script", script, "--samples", 2), text=True,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=self.environment())
-        for _ in range(600):
-            if self.path("a.exr").exists():
-                break
-            time.sleep(0.1)
-        change()
-        errors = process.communicate(timeout=120)[1]
-        self.assertEqual(self.exit_code(), 0, errors)
+        self.view(film, ["wait samples 1", f"snapshot {self.path('a.exr')}", f"wait {12 if SANITIZED else 4}",
+                         f"snapshot {self.path('b.exr')}"], "--samples", 2, once=(self.path("a.exr"), change))
         self.succeed("render", film, "-o", self.path("after.exr"), "-q", "--frames", 1)
         pictures = [self.path(name).read_bytes() for name in ("before.exr", "a.exr", "after.exr", "b.exr")]
         self.assertTrue(pictures[0] == pictures[1])

@@ -3,7 +3,7 @@ import shutil
 import unittest
 
 from program import TRIANGLE, gltf, recipe, scene
-from viewer import XVFB, ViewerTest, read_png
+from viewer import ViewerTest, read_png
 
 
 def area(rows):
@@ -11,7 +11,6 @@ def area(rows):
     return [row[:3 * 900] for row in rows[100:550]]
 
 
-@unittest.skipUnless(XVFB, "xvfb-run is not installed")
 class Looking(ViewerTest):
     def setUp(self):
         super().setUp()

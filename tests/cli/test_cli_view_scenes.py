@@ -3,13 +3,12 @@ import re
 import unittest
 
 from program import SANITIZED, SOURCE
-from viewer import XVFB, ViewerTest, read_png
+from viewer import ViewerTest, read_png
 
 SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
 WINDOW = (1280, 800)
 
 
-@unittest.skipUnless(XVFB, "xvfb-run is not installed")
 class Scenes(ViewerTest):
     def test_the_first_picture_of_every_scene_comes_soon(self):
         for name in SCENES:
