@@ -2,8 +2,8 @@
 
 #include "base/text.h"
 #include "lights_panel.h"
-#include "preview/scene_session.h"
 #include "theme.h"
+#include "viewer/editing/scene_session.h"
 
 #include <imgui_stdlib.h>
 

@@ -1,7 +1,7 @@
 // What controls that edit the scene remember from frame to frame.
 #pragma once
-#include "preview/handle_drag.h"
-#include "preview/setting_groups.h"
+#include "viewer/editing/handle_drag.h"
+#include "viewer/state/setting_groups.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #include "error_panel.h"
 
 #include "base/text.h"
-#include "preview/reference_picture.h"
 #include "theme.h"
+#include "viewer/painting/reference_picture.h"
 
 namespace tyndall {
 namespace {

@@ -2,11 +2,11 @@
 
 #include "base/text.h"
 #include "lights_panel.h"
-#include "preview/edit_actions.h"
-#include "preview/scene_edit.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
 #include "theme.h"
+#include "viewer/editing/scene_edit.h"
+#include "viewer/state/edit_actions.h"
 
 #include <algorithm>
 

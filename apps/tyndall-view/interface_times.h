@@ -1,6 +1,6 @@
 // How long the interface takes, and how soon pictures come.
 #pragma once
-#include "preview/render_thread.h"
+#include "viewer/painting/render_thread.h"
 
 #include <string>
 #include <vector>

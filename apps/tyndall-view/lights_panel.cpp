@@ -1,10 +1,10 @@
 #include "lights_panel.h"
 
 #include "base/text.h"
-#include "preview/edit_actions.h"
-#include "preview/scene_session.h"
 #include "property_controls.h"
 #include "theme.h"
+#include "viewer/editing/scene_session.h"
+#include "viewer/state/edit_actions.h"
 
 #include <imgui_stdlib.h>
 

@@ -1,7 +1,7 @@
 // The program `tyndall-view`: reads the command line, opens the viewer, turns every outcome into an exit code.
 #include "../tyndall/common.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/io/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "modes/mode.h"

@@ -1,8 +1,8 @@
 // What is drawn, and the actions that come of it.
 #pragma once
 #include "edit_memory.h"
-#include "preview/shown_picture.h"
-#include "preview/view_state.h"
+#include "viewer/painting/shown_picture.h"
+#include "viewer/state/view_state.h"
 
 #include <functional>
 

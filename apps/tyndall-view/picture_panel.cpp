@@ -6,9 +6,9 @@
 #include "error_panel.h"
 #include "handles_panel.h"
 #include "modes/mode.h"
-#include "preview/missing_frames.h"
-#include "preview/reference_picture.h"
 #include "theme.h"
+#include "viewer/editing/missing_frames.h"
+#include "viewer/painting/reference_picture.h"
 
 #include <algorithm>
 

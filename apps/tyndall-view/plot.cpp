@@ -1,7 +1,7 @@
 #include "plot.h"
 
 #include "base/text.h"
-#include "measure/svg.h"
+#include "measure/report/svg.h"
 #include "theme.h"
 
 #include <algorithm>

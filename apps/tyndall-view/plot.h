@@ -1,6 +1,6 @@
 // Curves over an axis of distances, drawn by ImGui.
 #pragma once
-#include "volume/brick_walk.h"
+#include "volume/bricks/brick_walk.h"
 
 #include <imgui.h>
 

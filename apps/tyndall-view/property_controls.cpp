@@ -2,8 +2,8 @@
 
 #include "base/text.h"
 #include "lights_panel.h"
-#include "preview/edit_actions.h"
 #include "theme.h"
+#include "viewer/state/edit_actions.h"
 
 #include <algorithm>
 

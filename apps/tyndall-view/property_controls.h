@@ -1,7 +1,7 @@
 // One property of a light, of fog or of the scene: its name and what changes it.
 #pragma once
 #include "panels.h"
-#include "preview/property_words.h"
+#include "viewer/editing/property_words.h"
 
 namespace tyndall {
 // Where a sun stands: another way to give its direction.

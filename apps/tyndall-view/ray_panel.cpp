@@ -1,9 +1,9 @@
 #include "ray_panel.h"
 
 #include "base/text.h"
-#include "measure/explain_curves.h"
-#include "measure/explain_report.h"
-#include "measure/svg.h"
+#include "measure/explain/curves.h"
+#include "measure/explain/report.h"
+#include "measure/report/svg.h"
 #include "plot.h"
 #include "theme.h"
 

@@ -1,7 +1,7 @@
 // What happens on the ray of a pixel.
 #pragma once
 #include "panels.h"
-#include "preview/ray_question.h"
+#include "viewer/painting/ray_question.h"
 
 namespace tyndall {
 // In the space that is left of the current window: curves on the left, the techniques' answers on the right.

@@ -2,9 +2,9 @@
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"
-#include "preview/reference_picture.h"
 #include "scene/scene.h"
 #include "theme.h"
+#include "viewer/painting/reference_picture.h"
 
 namespace tyndall {
 namespace {

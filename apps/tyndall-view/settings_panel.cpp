@@ -2,8 +2,8 @@
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"
-#include "preview/setting_groups.h"
 #include "theme.h"
+#include "viewer/state/setting_groups.h"
 
 #include <cstdlib>
 #include <sstream>

@@ -1,10 +1,10 @@
 // The bar of time.
 #include "base/text.h"
 #include "panels.h"
-#include "preview/view_state.h"
 #include "scene/scene.h"
 #include "theme.h"
 #include "trace/moment.h"
+#include "viewer/state/view_state.h"
 
 #include <algorithm>
 

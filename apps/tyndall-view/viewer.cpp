@@ -1,9 +1,9 @@
 // The frames of the interface.
 #include "../tyndall/common.h"
 #include "base/error.h"
-#include "preview/edit_actions.h"
-#include "preview/volume_picture.h"
-#include "render/png.h"
+#include "render/image/png.h"
+#include "viewer/painting/volume_picture.h"
+#include "viewer/state/edit_actions.h"
 #include "viewer_parts.h"
 
 namespace tyndall {

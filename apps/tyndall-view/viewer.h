@@ -1,8 +1,8 @@
 // The viewer: what its state, its rendering and its window do to each other, frame by frame of the interface.
 #pragma once
-#include "preview/render_thread.h"
-#include "preview/scene_loader.h"
-#include "preview/script_player.h"
+#include "viewer/editing/scene_loader.h"
+#include "viewer/painting/render_thread.h"
+#include "viewer/state/script_player.h"
 
 namespace tyndall {
 struct ViewerOptions {

@@ -2,8 +2,8 @@
 #pragma once
 #include "interface_times.h"
 #include "panels.h"
-#include "preview/job_thread.h"
 #include "viewer.h"
+#include "viewer/painting/job_thread.h"
 #include "window.h"
 
 namespace tyndall {

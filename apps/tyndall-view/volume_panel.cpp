@@ -1,11 +1,11 @@
 #include "volume_panel.h"
 
 #include "base/text.h"
-#include "measure/heatmap.h"
+#include "measure/metrics/heatmap.h"
 #include "plot.h"
-#include "preview/volume_picture.h"
 #include "scene/scene.h"
 #include "theme.h"
+#include "viewer/painting/volume_picture.h"
 
 #include <algorithm>
 

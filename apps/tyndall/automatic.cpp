@@ -1,9 +1,9 @@
 #include "automatic.h"
 
 #include "base/error.h"
-#include "base/frames.h"
+#include "base/io/frames.h"
 #include "modes/mode.h"
-#include "render/provenance.h"
+#include "render/sequence/provenance.h"
 
 namespace tyndall {
 namespace {

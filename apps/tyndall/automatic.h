@@ -1,8 +1,8 @@
 // --mode auto: the mode that a scene needs.
 #pragma once
 #include "common.h"
-#include "measure/plan.h"
-#include "render/job.h"
+#include "measure/plan/plan.h"
+#include "render/sequence/job.h"
 
 namespace tyndall {
 struct Scene;

@@ -1,8 +1,8 @@
 // tyndall bake: a fog recipe to a sequence of VDB files.
-#include "volume/bake.h"
+#include "volume/recipe/bake.h"
 #include "base/error.h"
-#include "base/frames.h"
-#include "base/output.h"
+#include "base/io/frames.h"
+#include "base/io/output.h"
 #include "common.h"
 
 namespace tyndall {

@@ -3,10 +3,10 @@
 #include "file_kind.h"
 
 #include "base/error.h"
-#include "base/frames.h"
-#include "render/exr.h"
-#include "scene/gltf.h"
-#include "volume/vdb.h"
+#include "base/io/frames.h"
+#include "render/image/exr.h"
+#include "scene/gltf/gltf.h"
+#include "volume/vdb/vdb.h"
 
 #include <set>
 

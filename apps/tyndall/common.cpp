@@ -1,9 +1,9 @@
 #include "common.h"
 
 #include "base/error.h"
-#include "base/isa.h"
+#include "base/simd/isa.h"
 #include "base/text.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 
 #include <cerrno>
 #include <charconv>

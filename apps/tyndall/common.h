@@ -1,8 +1,8 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
-#include "base/json.h"
+#include "base/io/json.h"
+#include "base/io/progress.h"
 #include "base/math.h"
-#include "base/progress.h"
 #include "base/text.h"
 #include "command_line.h"
 

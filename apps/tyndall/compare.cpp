@@ -1,10 +1,10 @@
 // tyndall compare: how far pictures are from a reference.
 #include "base/error.h"
-#include "base/frames.h"
-#include "base/output.h"
+#include "base/io/frames.h"
+#include "base/io/output.h"
 #include "compare_report.h"
-#include "measure/heatmap.h"
-#include "render/png.h"
+#include "measure/metrics/heatmap.h"
+#include "render/image/png.h"
 
 namespace tyndall {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include "common.h"
 
-#include "measure/comparison.h"
+#include "measure/metrics/comparison.h"
 
 #include <optional>
 #include <string>

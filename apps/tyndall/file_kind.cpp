@@ -1,7 +1,7 @@
 #include "file_kind.h"
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/io/file.h"
 
 #include <fstream>
 

@@ -3,7 +3,7 @@
 #include "info.h"
 
 #include "base/error.h"
-#include "render/exr.h"
+#include "render/image/exr.h"
 
 #include <algorithm>
 

@@ -2,11 +2,11 @@
 #include "common.h"
 #include "info.h"
 #include "light_units.h"
-#include "measure/grid_report.h"
+#include "measure/report/grid_report.h"
 
 #include "base/error.h"
 #include "base/text.h"
-#include "scene/gltf.h"
+#include "scene/gltf/gltf.h"
 
 namespace tyndall {
 namespace {

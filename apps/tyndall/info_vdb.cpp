@@ -1,7 +1,7 @@
 // tyndall info: OpenVDB files.
 #include "common.h"
 #include "info.h"
-#include "measure/grid_report.h"
+#include "measure/report/grid_report.h"
 
 #include "base/error.h"
 

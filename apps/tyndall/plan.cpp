@@ -1,13 +1,13 @@
 // tyndall plan: which terms of the light a scene needs, and which mode gets to an error or the most out of a time.
-#include "measure/plan.h"
+#include "measure/plan/plan.h"
 
 #include "automatic.h"
 #include "base/error.h"
-#include "base/frames.h"
+#include "base/io/frames.h"
 #include "modes/mode.h"
-#include "render/loaded_frame.h"
-#include "render/provenance.h"
-#include "render/sequence.h"
+#include "render/sequence/loaded_frame.h"
+#include "render/sequence/provenance.h"
+#include "render/sequence/sequence.h"
 #include "render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"

@@ -3,10 +3,10 @@
 
 #include "automatic.h"
 #include "base/error.h"
-#include "base/frames.h"
-#include "base/output.h"
+#include "base/io/frames.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
-#include "render/to_target.h"
+#include "render/adaptive/to_target.h"
 
 namespace tyndall {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include "common.h"
 #include "modes/mode.h"
-#include "render/job.h"
+#include "render/sequence/job.h"
 
 namespace tyndall {
 struct RenderOptions {

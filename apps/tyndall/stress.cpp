@@ -1,7 +1,7 @@
 // tyndall stress: the stability suite, mode by case.
 #include "base/error.h"
-#include "base/file.h"
-#include "base/output.h"
+#include "base/io/file.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
 #include "stress_report.h"
 

@@ -1,7 +1,7 @@
 // The results of tyndall stress as one page that needs nothing else.
 #include "stress_report.h"
 
-#include "measure/svg.h"
+#include "measure/report/svg.h"
 
 namespace tyndall {
 namespace {

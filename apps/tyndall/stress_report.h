@@ -2,7 +2,7 @@
 #pragma once
 #include "common.h"
 
-#include "measure/stress.h"
+#include "measure/stress/stress.h"
 
 namespace tyndall {
 struct StressReport {

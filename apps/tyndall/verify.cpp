@@ -1,8 +1,8 @@
 // tyndall verify: proves this program right, on its own scenes or on the user's.
-#include "measure/verify.h"
+#include "measure/verify/verify.h"
 
 #include "base/error.h"
-#include "base/output.h"
+#include "base/io/output.h"
 #include "base/text.h"
 #include "common.h"
 #include "scene/scene.h"

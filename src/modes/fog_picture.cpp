@@ -7,10 +7,10 @@
 #include "modes/fog_picture_mix.h"
 #include "modes/history.h"
 #include "scene/light.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
-#include "volume/fog_reach.h"
 #include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
 
 namespace tyndall {
 namespace {

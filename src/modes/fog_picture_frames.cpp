@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "modes/fog_picture_mix.h"
-#include "volume/fog_reach.h"
+#include "volume/rays/fog_reach.h"
 
 namespace tyndall {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace tyndall {
-struct FroxelMemory; // of modes/froxel_memory.h
+struct FroxelMemory; // of modes/froxel/memory.h
 struct Scene;
 struct Snapshot;
 struct FogPicture; // of modes/fog_picture.h

@@ -1,11 +1,11 @@
 #include "modes/limits.h"
 
 #include "modes/settings.h"
-#include "trace/light_paths.h"
-#include "trace/occluders.h"
+#include "trace/fluence/light_paths.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
 #include <algorithm>

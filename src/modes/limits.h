@@ -1,7 +1,7 @@
 // Limits that several modes share.
 #pragma once
 #include "modes/mode.h"
-#include "trace/fluence_settings.h"
+#include "trace/fluence/settings.h"
 
 namespace tyndall {
 // Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places

@@ -1,8 +1,8 @@
 // The techniques: what each promises, where it fails, and how it turns a scene into light along camera rays.
 #pragma once
 #include "base/image.h"
+#include "integrate/ray_batch.h"
 #include "modes/promise.h"
-#include "modes/ray_batch.h"
 
 #include <string>
 #include <string_view>

@@ -2,10 +2,12 @@
 // headers.
 #pragma once
 #include "base/math.h"
-#include "trace/fluence_settings.h"
-#include "trace/jitter.h"
-#include "trace/light_transmittance.h"
-#include "trace/pixel_filter.h"
+#include "integrate/march_settings.h"
+#include "integrate/style.h"
+#include "trace/fluence/settings.h"
+#include "trace/sampling/jitter.h"
+#include "trace/sampling/pixel_filter.h"
+#include "trace/transmittance/light_transmittance.h"
 
 #include <functional>
 #include <string>
@@ -13,8 +15,6 @@
 #include <vector>
 
 namespace tyndall {
-enum class Visibility { off, rays, maps, slices, exact };
-
 // How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
 enum class PictureShare { full, half, third, quarter };
 
@@ -25,34 +25,6 @@ struct PixelSettings {
     Jitter jitter = Jitter::interleaved;
     int lamp_samples = 16; // most times as many rays where a local light is seen
     int edge_samples = 4;  // most times as many rays where the picture changes from pixel to pixel
-};
-
-struct MarchSettings {
-    float step_depth = 0.25f;        // most optical depth per step
-    float step_voxels = 8;           // most voxels per step
-    float step_length = 1e6f;        // longest step, metres
-    float step_share = 1.0f / 28;    // longest step as a share of the ray's stretch through fog
-    float near_light = 0.5f;         // a step is at most this share of the distance to a local light
-    int max_steps = 1024;            // per ray
-    float min_transmittance = 1e-3f; // the march stops where less than this passes
-    Visibility visibility = Visibility::slices;
-    LightTransmittance light = LightTransmittance::grid;
-    int light_resolution = 64; // cells across the fog in the light grids
-    int light_points = 1;      // of a soft light, asked for shadows at once
-    int nodes = 4;             // Gauss–Legendre nodes on each lit stretch of fog in closed form
-    bool phase = true;         // off: isotropic
-    bool heterogeneity = true; // off: bricks at their mean density
-    bool emission = true;
-    bool ambient = true;
-};
-
-// Departures from physics that artists ask for. Pictures made with any of them are stylised.
-struct StyleSettings {
-    float light_depth = 1; // factor on the optical depth between light and fog: below 1 shafts reach further
-    float view_depth = 1;  // factor on the optical depth between fog and eye, for the light of the fog only
-    float density = 1;     // factor on every medium's extinction
-    float range = 1e6f;    // metres from the eye at which the fog's light has faded out
-    vec3 tint{1};          // factor on the light of the fog
 };
 
 enum class BlurSource { occlusion, highlights };

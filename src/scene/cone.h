@@ -1,6 +1,6 @@
 // Where a line is inside the cone of a spot.
 #pragma once
-#include "volume/brick_walk.h"
+#include "volume/bricks/brick_walk.h"
 
 namespace tyndall {
 // The stretch of origin + t·direction, direction of any length, whose points lie within half_angle (0..π/2) of the axis

@@ -1,7 +1,7 @@
 #include "scene/image_file.h"
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/io/file.h"
 
 #include <array>
 #include <memory>

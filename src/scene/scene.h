@@ -6,8 +6,8 @@
 #include "scene/load_options.h"
 #include "scene/mesh.h"
 #include "volume/phase.h"
-#include "volume/recipe.h"
-#include "volume/sequence.h"
+#include "volume/recipe/recipe.h"
+#include "volume/vdb/sequence.h"
 
 #include <filesystem>
 #include <memory>

@@ -1,6 +1,6 @@
 #include "scene/scene_bounds.h"
 
-#include "scene/scene_file.h"
+#include "scene/file/scene_file.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>

@@ -1,11 +1,11 @@
 // Media of a scene at one moment: optics evaluated, files read, recipes grown, transforms folded in.
 #include "trace/fog.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/io/file.h"
 #include "scene/scene.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
-#include "volume/vdb.h"
+#include "volume/vdb/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>

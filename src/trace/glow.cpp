@@ -1,7 +1,7 @@
 // The list of emitting triangles, and points on them.
 #include "trace/glow.h"
 #include "scene/scene.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {

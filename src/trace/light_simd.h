@@ -1,4 +1,4 @@
-// Lights as sixteen points of fog see them (see base/simd.h for how such files are compiled).
+// Lights as sixteen points of fog see them (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_TRACE_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_TRACE_LIGHT_SIMD_H
 #undef TYNDALL_TRACE_LIGHT_SIMD_H
@@ -6,7 +6,7 @@
 #define TYNDALL_TRACE_LIGHT_SIMD_H
 #endif
 
-#include "base/simd.h"
+#include "base/simd/simd.h"
 #include "scene/light.h"
 
 HWY_BEFORE_NAMESPACE();

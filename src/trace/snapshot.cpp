@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 #include "trace/fog.h"
 #include "trace/kept.h"
-#include "trace/occluders_scene.h"
+#include "trace/occlusion/scene.h"
 #include "volume/medium.h"
 
 namespace tyndall {

@@ -3,7 +3,7 @@
 #include "base/math.h"
 #include "scene/background_kind.h"
 #include "trace/moment.h"
-#include "volume/sequence.h"
+#include "volume/vdb/sequence.h"
 
 #include <memory>
 #include <string>

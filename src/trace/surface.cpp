@@ -1,9 +1,9 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
-#include "trace/light_depth.h"
 #include "trace/light_ray.h"
-#include "trace/occluders_scene.h"
+#include "trace/occlusion/scene.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
 
 #include <array>
 

@@ -2,7 +2,7 @@
 // filter.
 #include "trace/view.h"
 #include "base/random.h"
-#include "trace/lamp_samples.h"
+#include "trace/sampling/lamp_samples.h"
 
 #include <algorithm>
 

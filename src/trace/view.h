@@ -2,9 +2,9 @@
 #pragma once
 #include "base/image.h"
 #include "scene/camera.h"
-#include "trace/jitter.h"
-#include "trace/pixel_filter.h"
-#include "trace/sample_place.h"
+#include "trace/sampling/jitter.h"
+#include "trace/sampling/pixel_filter.h"
+#include "trace/sampling/sample_place.h"
 
 #include <cstdint>
 #include <memory>

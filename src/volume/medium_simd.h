@@ -1,4 +1,4 @@
-// Density at sixteen points, inside kernels compiled per instruction set (base/simd.h says how).
+// Density at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
 #if defined(TYNDALL_VOLUME_MEDIUM_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_MEDIUM_SIMD_H
 #undef TYNDALL_VOLUME_MEDIUM_SIMD_H
@@ -6,8 +6,8 @@
 #define TYNDALL_VOLUME_MEDIUM_SIMD_H
 #endif
 
-#include "base/simd.h"
-#include "volume/bricks.h"
+#include "base/simd/simd.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -4,8 +4,8 @@
 #define HWY_TARGET_INCLUDE "volume/optical_depth.cpp"
 #include <hwy/foreach_target.h>
 
-#include "base/simd.h"
-#include "volume/brick_walk.h"
+#include "base/simd/simd.h"
+#include "volume/bricks/brick_walk.h"
 #include "volume/medium.h"
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// Phase functions of sixteen cosines, inside kernels compiled per instruction set (base/simd.h says how).
+// Phase functions of sixteen cosines, inside kernels compiled per instruction set (base/simd/simd.h says how).
 #if defined(TYNDALL_VOLUME_PHASE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_PHASE_SIMD_H
 #undef TYNDALL_VOLUME_PHASE_SIMD_H
@@ -6,7 +6,7 @@
 #define TYNDALL_VOLUME_PHASE_SIMD_H
 #endif
 
-#include "base/simd.h"
+#include "base/simd/simd.h"
 #include "volume/phase.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,8 +1,8 @@
 // Delta and ratio tracking over the stretches of constant majorant that each kind of fog offers.
 #include "volume/tracking.h"
 
-#include "volume/brick_walk.h"
-#include "volume/half.h"
+#include "volume/bricks/brick_walk.h"
+#include "volume/bricks/half.h"
 #include "volume/medium.h"
 
 namespace tyndall {

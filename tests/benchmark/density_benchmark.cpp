@@ -3,10 +3,10 @@
 #define HWY_TARGET_INCLUDE "../tests/benchmark/density_benchmark.cpp"
 #include <hwy/foreach_target.h>
 
-#include "base/isa.h"
 #include "base/random.h"
+#include "base/simd/isa.h"
 #include "volume/medium_simd.h"
-#include "volume/steps.h"
+#include "volume/rays/steps.h"
 
 #include <benchmark/benchmark.h>
 

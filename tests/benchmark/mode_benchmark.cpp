@@ -7,8 +7,8 @@
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=light,camera tyndall_benchmark ...
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=fog TYNDALL_SET=froxel.amortise=on tyndall_benchmark ...
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
-#include "base/isa.h"
 #include "base/parallel.h"
+#include "base/simd/isa.h"
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -16,10 +16,10 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/kept.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
 #include <benchmark/benchmark.h>

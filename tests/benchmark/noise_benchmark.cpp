@@ -1,8 +1,8 @@
 // Fractal noise and whole recipes, voxels per second: run with --benchmark_filter=noise.
 #include "base/error.h"
-#include "base/isa.h"
 #include "base/parallel.h"
-#include "volume/recipe.h"
+#include "base/simd/isa.h"
+#include "volume/recipe/recipe.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,7 +2,7 @@
 // triangles). Items are rays; the bar is packets ≥ 2× single.
 #include "scene/mesh.h"
 #include "scene/scene.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 
 #include <benchmark/benchmark.h>
 

@@ -2,17 +2,17 @@
 // light-side depth, each kind alone over all points of the frame. `ratio` is what the frame takes over what they take.
 //
 //     TYNDALL_SCENE=scenes/pillars.json TYNDALL_QUALITY=final tyndall_benchmark --benchmark_filter=march_and_its_parts
-#include "base/isa.h"
-#include "modes/march_steps.h"
+#include "base/simd/isa.h"
+#include "integrate/march_steps.h"
 #include "modes/mode.h"
 #include "scene/scene.h"
-#include "trace/light_depth.h"
 #include "trace/light_ray.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
-#include "volume/fog_reach.h"
 #include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
 
 #include <benchmark/benchmark.h>
 

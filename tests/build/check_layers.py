@@ -1,16 +1,18 @@
-"""Fails when a file includes a layer above its own, or a library outside the layer that owns it, or when two headers give
-one name to different types: those link without a word and crash."""
+"""Fails when a file includes a layer above its own, a technique the folder of another one, or a file a library outside the
+layer that owns it, or when two headers give one name to different types: those link without a word and crash."""
 import pathlib
 import re
 import sys
 
-LAYERS = ["base", "volume", "scene", "trace", "modes", "render", "measure", "preview"]
+LAYERS = ["base", "volume", "scene", "trace", "integrate", "modes", "render", "measure", "viewer"]
 OWNERS = {  # header prefix -> where it may be included
     "tbb/": ["src/base"], "nlohmann/": ["src/base"], "valijson/": ["src/base"], "openvdb/": ["src/volume/vdb"],
-    "nanovdb/": ["tests"], "embree": ["src/trace/embree.h"], "tiny_gltf": ["src/scene"],
-    "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/exr"],
-    "Imf": ["src/render/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "GL/": ["apps"], "imgui": ["apps"],
+    "nanovdb/": ["tests"], "embree": ["src/trace/occlusion/embree.h"], "tiny_gltf": ["src/scene"],
+    "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/image/exr"],
+    "Imf": ["src/render/image/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "GL/": ["apps"], "imgui": ["apps"],
 }
+
+TECHNIQUE = re.compile(r"src/modes/(\w+)/")
 
 root = pathlib.Path(sys.argv[1])
 problems = []
@@ -25,6 +27,9 @@ for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.
         layer = included.split("/")[0]
         if own in LAYERS and layer in LAYERS and "/" in included and LAYERS.index(layer) > LAYERS.index(own):
             problems.append(f"{relative}:{number}: {own} includes {included}, a layer above it")
+        technique, other = TECHNIQUE.match(relative), TECHNIQUE.match(f"src/{included}")
+        if technique and other and technique[1] != other[1]:
+            problems.append(f"{relative}:{number}: {technique[1]} includes {included}, a part of another technique")
         for prefix, allowed in OWNERS.items():
             if included.startswith(prefix) and not any(relative.startswith(place) for place in allowed):
                 problems.append(f"{relative}:{number}: {included} belongs in {', '.join(allowed)} only")

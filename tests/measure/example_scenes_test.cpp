@@ -1,5 +1,5 @@
 // The proof of a scene, on the scenes that come with the program.
-#include "measure/verify.h"
+#include "measure/verify/verify.h"
 #include "scene/scene.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // A stage with a bit of everything, rays through it, and how their answers compare.
 #pragma once
-#include "modes/ray_batch.h"
+#include "integrate/ray_batch.h"
 #include "support/tiny_scenes.h"
 
 namespace tyndall::test {

@@ -1,14 +1,14 @@
 // How much light scatters more than once: closed forms, light paths, and the path tracer.
 #include "base/random.h"
+#include "modes/path/path_rays.h"
 #include "modes/settings.h"
-#include "path_rays.h"
 #include "scene/light.h"
 #include "support/random_points.h"
 #include "support/tiny_scenes.h"
-#include "trace/scattering_orders.h"
+#include "trace/fluence/scattering_orders.h"
+#include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
 #include "volume/phase.h"
-#include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Artist's controls against the closed forms they bend.
+#include "integrate/style.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
-#include "modes/style.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST_P(Styles, DepthsOfLightAndViewAreScaledApart) {
         const Scatter result = marched(slab.snapshot, styled, slab.ray);
         EXPECT_NEAR(result.radiance.x / slab.expected(light, view), 1, 1e-4) << light << " " << view;
         EXPECT_NEAR(result.transmittance, std::exp(-Slab::sigma * Slab::length), 1e-5);
-        EXPECT_EQ(is_stylised(styled), light != 1 || view != 1);
+        EXPECT_EQ(is_stylised(styled.style), light != 1 || view != 1);
     }
 }
 
@@ -85,7 +85,7 @@ TEST_P(Styles, RangeFades) {
     const double plain = light(styled);
     styled.style.range = 2.5f;
     EXPECT_NEAR(light(styled) / plain, (2 + 0.25) / 5, 2e-3);
-    EXPECT_TRUE(is_stylised(styled));
+    EXPECT_TRUE(is_stylised(styled.style));
 }
 
 TEST(Style, FogWithoutDensityIsGone) {

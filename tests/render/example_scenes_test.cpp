@@ -1,15 +1,15 @@
 // The example scenes through the whole chain: files, snapshot, march.
-#include "base/file.h"
+#include "base/io/file.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/scratch.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/bake.h"
 #include "volume/medium.h"
+#include "volume/recipe/bake.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include "modes/promise.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"

@@ -1,7 +1,7 @@
 // Scenes of a few planes, and modes of one line, so that every pixel has a closed form.
 #pragma once
 #include "base/math.h"
-#include "modes/ray_batch.h"
+#include "integrate/ray_batch.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "base/error.h"
-#include "images.h"
 #include "scene/image_file.h"
+#include "scene/images.h"
 #include "scene/mesh.h"
 #include "support/scratch.h"
 

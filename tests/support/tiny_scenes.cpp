@@ -1,8 +1,8 @@
 #include "support/tiny_scenes.h"
 
 #include "scene/scene.h"
-#include "trace/occluders.h"
-#include "volume/bricks.h"
+#include "trace/occlusion/occluders.h"
+#include "volume/bricks/bricks.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -3,9 +3,9 @@
 #include "scene/light.h"
 #include "support/meshes.h"
 #include "trace/snapshot.h"
+#include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
 #include "volume/phase.h"
-#include "volume/sparse_volume.h"
 
 #include <functional>
 #include <memory>

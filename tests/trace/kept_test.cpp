@@ -1,17 +1,17 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
-#include "trace/kept_shadows.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/shadows/kept_shadows.h"
 
 #include "base/parallel.h"
 #include "trace/kept.h"
-#include "trace/light_depth.h"
-#include "trace/shadow_slices.h"
+#include "trace/shadows/intervals/shadow_slices.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 #include "volume/medium.h"
-#include "volume/recipe.h"
+#include "volume/recipe/recipe.h"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include "support/scratch.h"
 #include "trace/fog.h"
 #include "trace/snapshot.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
+#include "volume/bricks/sparse_volume.h"
 #include "volume/fog_fixtures.h"
-#include "volume/sparse_volume.h"
-#include "volume/vdb.h"
+#include "volume/vdb/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>

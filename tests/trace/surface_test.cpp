@@ -2,12 +2,12 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
-#include "trace/occluders.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/surface.h"
 
-#include "trace/light_depth.h"
-#include "trace/light_transmittance.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
+#include "trace/transmittance/light_transmittance.h"
 #include "volume/fog_fixtures.h"
 
 #include <gtest/gtest.h>

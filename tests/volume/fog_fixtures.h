@@ -1,9 +1,9 @@
 // Fog grids made in memory, and the plainest possible look at them.
 #pragma once
 #include "base/random.h"
-#include "volume/bricks.h"
+#include "volume/bricks/bricks.h"
+#include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
-#include "volume/sparse_volume.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Density and optical depth of every kind of medium against closed forms.
-#include "base/isa.h"
+#include "base/simd/isa.h"
 #include "volume/fog_fixtures.h"
 #include "volume/medium_simd.h"
 

@@ -1,0 +1,57 @@
+#include "base/io/output.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace fs = std::filesystem;
+
+void check_pattern(const std::string& pattern, std::string_view extension, bool several, std::string_view option) {
+    const fs::path name = fs::path(pattern).filename();
+    if (name.extension() != extension || name.stem().empty())
+        fail(ExitCode::usage, option,
+             "expected a name ending in " + std::string(extension) + ", like out.####" + std::string(extension) +
+                 "; got '" + printable(pattern, 60) + "'");
+    const bool numbered = has_frame_token(pattern);
+    if (several && !numbered)
+        fail(ExitCode::usage, option,
+             "several frames need a frame number in the name, like " + name.stem().string() + ".####" +
+                 std::string(extension));
+}
+
+OutputPlaces::~OutputPlaces() {
+    // Only empty directories can be removed this way; anything else in them is somebody's work.
+    for (auto made = made_.rbegin(); made != made_.rend(); ++made) {
+        std::error_code ignored;
+        fs::remove(*made, ignored);
+    }
+}
+
+void OutputPlaces::check(const fs::path& file) {
+    std::error_code ignored;
+    const fs::path directory = file.parent_path();
+    const bool seen = std::find(checked_.begin(), checked_.end(), directory) != checked_.end();
+    if (seen && !fs::is_directory(file, ignored)) return;
+
+    std::vector<fs::path> missing;
+    for (fs::path place = directory; !place.empty() && !fs::exists(place, ignored); place = place.parent_path())
+        missing.push_back(place);
+    made_.insert(made_.end(), missing.rbegin(), missing.rend());
+    check_output(file);
+    checked_.push_back(directory);
+    sweep_temporaries(directory.empty() ? fs::path(".") : directory);
+}
+
+void OutputPlaces::check(const std::string& pattern, const std::vector<int>& frames, std::string_view option) {
+    std::vector<std::string> names;
+    for (const int frame : frames) names.push_back(frame_name(pattern, frame));
+    for (const std::string& name : names) check(fs::path(name));
+    std::sort(names.begin(), names.end());
+    const auto twice = std::adjacent_find(names.begin(), names.end());
+    if (twice != names.end())
+        fail(ExitCode::usage, option, "two frames would be written to '" + printable(*twice, 100) + "'");
+}
+}

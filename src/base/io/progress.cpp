@@ -1,0 +1,131 @@
+#include "base/io/progress.h"
+
+#include "base/error.h"
+#include "base/io/json.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+using Seconds = std::chrono::duration<double>;
+
+// 1:05:09, 2:07 or 0:09
+std::string clock_text(double seconds) {
+    const long long whole = static_cast<long long>(std::min(std::max(seconds, 0.0), 3.6e8) + 0.5);
+    char text[40];
+    if (whole >= 3600)
+        std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
+    else
+        std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
+    return text;
+}
+
+size_t terminal_width(int descriptor) {
+    winsize size{};
+    return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col >= 20 ? size.ws_col : 80;
+}
+
+// "render [######------]  50%  0:10  0:10 left", never wider than the terminal.
+std::string bar_text(const std::string& what, double fraction, double elapsed, double left, size_t width) {
+    char tail[80];
+    std::snprintf(tail, sizeof tail, " %3d%%  %s  ", static_cast<int>(100 * fraction + 1e-9),
+                  clock_text(elapsed).c_str());
+    std::string right = tail + (fraction >= 1 ? "done" : left >= 0 ? clock_text(left) + " left" : "");
+    const size_t taken = what.size() + right.size() + 4;
+    const size_t cells = width > taken + 10 ? std::min<size_t>(width - taken, 40) : 0;
+    const size_t full = static_cast<size_t>(fraction * static_cast<double>(cells));
+    std::string text = what;
+    if (cells) text += " [" + std::string(full, '#') + std::string(cells - full, '-') + "]";
+    return (text + right).substr(0, width - 1);
+}
+}
+
+// Output that cannot be written (a closed pipe) is no reason to stop the work: results of the writes are ignored.
+
+Progress::Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr)
+    : style_(style), what_(printable(what, 60)), total_(total), to_stderr_(to_stderr) {
+    if (style_ == ProgressStyle::automatic)
+        style_ = isatty(to_stderr_ ? STDERR_FILENO : STDOUT_FILENO) ? ProgressStyle::bar : ProgressStyle::alf;
+    start_ = last_print_ = std::chrono::steady_clock::now();
+    print(false);
+}
+
+Progress::~Progress() {
+    if (!finished_ && style_ == ProgressStyle::bar) {
+        std::FILE* stream = to_stderr_ ? stderr : stdout;
+        std::fputs("\n", stream);
+        std::fflush(stream);
+    }
+}
+
+void Progress::set(double done) {
+    const std::lock_guard lock(mutex_);
+    if (finished_ || !(done > done_)) return; // also not a number
+    done_ = std::min(done, total_);
+    print(false);
+}
+
+double Progress::share() const {
+    const std::lock_guard lock(mutex_);
+    return total_ > 0 ? done_ / total_ : finished_ ? 1 : 0;
+}
+
+void Progress::line(std::string_view text) {
+    if (style_ == ProgressStyle::silent) return;
+    const std::lock_guard lock(mutex_);
+    std::FILE* stream = to_stderr_ ? stderr : stdout;
+    const bool drawn = style_ == ProgressStyle::bar && !finished_;
+    if (drawn) std::fprintf(stream, "\r%*s\r", static_cast<int>(last_length_), "");
+    std::fflush(stream);
+    std::fprintf(stderr, "%s\n", printable(text, 480).c_str());
+    std::fflush(stderr);
+    if (drawn) print(true);
+}
+
+void Progress::finish() {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;
+    done_ = total_;
+    print(true);
+    finished_ = true;
+    if (style_ != ProgressStyle::bar) return;
+    std::FILE* stream = to_stderr_ ? stderr : stdout;
+    std::fputs("\n", stream);
+    std::fflush(stream);
+}
+
+void Progress::print(bool last) {
+    if (style_ == ProgressStyle::none || style_ == ProgressStyle::silent) return;
+    const auto now = std::chrono::steady_clock::now();
+    const double elapsed = Seconds(now - start_).count(), since = Seconds(now - last_print_).count();
+    const double fraction = total_ > 0 ? done_ / total_ : last ? 1.0 : 0.0;
+    const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : -1;
+    const int percent = total_ > 0 ? static_cast<int>(100 * done_ / total_ + 1e-9) : last ? 100 : 0;
+
+    // A bar moves ten times a second at most; lines come with each percent, and each minute to show the job lives.
+    const bool bar = style_ == ProgressStyle::bar;
+    if (last_percent_ >= 0 && (bar ? since < 0.1 && !last : percent == last_percent_ && since < 60)) return;
+    last_percent_ = percent;
+    last_print_ = now;
+
+    std::FILE* stream = to_stderr_ ? stderr : stdout;
+    if (bar) {
+        const std::string text = bar_text(what_, fraction, elapsed, left, terminal_width(fileno(stream)));
+        std::fprintf(stream, "\r%-*s", static_cast<int>(last_length_), text.c_str());
+        last_length_ = text.size();
+    } else if (style_ == ProgressStyle::json) {
+        char left_text[32] = "null";
+        if (left >= 0) std::snprintf(left_text, sizeof left_text, "%.1f", left);
+        std::fprintf(stream, "{\"what\":%s,\"progress\":%.4f,\"elapsed\":%.1f,\"left\":%s}\n",
+                     quote_json(what_).c_str(), fraction, elapsed, left_text);
+    } else {
+        std::fprintf(stream, "ALF_PROGRESS %d%%\n", percent);
+    }
+    std::fflush(stream);
+}
+}

@@ -1,0 +1,148 @@
+#include "integrate/light_along.h"
+
+#include "scene/cone.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+double reach_of(const Light& light) { return std::max(light.radius, smallest_radius); }
+
+// Where a sphere about the light cuts the ray.
+Stretch inside_sphere(const LightAlong& along, double radius) {
+    const double squared = radius * radius - along.distance * along.distance;
+    if (!(squared > 0)) return {};
+    const double half = std::sqrt(squared) / glm::length(along.direction);
+    return {along.nearest - half, along.nearest + half};
+}
+
+Stretch common(Stretch a, Stretch b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
+
+void set_cone(const Light& light, LightAlong& along) {
+    const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
+    along.cone_scale = 1 / std::max(inner - outer, 1e-6), along.cone_offset = -outer * along.cone_scale;
+}
+
+// The stretch a local light reaches at all; notes where its strength has kinks.
+Stretch reached(const Light& light, LightAlong& along, Stretch range) {
+    const auto note = [&](Stretch stretch) {
+        if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
+    };
+    along.kinks.push_back(along.nearest);
+    note(inside_sphere(along, reach_of(light)));
+    if (!std::isinf(light.range)) range = common(range, inside_sphere(along, light.range));
+    if (light.kind != LightKind::spot) return range;
+    set_cone(light, along);
+    const dvec3 axis = glm::normalize(dvec3(light.direction));
+    const auto cone = [&](double angle) {
+        return inside_cone(dvec3(light.position), axis, angle, along.origin, along.direction);
+    };
+    const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
+    note(cone(std::acos(std::min(full, 1.0))));
+    return common(range, cone(light.outer_cone));
+}
+
+// The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
+// of a local light the cone around it.
+Stretch behind(const Box& box, const LightAlong& along) {
+    constexpr double endless = std::numeric_limits<double>::infinity();
+    const dvec3 center = 0.5 * (dvec3(box.low) + dvec3(box.high));
+    const double radius = glm::length(dvec3(box.high) - center);
+    if (along.local()) {
+        const dvec3 apex(along.light->position), axis = center - apex;
+        const double away = glm::length(axis);
+        if (away <= radius * 1.0001) return {-endless, endless};
+        return inside_cone(apex, axis / away, std::asin(radius / away), along.origin, along.direction);
+    }
+    const dvec3 light = glm::normalize(dvec3(along.light->direction));
+    const auto across = [&](dvec3 v) { return v - glm::dot(v, light) * light; };
+    const dvec3 start = across(along.origin - center), way = across(along.direction);
+    const double a = glm::dot(way, way), b = glm::dot(start, way);
+    const double inside = b * b - a * (glm::dot(start, start) - radius * radius);
+    if (!(a > 0) || !(inside > 0)) return {};
+    return {(-b - std::sqrt(inside)) / a, (-b + std::sqrt(inside)) / a};
+}
+
+void find_veils(std::span<const Medium> media, LightAlong& along) {
+    for (const Medium& medium : media) {
+        if (medium.kind != DensityKind::bricks || medium.bricks->empty()) continue;
+        const Stretch stretch = behind(medium.bricks->bounds, along);
+        const vec3 voxel = medium.bricks->voxel_size;
+        if (stretch.empty()) continue;
+        along.veils.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
+        along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
+    }
+}
+
+// Cuts the lit stretches at the kinks and clips them to what the light reaches.
+void cut_lit(Stretch range, LightAlong& along) {
+    std::sort(along.kinks.begin(), along.kinks.end());
+    static thread_local std::vector<Stretch> pieces;
+    pieces.clear();
+    for (Stretch stretch : along.lit) {
+        stretch = common(stretch, range);
+        for (const double kink : along.kinks)
+            if (kink > stretch.low && kink < stretch.high) pieces.push_back({stretch.low, kink}), stretch.low = kink;
+        if (!stretch.empty()) pieces.push_back(stretch);
+    }
+    std::swap(pieces, along.lit);
+}
+}
+
+double LightAlong::distance_to(double low, double high) const {
+    if (!local()) return infinity;
+    const double off = std::max({low - nearest, nearest - high, 0.0}) * glm::length(direction);
+    return std::sqrt(off * off + distance * distance);
+}
+
+double LightAlong::veil_voxels(double low, double high) const {
+    double voxels = 0;
+    for (const Veil& veil : veils)
+        if (veil.stretch.low < high && veil.stretch.high > low) voxels = std::max(voxels, veil.voxels);
+    if (voxels == 0) return 0;
+    // Only movement across the light changes what stands before it.
+    if (local()) return voxels * std::min(distance / std::max(distance_to(low, high), 1e-12), 1.0);
+    return voxels * glm::length(glm::cross(direction, glm::normalize(dvec3(light->direction))));
+}
+
+ArrivingAt arriving_at(const LightAlong& along, double t) {
+    const Light& light = *along.light;
+    if (!along.local()) return {-glm::normalize(dvec3(light.direction)), 1};
+    const dvec3 towards = (dvec3(light.position) - along.origin) - t * along.direction;
+    const double squared = glm::dot(towards, towards), away = std::sqrt(squared), reach = reach_of(light);
+    const dvec3 to_light = away > 0 ? towards / away : -dvec3(light.direction);
+    double amount = 1 / std::max(squared, reach * reach);
+    if (!std::isinf(light.range)) {
+        const double share = away / light.range;
+        amount *= std::clamp(1 - share * share * share * share, 0.0, 1.0);
+    }
+    if (light.kind == LightKind::spot) {
+        const double cosine = -glm::dot(to_light, dvec3(light.direction));
+        const double edge = std::clamp(cosine * along.cone_scale + along.cone_offset, 0.0, 1.0);
+        amount *= edge * edge;
+    }
+    return {to_light, amount};
+}
+
+void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,
+                std::span<const Medium> media, LightAlong& along) {
+    along.light = &light, along.point = point;
+    along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
+    along.kinks.clear(), along.lit.clear(), along.veils.clear();
+    Stretch range{0, ray.t_max};
+    if (along.local()) {
+        const dvec3 towards = dvec3(light.position) - along.origin;
+        along.nearest = glm::dot(towards, along.direction) / glm::dot(along.direction, along.direction);
+        along.distance = glm::length(towards - along.nearest * along.direction);
+        range = reached(light, along, range);
+    }
+    if (range.empty()) return;
+    find_veils(media, along);
+    if (slices && light.shadows) {
+        const float end = std::nextafter(static_cast<float>(range.high), infinity);
+        find_lit(*slices, {ray.origin, ray.direction, std::min(end, ray.t_max)}, point, along.lit);
+    } else {
+        along.lit.push_back(range);
+    }
+    cut_lit(range, along);
+}
+}

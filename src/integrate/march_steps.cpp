@@ -1,0 +1,61 @@
+#include "integrate/march_steps.h"
+
+#include "scene/cone.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
+
+namespace tyndall {
+namespace {
+// The parts of a piece of a ray inside the cones of spots, from its start.
+void find_beams(const MarchSteps& rule, const Ray& ray, Interval piece, std::vector<Step>& beams) {
+    beams.clear();
+    for (const Light& light : rule.lights) {
+        if (light.kind != LightKind::spot) continue;
+        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
+        const float low = std::max(static_cast<float>(cone.low), piece.low) - piece.low;
+        const float high = std::min(static_cast<float>(cone.high), piece.high) - piece.low;
+        if (!cone.empty() && low < high) beams.push_back({low, high});
+    }
+}
+
+// Steps of one piece of a ray, as long as the settings allow on a piece of that length.
+void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& ray, Interval piece,
+                  std::vector<Step>& steps) {
+    if (piece.empty()) return;
+    const MarchSettings& settings = march.settings;
+    static thread_local std::vector<Step> beams;
+    find_beams(march, ray, piece, beams);
+    const StepRule rule{settings.step_depth,
+                        settings.step_voxels,
+                        std::min(settings.step_length, settings.step_share * piece.length()),
+                        settings.max_steps,
+                        march.near_points,
+                        settings.near_light,
+                        beams,
+                        8 / settings.near_light};
+    const size_t first = steps.size();
+    append_steps({ray.at(piece.low), ray.direction, piece.length()}, snapshot.media, rule, steps);
+    for (size_t i = first; i < steps.size(); ++i) steps[i].low += piece.low, steps[i].high += piece.low;
+}
+}
+
+MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights) {
+    MarchSteps rule{settings, std::move(lights), {}};
+    for (const Light& light : rule.lights)
+        if (light.kind != LightKind::sun) rule.near_points.push_back(light.position);
+    return rule;
+}
+
+void append_march_steps(const MarchSteps& rule, const Snapshot& snapshot, const Ray& ray, std::vector<Step>& steps) {
+    const Interval stretch = fog_stretch(snapshot.media, ray);
+    // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
+    const Interval scene = clip(snapshot.bounds, ray.origin, ray.direction, stretch);
+    if (scene.empty() || stretch.length() < 2 * scene.length())
+        return append_piece(rule, snapshot, ray, stretch, steps);
+    append_piece(rule, snapshot, ray, {stretch.low, scene.low}, steps);
+    append_piece(rule, snapshot, ray, scene, steps);
+    append_piece(rule, snapshot, ray, {scene.high, stretch.high}, steps);
+}
+}

@@ -1,0 +1,61 @@
+// Shadows at sixteen points by rays towards a light (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_SHADOW_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_SHADOW_RAYS_SIMD_H
+#undef TYNDALL_MODES_SHADOW_RAYS_SIMD_H
+#else
+#define TYNDALL_MODES_SHADOW_RAYS_SIMD_H
+#endif
+
+#include "base/random.h"
+#include "base/simd/simd.h"
+#include "trace/light_ray.h"
+#include "trace/light_simd.h"
+#include "trace/occlusion/occluders.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// Turns the shadow rays to the k-th random points of a soft light. `key` gives a number for each lane.
+template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key& key, Occluders::ShadowRays& rays) {
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!rays.active[lane]) continue;
+        const uint32_t own = k > 0 ? hash(key(lane), k) : key(lane);
+        const vec2 u(to_unit(hash(own, 0u)), to_unit(hash(own, 1u)));
+        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
+        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
+        rays.t_max[lane] = ray.t_max;
+    }
+}
+
+// Share of a light that surfaces let through to the wanted points, by one packet of shadow rays, or by one for each of
+// `points` points of a soft light.
+template<class Key>
+Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position, const Arriving& light_at,
+                     const Mask16& wanted, int points, const Key& key) {
+    Occluders::ShadowRays rays;
+    store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
+    store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
+    store(light_at.distance * 0.9999f, rays.t_max);
+    alignas(64) float is_wanted[16], share[16];
+    store(select(wanted, 1.0f, 0.0f), is_wanted);
+    for (size_t lane = 0; lane < 16; ++lane) {
+        rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
+        rays.t_min[lane] = 0;
+        share[lane] = 0;
+    }
+    if (!is_soft(light)) {
+        occluders.transmission(rays, share);
+        return load(share);
+    }
+    Floats total = 0.0f;
+    for (int k = 0; k < points; ++k) {
+        aim_at_points(light, static_cast<uint32_t>(k), key, rays);
+        occluders.transmission(rays, share);
+        total = total + load(share);
+    }
+    return total * (1 / static_cast<float>(points));
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

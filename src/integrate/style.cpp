@@ -1,0 +1,52 @@
+#include "integrate/style.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/bricks/bricks.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+Medium at_mean_density(const Medium& medium) {
+    if (medium.kind != DensityKind::bricks) return medium;
+    Medium even = medium;
+    even.kind = DensityKind::homogeneous;
+    even.bounds = medium.bricks->bounds;
+    even.world_to_local = mat4(1);
+    even.world_bounds = medium.bricks->bounds;
+    even.optics.extinction *= medium.bricks->mean;
+    even.optics.emission *= medium.bricks->mean;
+    even.bricks = nullptr;
+    return even;
+}
+
+// A snapshot's media all take light away.
+void drop_clear(std::vector<Medium>& media) {
+    std::erase_if(media, [](const Medium& medium) { return !(medium.optics.extinction > 0); });
+}
+}
+
+bool is_stylised(const StyleSettings& a) {
+    const StyleSettings b;
+    return a.light_depth != b.light_depth || a.view_depth != b.view_depth || a.density != b.density ||
+           a.range != b.range || a.tint != b.tint;
+}
+
+Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
+    Snapshot result = snapshot;
+    for (Medium& medium : result.media) {
+        medium.optics.extinction *= style.density;
+        medium.optics.emission *= style.density * style.tint;
+    }
+    drop_clear(result.media);
+    for (Light& light : result.lights) light.intensity *= style.tint;
+    result.ambient *= style.tint;
+    return result;
+}
+
+std::vector<Medium> even_media(std::span<const Medium> media) {
+    std::vector<Medium> result;
+    for (const Medium& medium : media) result.push_back(at_mean_density(medium));
+    drop_clear(result);
+    return result;
+}
+}

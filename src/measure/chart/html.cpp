@@ -1,0 +1,218 @@
+// The page of a chart.
+#include "measure/chart/page.h"
+#include "measure/chart/report.h"
+#include "measure/report/svg.h"
+
+#include "base/io/file.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+// RFC 4648.
+std::string base64(std::string_view bytes) {
+    constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t three = 0;
+        for (size_t k = 0; k < 3; ++k)
+            three = three << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0);
+        for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : letters[three >> (18 - 6 * k) & 63];
+    }
+    return text;
+}
+
+std::string element(const std::string& name, const std::string& content) {
+    return "<" + name + ">" + content + "</" + name.substr(0, name.find(' ')) + ">";
+}
+
+std::string number_words(double value) {
+    if (!std::isfinite(value)) return "-";
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+std::string size_words(ivec2 size) { return std::to_string(size.x) + " × " + std::to_string(size.y); }
+
+std::string point_words(const ChartPoint& point) {
+    return point.mode + " " + std::to_string(static_cast<int>(point.rung));
+}
+
+// --- what to use when --------------------------------------------------------------------------------------------
+std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time, ErrorOf what) {
+    if (!point) return element("td class=\"words\"", "none of these");
+    return element("td class=\"words\" title=\"" + xml_text(point->settings) + "\"",
+                   "<b>" + point_words(*point) + "</b>: " + share_words(error_of(*point, what)) + " in " +
+                       seconds_words(seconds_of(*point, time)));
+}
+
+std::string advice_table(const Chart& chart) {
+    std::string rows;
+    for (const Advice& advice : advice_of(chart))
+        rows += "<tr>" + element("td", need_words(advice)) +
+                answer_cell(advice.single, FrameTime::single, ErrorOf::worse) +
+                answer_cell(advice.sequence, FrameTime::sequence, ErrorOf::worse) +
+                answer_cell(advice.fog, FrameTime::single, ErrorOf::fog) + "</tr>\n";
+    return "<table><thead><tr><th>wanted</th><th class=\"words\">by E, for a single frame</th>"
+           "<th class=\"words\">by E, for each of 100 frames</th><th class=\"words\">by the fog light at pixel "
+           "centres, "
+           "for a single frame</th></tr></thead><tbody>\n" +
+           rows + "</tbody></table>\n";
+}
+
+// --- all numbers ---------------------------------------------------------------------------------------------------
+struct Column {
+    const char* head;
+    std::string (*cell)(const ChartPoint&);
+};
+
+const std::vector<Column>& columns() {
+    using P = ChartPoint;
+    static const std::vector<Column> all{
+        {"rays a pixel", [](const P& p) { return number_words(p.samples); }},
+        {"set-up", [](const P& p) { return seconds_words(p.setup_seconds); }},
+        {"frame", [](const P& p) { return seconds_words(p.frame_seconds); }},
+        {"fastest to slowest",
+         [](const P& p) { return seconds_words(p.frame_fastest) + " to " + seconds_words(p.frame_slowest); }},
+        {"single frame", [](const P& p) { return seconds_words(p.seconds_1); }},
+        {"each of 100", [](const P& p) { return seconds_words(p.seconds_100); }},
+        {"processor time", [](const P& p) { return seconds_words(p.cpu_seconds); }},
+        {"memory", [](const P& p) { return bytes_words(p.memory_bytes); }},
+        {"error E", [](const P& p) { return share_words(p.errors.error); }},
+        {"uncertain by", [](const P& p) { return share_words(p.errors.uncertainty); }},
+        {"rmse_rel", [](const P& p) { return share_words(p.errors.rmse); }},
+        {"rmse_rel of the fog light", [](const P& p) { return share_words(p.errors.inscatter_rmse); }},
+        {"fog light at pixel centres", [](const P& p) { return share_words(p.fog_error); }},
+        {"bias", [](const P& p) { return share_words(p.errors.bias); }},
+        {"relMSE", [](const P& p) { return number_words(p.errors.rel_mse); }},
+        {"FLIP", [](const P& p) { return number_words(p.errors.flip); }},
+        {"flicker", [](const P& p) { return share_words(p.flicker); }},
+        {"fitted gain", [](const P& p) { return number_words(p.gain); }},
+        {"E with it", [](const P& p) { return share_words(p.fitted.error); }},
+        {"fog light at pixel centres with it", [](const P& p) { return share_words(p.fitted_fog_error); }},
+        {"FLIP with it", [](const P& p) { return number_words(p.fitted.flip); }},
+        {"unbeaten", [](const P& p) { return std::string(p.best_1 > 0 ? "yes" : "-"); }},
+    };
+    return all;
+}
+
+std::string number_table(const Chart& chart) {
+    std::string head = "<th>mode, rung</th>", rows;
+    for (const Column& column : columns()) head += element("th", column.head);
+    for (const ChartPoint& point : chart.points) {
+        rows += "<tr id=\"row-" + point_name(point) + "\" data-settings=\"" + xml_text(point.settings) + "\">" +
+                element("td", point_words(point));
+        for (const Column& column : columns()) rows += element("td", column.cell(point));
+        rows += "</tr>\n";
+    }
+    return "<div class=\"wide\"><table><thead><tr>" + head + "</tr></thead><tbody>\n" + rows +
+           "</tbody></table></div>\n";
+}
+
+// --- pictures ------------------------------------------------------------------------------------------------------
+std::string image(const std::filesystem::path& file, const std::string& words) {
+    return "<img alt=\"" + xml_text(words) + "\" src=\"data:image/jpeg;base64," + base64(read_file(file)) + "\">";
+}
+
+std::string gallery(const Chart& chart) {
+    std::string html;
+    for (const ChartedMode& mode : chart.modes) {
+        html += element("h3", xml_text(mode.name) + " <span class=\"quiet\">(" + std::string(name_of(mode.accuracy)) +
+                                  ") " + xml_text(mode.summary) + "</span>");
+        std::string limits;
+        for (const Limit& limit : mode.limits)
+            if (limit.severity != Severity::info)
+                limits += element("li", std::string(name_of(limit.severity)) + ": " + xml_text(limit.where) + ": " +
+                                            xml_text(limit.why));
+        if (!limits.empty()) html += element("ul class=\"quiet\"", limits);
+        for (const ChartPoint& point : chart.points) {
+            if (point.mode != mode.name) continue;
+            const PointFiles files = files_of(point);
+            const std::filesystem::path& directory = chart.job.directory;
+            html += "<div class=\"rung\" data-of=\"" + point_name(point) + "\">" +
+                    image(directory / files.small_picture, point_words(point)) +
+                    image(directory / files.small_errors, "error of " + point_words(point)) + point_words(point) +
+                    ": " + share_words(point.errors.error) + ", " + seconds_words(point.seconds_1) + "</div>\n";
+        }
+    }
+    return html;
+}
+
+// --- words -----------------------------------------------------------------------------------------------------------
+std::string summary(const Chart& chart) {
+    char loads[80];
+    std::snprintf(loads, sizeof loads, "%.1f before, %.1f after", chart.load_before, chart.load_after);
+    return "Frame " + std::to_string(chart.job.frame) + ", camera " + xml_text(chart.camera) + ", " +
+           size_words(chart.size) + " pixels, " + std::to_string(chart.threads) + " threads, " + xml_text(chart.isa) +
+           ". Load of the machine: " + loads + ". Light scatters once everywhere.";
+}
+
+std::string reference_words(const ReferenceSamples& reference) {
+    if (reference.count > 0) return std::to_string(reference.count / 2) + " rays a pixel each";
+    return "as many rays as a noise of " + share_words(reference.noise) + " asks for, or " +
+           seconds_words(reference.seconds) + " each allow";
+}
+
+std::string method(const Chart& chart) {
+    const ChartJob& job = chart.job;
+    std::vector<std::string> lines{
+        "Reference: <code>march</code> with exact shadows and light followed through the fog, two independent halves "
+        "of " +
+            reference_words(job.reference) + "; their noise (" + share_words(chart.reference_noise) +
+            " of the mean) is taken out of the errors. FLIP still sees it: " + number_words(chart.reference_flip) +
+            " between the halves.",
+        "Error E: root of the mean squared difference / mean of the reference, of the picture or of the light of its "
+        "fog alone, whichever is larger. 100 % is an error as large as the mean.",
+        "Times: wall clock, median of at least " + std::to_string(job.runs) +
+            " runs. Set-up is what the first frame takes to prepare on top of what the next one takes, which keeps "
+            "what stands still; what is made once from a scene's triangles counts as loading.",
+        "Memory: the most that a frame takes on top of the scene; what the program had free before does not show.",
+        "Flicker: change from frame to frame that the reference lacks / its mean, over " +
+            std::to_string(job.sequence) + " frames of " + size_words(chart.sequence_size) +
+            " pixels at pixel centres" +
+            (chart.moves ? "." : "; the scene has no more frames, so time stands still in them.") +
+            " Modes start each frame without history.",
+        "Fog light at pixel centres: every ray of a pixel goes through its centre, in the reference too. What is left "
+        "is the technique's own error and noise.",
+        "Looks (<code>billboard</code>, <code>radial-blur</code>) promise no light: they are shown as they come, "
+        "and again, dashed and hollow, with their fog light multiplied by the one number that fits best.",
+        "<code>path</code> scatters light once here and is measured by the light of lamps and suns; ambient light, "
+        "which it shadows and the reference does not, is left out on both sides.",
+        "The grey steps join what no other setting beats in both time and error. Whiskers: the fastest and the slowest "
+        "run; two standard deviations of what the reference's noise leaves unknown."};
+    std::string list;
+    for (const std::string& text : lines) list += element("li", text);
+    for (const LeftOut& rung : chart.left_out)
+        list += element("li", xml_text(rung.mode) + " " + std::to_string(rung.rung) + " was left out: it takes about " +
+                                  seconds_words(rung.seconds) + " a picture, or more.");
+    return element("ul", list);
+}
+}
+
+std::string chart_html(const Chart& chart) {
+    const std::string title = "Error against time: " + xml_text(chart.job.render.scene_file.filename().string());
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
+                       "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n"
+                       "<link rel=\"icon\" href=\"data:,\">\n<style>" +
+                       std::string(chart_page_style) + "</style></head><body>\n";
+    html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
+    html += element("h2", "What to use when") + advice_table(chart);
+    html +=
+        element("h2", "The technique alone") +
+        element("p class=\"quiet\"",
+                "The light of the fog at pixel centres: edges of surfaces and lamps inside of pixels, which need many "
+                "rays a pixel in every mode, do not count here.") +
+        chart_svg(chart, FrameTime::single, ErrorOf::fog);
+    html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence, ErrorOf::worse);
+    html += element("h2", "Pictures and where they are wrong") +
+            element("p class=\"quiet\"", "Below each picture its error at every pixel, as a share of the mean: black "
+                                         "0.1 % or less, white 1000 %.") +
+            gallery(chart);
+    html += element("h2", "All numbers") + number_table(chart);
+    html += element("h2", "How it was measured") + method(chart);
+    return html + "<div id=\"tip\" role=\"tooltip\" hidden></div>\n<script>" + std::string(chart_page_script) +
+           "</script></body></html>\n";
+}
+}

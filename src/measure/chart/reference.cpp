@@ -1,0 +1,173 @@
+#include "measure/chart/reference.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/random.h"
+#include "base/text.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "render/frame/frame.h"
+#include "render/frame/layers.h"
+#include "render/sequence/job.h"
+#include "render/sequence/resume.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr uint32_t half_seeds[2] = {0x52454641u, 0x52454642u}; // unlike those of any picture measured
+constexpr uint32_t use_exact = 0xe8acu;
+constexpr int exact_samples = 4; // of each pixel
+const ExrOptions exact_colors{{"inscatter"}, true};
+
+RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
+    RenderJob job = shot.job;
+    job.mode = "march", job.quality = Quality::reference;
+    job.settings = truth_of(job.settings);
+    if (samples.count > 0) job.settings.pixel.samples = std::max(samples.count / 2, 1);
+    if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
+    job.seed = half_seeds[half];
+    job.exr = exact_colors;
+    return job;
+}
+
+Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
+    const Image<float>* channels[3];
+    for (int c = 0; c < 3; ++c) channels[c] = exr.channel(name + "." + "RGB"[c]);
+    Image<vec3> image(exr.size);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = {channels[0]->pixels[i], channels[1]->pixels[i], channels[2]->pixels[i]};
+    return image;
+}
+
+// What integrates fog quickly enough for the noise wanted. Pictures of single samples would be off in both halves
+// alike.
+std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
+    FrameOptions options;
+    options.cancel = shot.cancel;
+    const View view = view_of(shot.scene, shot.job, shot.frame);
+    const double start = steady_seconds();
+    Choice choice = choose(find_mode("march"), view, snapshot, shot.job.settings, goal, start, options);
+    choice.measured.single = {infinity, infinity};
+    choice.measured.prepared = nullptr; // points into the snapshot
+    return std::make_shared<const Choice>(std::move(choice));
+}
+
+Goal goal_of(const Shot& shot, ReferenceSamples samples) {
+    return {std::sqrt(2.0) * samples.noise, samples.seconds, shot.job.quality, steady_seconds};
+}
+
+// Half of a reference with noise in place of a count, on two levels (Heinrich 2001, multilevel Monte Carlo): many
+// samples that are quick, and the mean difference that exact ones make, from few, which differ little.
+Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, View view, const Goal& goal,
+                     const FrameOptions& options, FrameStats& stats) {
+    const Mode& mode = find_mode(job.mode);
+    const Settings& quick = goal.choice->candidate.settings;
+    Layers result = render_to_target(mode, view, snapshot, quick, goal, options, stats);
+
+    view.seed = hash(view.seed, use_exact);
+    view.pixel_samples = exact_samples, view.batches = view.lamp_samples = view.edge_samples = 1;
+    FrameOptions plain;
+    plain.cancel = shot.cancel;
+    FrameStats ignored;
+    const Layers exact = render_frame(mode, view, snapshot, job.settings, plain, ignored);
+    const Layers rough = render_frame(mode, view, snapshot, quick, plain, ignored);
+    for (size_t i = 0; i < result.color.pixels.size(); ++i) {
+        result.color.pixels[i] += exact.color.pixels[i] - rough.color.pixels[i];
+        result.inscatter.pixels[i] += exact.inscatter.pixels[i] - rough.inscatter.pixels[i];
+    }
+    return result;
+}
+
+// A picture of the job, or the file an earlier run made of it. `goal` gets its choice when that is first needed.
+ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, Goal* goal,
+                     const std::string& name, std::string hash, const std::function<void(double)>& progress) {
+    const View view = view_of(shot.scene, job, shot.frame);
+    const std::filesystem::path file = shot.directory / (name + ".exr");
+    if (!shot.directory.empty()) {
+        std::string why;
+        std::vector<std::string> channels = channel_names({}, exact_colors);
+        if (const auto kept = finished_frame(file, {view.size, ivec2(0), view.size, channels, hash}, why))
+            return {color_of(*kept), layer_of(*kept, "inscatter")};
+    }
+    FrameOptions options;
+    options.cancel = shot.cancel, options.progress = progress;
+    FrameStats stats;
+    const Snapshot own = fresh(snapshot);
+    if (goal && !goal->choice) goal->choice = choice_for(shot, own, *goal);
+    Layers layers = goal ? half_by_noise(shot, own, job, view, *goal, options, stats)
+                         : render_frame(find_mode(job.mode), view, own, job.settings, options, stats);
+    if (!shot.directory.empty()) {
+        Provenance provenance = provenance_of(shot.scene, job, view, hash, stats);
+        write_exr(file, layers, provenance, exact_colors);
+    }
+    return {std::move(layers.color), std::move(layers.inscatter)};
+}
+
+std::string half_hash(const Shot& shot, const RenderJob& job, ReferenceSamples samples, FileHashes& files) {
+    const std::string hash = frame_hash(shot.scene, job, view_of(shot.scene, job, shot.frame), files);
+    return samples.count > 0 ? hash : content_hash(hash + formatted("%.9g %.9g", samples.noise, samples.seconds));
+}
+}
+
+Snapshot fresh(const Snapshot& snapshot) {
+    Snapshot result = snapshot;
+    result.kept = std::make_shared<Kept>(), result.kept_before = nullptr;
+    return result;
+}
+
+std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
+    return content_hash(half_hash(shot, half_job(shot, samples, 0), samples, files) +
+                        half_hash(shot, half_job(shot, samples, 1), samples, files));
+}
+
+double reference_seconds(const Shot& shot, ReferenceSamples samples) {
+    const std::shared_ptr<const Choice> choice = choice_for(shot, fresh(shot.snapshot), goal_of(shot, samples));
+    const Measured& measured = choice->measured;
+    if (samples.count > 0) return samples.count * choice->truth_seconds;
+    const double needed = std::pow(measured.sample.value / (2 * samples.noise * samples.noise), 1 / choice->power);
+    const double quick = std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);
+    return 2 * (quick + exact_samples * (measured.sample_seconds + choice->truth_seconds));
+}
+
+Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
+    Snapshot unlit = shot.snapshot;
+    unlit.lights.clear();
+    const bool chance = !samples.centers || std::ranges::any_of(shot.snapshot.lights, is_soft);
+    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.job.resolution.x) +
+                               "x" + std::to_string(shot.job.resolution.y) + "." + std::to_string(shot.frame);
+    const bool by_noise = samples.count == 0;
+    Goal goal = goal_of(shot, samples), unlit_goal = goal; // both halves are made alike
+    Reference result;
+    for (size_t half = 0; half < 2; ++half) {
+        if (half == 1 && !chance) {
+            result.halves[1] = result.halves[0], result.unlit[1] = result.unlit[0];
+            break;
+        }
+        const auto part = [&](double done) {
+            if (shot.progress) shot.progress((static_cast<double>(half) + done) / (chance ? 2 : 1));
+        };
+        const RenderJob job = half_job(shot, samples, static_cast<int>(half));
+        const std::string hash = half_hash(shot, job, samples, files), name = prefix + (half ? ".b" : ".a");
+        result.halves[half] = rendered(shot, shot.snapshot, job, by_noise ? &goal : nullptr, name, hash, part);
+        if (samples.unlit)
+            result.unlit[half] = rendered(shot, unlit, job, by_noise ? &unlit_goal : nullptr, name + ".unlit",
+                                          content_hash(hash + "unlit"), {});
+    }
+    return result;
+}
+
+ColorLayers mean_of(const std::array<ColorLayers, 2>& halves) {
+    ColorLayers mean = halves[0];
+    for (size_t i = 0; i < mean.color.pixels.size(); ++i) {
+        mean.color.pixels[i] = 0.5f * (mean.color.pixels[i] + halves[1].color.pixels[i]);
+        mean.inscatter.pixels[i] = 0.5f * (mean.inscatter.pixels[i] + halves[1].inscatter.pixels[i]);
+    }
+    return mean;
+}
+}

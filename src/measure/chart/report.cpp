@@ -1,0 +1,175 @@
+// CSV, JSON and words.
+#include "measure/chart/report.h"
+
+#include "base/io/json.h"
+#include "measure/chart/kept.h"
+#include "measure/report/json_values.h"
+#include "trace/snapshot.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+// The shortest text that reads back the same; empty for what was not measured.
+std::string csv_number(double value) {
+    if (std::isnan(value)) return {};
+    char digits[32];
+    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+std::string printed(const char* format, double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+Json size_json(ivec2 size) { return report::array({report::number(size.x), report::number(size.y)}); }
+
+Json modes_json(const Chart& chart) {
+    std::vector<Json> modes;
+    for (const ChartedMode& mode : chart.modes) {
+        std::vector<Json> limits;
+        for (const Limit& limit : mode.limits)
+            limits.push_back(report::object({{"severity", report::text(name_of(limit.severity))},
+                                             {"where", report::text(limit.where)},
+                                             {"why", report::text(limit.why)}}));
+        modes.push_back(report::object({{"name", report::text(mode.name)},
+                                        {"promise", report::text(name_of(mode.accuracy))},
+                                        {"limits", report::array(std::move(limits))}}));
+    }
+    return report::array(std::move(modes));
+}
+
+Json advice_json(const Chart& chart) {
+    std::vector<Json> items;
+    const auto name = [](const std::optional<ChartPoint>& point) {
+        return point ? report::text(point_name(*point)) : Json();
+    };
+    for (const Advice& advice : advice_of(chart)) {
+        Json item = advice.error > 0 ? report::object({{"error", report::number(advice.error)}})
+                                     : report::object({{"seconds", report::number(advice.seconds)}});
+        item.members.emplace_back("single", name(advice.single));
+        item.members.emplace_back("sequence", name(advice.sequence));
+        item.members.emplace_back("fog", name(advice.fog));
+        items.push_back(std::move(item));
+    }
+    return report::array(std::move(items));
+}
+
+Json left_out_json(const Chart& chart) {
+    std::vector<Json> items;
+    for (const LeftOut& rung : chart.left_out)
+        items.push_back(report::object({{"mode", report::text(rung.mode)},
+                                        {"rung", report::number(rung.rung)},
+                                        {"expected_seconds", report::number(rung.seconds)}}));
+    return report::array(std::move(items));
+}
+
+// The point that answers a need, by the time and the error that count; none that is as far off as a black picture.
+std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
+    const ChartPoint* best = nullptr;
+    for (const ChartPoint& point : chart.points) {
+        const double seconds = seconds_of(point, time), error = error_of(point, what);
+        if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds && error < 1)) continue;
+        const bool better =
+            !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(*best, what));
+        if (better) best = &point;
+    }
+    return best ? std::optional(*best) : std::nullopt;
+}
+}
+
+std::vector<Advice> advice_of(const Chart& chart) {
+    std::vector<Advice> result;
+    for (const double error : {0.2, 0.1, 0.05, 0.02, 0.01}) result.push_back({error, 0, {}, {}, {}});
+    for (const double seconds : {1.0 / 30, 0.1, 1.0}) result.push_back({0, seconds, {}, {}, {}});
+    for (Advice& advice : result) {
+        advice.single = answer(chart, advice, FrameTime::single, ErrorOf::worse);
+        advice.sequence = answer(chart, advice, FrameTime::sequence, ErrorOf::worse);
+        advice.fog = answer(chart, advice, FrameTime::single, ErrorOf::fog);
+    }
+    return result;
+}
+
+std::string seconds_words(double seconds) {
+    if (seconds < 0.00995) return printed("%.1f ms", 1000 * seconds);
+    if (seconds < 0.9995) return printed("%.0f ms", 1000 * seconds);
+    return printed(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
+}
+
+std::string share_words(double share) {
+    if (!std::isfinite(share)) return "-";
+    const double percent = 100 * share, size = std::abs(percent);
+    return printed(size < 0.0995 ? "%.3f %%" : size < 0.995 ? "%.2f %%" : size < 9.95 ? "%.1f %%" : "%.0f %%", percent);
+}
+
+std::string bytes_words(double bytes) {
+    if (!std::isfinite(bytes)) return "-";
+    return printed(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
+}
+
+std::string need_words(const Advice& advice) {
+    if (advice.error > 0) return "an error of at most " + share_words(advice.error);
+    return "at most " + seconds_words(advice.seconds) + " a frame";
+}
+
+std::string chart_csv(const Chart& chart) {
+    std::string text = "mode,settings";
+    for (const ChartField& field : chart_fields()) text += "," + field.name;
+    text += "\n";
+    for (const ChartPoint& point : chart.points) {
+        text += point.mode + ",\"" + point.settings + "\"";
+        for (const ChartField& field : chart_fields()) text += "," + csv_number(value_of(field, point));
+        text += "\n";
+    }
+    return text;
+}
+
+std::string chart_json(const Chart& chart) {
+    const ChartJob& job = chart.job;
+    const bool fixed = job.reference.count > 0;
+    std::vector<Json> points, fields;
+    for (const ChartPoint& point : chart.points) points.push_back(json_of_point(point));
+    for (const ChartField& field : chart_fields())
+        fields.push_back(report::object({{"name", report::text(field.name)}, {"doc", report::text(field.doc)}}));
+    return format_json(report::object(
+               {{"version", report::text(TYNDALL_VERSION)},
+                {"scene", report::text(job.render.scene_file.filename().string())},
+                {"frame", report::number(job.frame)},
+                {"camera", report::text(chart.camera)},
+                {"size", size_json(chart.size)},
+                {"threads", report::number(chart.threads)},
+                {"isa", report::text(chart.isa)},
+                {"load_before", report::number(chart.load_before)},
+                {"load_after", report::number(chart.load_after)},
+                {"reference",
+                 report::object({{"samples", report::number(fixed ? job.reference.count : not_measured)},
+                                 {"noise_wanted", report::number(fixed ? not_measured : job.reference.noise)},
+                                 {"noise_rel", report::number(chart.reference_noise)},
+                                 {"flip_between_halves", report::number(chart.reference_flip)}})},
+                {"sequence", report::object({{"frames", report::number(job.sequence)},
+                                             {"size", size_json(chart.sequence_size)},
+                                             {"moves", report::boolean(chart.moves)}})},
+                {"fields", report::array(std::move(fields))},
+                {"modes", modes_json(chart)},
+                {"advice", advice_json(chart)},
+                {"left_out", left_out_json(chart)},
+                {"points", report::array(std::move(points))}})) +
+           "\n";
+}
+
+std::string chart_text(const Chart& chart) {
+    std::string text;
+    const auto words = [](const std::optional<ChartPoint>& point, ErrorOf what) {
+        return point ? point_name(*point) + ", " + share_words(error_of(*point, what)) + " in " +
+                           seconds_words(point->seconds_1)
+                     : std::string("none of these");
+    };
+    for (const Advice& advice : advice_of(chart))
+        text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the technique alone " +
+                words(advice.fog, ErrorOf::fog) + "\n";
+    return text;
+}
+}

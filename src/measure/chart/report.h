@@ -1,0 +1,37 @@
+// A chart as files: numbers for programs, and a page for people that needs nothing but itself.
+#pragma once
+#include "measure/chart/chart.h"
+
+#include <optional>
+
+namespace tyndall {
+std::string chart_csv(const Chart& chart);
+std::string chart_json(const Chart& chart);
+std::string chart_text(const Chart& chart); // a few lines: what to use when
+
+// A page with inline pictures, read from the chart's directory. Throws Error (unreadable).
+std::string chart_html(const Chart& chart);
+
+// Error against time, both logarithmic; the marks carry data-id="march.3" and the names of the `chart_page` styles.
+std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what);
+
+// The answers to a need: the quickest point with an error of at most `error`, or the best within `seconds`.
+struct Advice {
+    double error = 0, seconds = 0;                   // one of the two
+    std::optional<ChartPoint> single, sequence, fog; // by E, for 1 and for 100 frames; by fog light, for 1
+};
+std::vector<Advice> advice_of(const Chart& chart);
+
+// For people: "12 ms", "3.4 s"; "0.82 %", "120 %"; "12 MB".
+std::string seconds_words(double seconds);
+std::string share_words(double share);
+std::string bytes_words(double bytes);
+std::string need_words(const Advice& advice); // "an error of at most 5 %"
+
+// How a mode is drawn: a colour that colour-blind eyes can tell (Okabe and Ito 2008) and a shape of its own.
+struct MarkStyle {
+    const char* color;
+    int shape; // 0 to 7
+};
+MarkStyle style_of(const std::string& mode);
+}

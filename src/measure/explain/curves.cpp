@@ -1,0 +1,58 @@
+#include "measure/explain/curves.h"
+
+#include <algorithm>
+
+namespace tyndall::ray_drawing {
+Stretch axis_of(const RayStory& story) {
+    constexpr double hardly = 3e-3;
+    double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
+    for (const RayStep& step : story.steps) {
+        if (step.to_eye >= hardly) continue;
+        end = step.high;
+        break;
+    }
+    if (!(end > 0)) end = 1;
+    const double fog = story.steps.empty() ? 0 : story.steps.front().low;
+    const double first = story.surfaces.empty() ? fog : std::min(fog, story.surfaces.front().distance);
+    return {first > 0.5 * end ? first - 0.05 * (end - first) : 0, end};
+}
+
+std::vector<Lighting> states_of(const RayStory& story, const LightOnRay& light) {
+    std::vector<Lighting> states;
+    size_t stretch = 0;
+    for (const RayStep& step : story.steps) {
+        while (stretch + 1 < light.stretches.size() && light.stretches[stretch].high <= step.middle()) ++stretch;
+        states.push_back(light.stretches[stretch].state);
+    }
+    return states;
+}
+
+std::vector<size_t> drawn_lights(const RayStory& story, size_t most) {
+    std::vector<size_t> all(story.lights.size());
+    for (size_t l = 0; l < all.size(); ++l) all[l] = l;
+    std::ranges::stable_sort(
+        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
+    all.resize(std::min(all.size(), most));
+    std::ranges::sort(all);
+    return all;
+}
+
+double arriving(const RayStep& step, vec3 source) { return luminance(source) * step.to_eye; }
+
+double light_scale(const RayStory& story, double& most) {
+    std::vector<std::pair<double, double>> values; // and lengths
+    double length = 0;
+    for (size_t i = 0; i < story.steps.size(); ++i) {
+        const RayStep& step = story.steps[i];
+        double value = arriving(step, step.glow);
+        for (const LightOnRay& light : story.lights) value = std::max(value, arriving(step, light.at[i].scattered));
+        values.push_back({value, step.high - step.low}), length += step.high - step.low;
+    }
+    std::ranges::sort(values);
+    most = values.empty() ? 0 : values.back().first;
+    double sum = 0;
+    for (const auto& [value, part] : values)
+        if ((sum += part) >= 0.97 * length && value > 0) return most > 4 * value ? 2 * value : 1.08 * most;
+    return most > 0 ? most : 1;
+}
+}

@@ -1,0 +1,172 @@
+// The camera ray from surface to surface, and the deterministic reference on it.
+#include "measure/explain/parts.h"
+#include "volume/medium.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "integrate/march_settings.h"
+#include "render/adaptive/candidates.h"
+#include "render/frame/camera_paths.h"
+#include "scene/scene.h"
+#include "volume/rays/fog_reach.h"
+
+namespace tyndall {
+namespace {
+View centered(View view) {
+    view.crop_low = view.crop_high = ivec2(0);
+    view.pixel_samples = view.batches = view.lamp_samples = 1;
+    view.filter = PixelFilter::center, view.per_light = false;
+    view.lamps.clear();
+    return view;
+}
+
+Settings truth_for(const Snapshot& snapshot, const Settings& settings, int light_points) {
+    Settings truth = truth_of(settings);
+    truth.fluence.orders = 1;
+    if (std::ranges::any_of(snapshot.lights, is_soft))
+        truth.march.light_points = std::max(truth.march.light_points, light_points);
+    return truth;
+}
+
+void add_depths(RayScene& scene) {
+    const MarchSettings& march = scene.truth.march;
+    for (const Light& light : scene.fog.lights) {
+        scene.depths.push_back(make_light_depth(scene.fog, light, march.light, march.light_resolution, &scene.view));
+        scene.depths.back().scale = scene.truth.style.light_depth;
+    }
+}
+
+void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
+    story.pixel = pixel, story.size = scene.view.size;
+    const Occluders* occluders = scene.occluders();
+    for (const Light& light : scene.snapshot.lights) {
+        LightOnRay on;
+        on.name = light.name, on.kind = light.kind, on.shadows = light.shadows;
+        on.points = static_cast<int>(scene.points_of(light));
+        on.sampled = light.shadows && occluders && occluders->has_alpha();
+        story.lights.push_back(std::move(on));
+    }
+    for (const Medium& medium : scene.snapshot.media) story.media.push_back({medium.name, 0});
+    story.reference.mode = "reference", story.reference.accuracy = Accuracy::single_scattering;
+    story.reference.samples = std::ranges::any_of(scene.snapshot.lights, is_soft) ? scene.truth.march.light_points : 1;
+}
+
+// Fog light of one part by the reference, light by light.
+void add_reference(const Prepared& prepared, const RayPart& part, RayStory& story, float& transmittance) {
+    const size_t lights = story.lights.size();
+    std::vector<vec3> of_lights(lights, vec3(0));
+    RayBatch batch = part.batch;
+    batch.per_light = of_lights;
+    Scatter scatter;
+    prepared.scatter(batch, {&scatter, 1});
+
+    Answer& answer = story.reference;
+    const float through = static_cast<float>(part.through);
+    answer.inscatter += through * scatter.radiance, answer.color += through * scatter.radiance;
+    answer.steps += scatter.steps;
+    answer.transmittance *= scatter.transmittance;
+    for (size_t l = 0; l < lights; ++l) story.lights[l].fog += through * of_lights[l];
+    transmittance = scatter.transmittance;
+}
+
+// The surface the ray has come to.
+void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const Stretches& s,
+                 const SurfacePoint& point, double distance, RayStory& story) {
+    const Path& path = s.path[0];
+    const uint32_t points = static_cast<uint32_t>(scene.truth.march.light_points);
+    std::vector<vec2> u(points);
+    for (uint32_t p = 0; p < points; ++p) {
+        const Sample2 random = sample2(path.place.index * points + p, hash(path.seed, layer, use_soft_light));
+        u[p] = {random.x, random.y};
+    }
+    SurfaceOnRay surface;
+    std::vector<vec3> of_lights;
+    shade_surfaces(scene.snapshot, prepared.light_depths, {&point, 1}, u, {&surface.radiance, 1}, &of_lights);
+
+    const int instance = s.hits.instance[0];
+    surface.distance = distance, surface.name = name_of_instance(scene.snapshot, instance);
+    const Scene& whole = *scene.snapshot.scene;
+    const int material =
+        whole.meshes[static_cast<size_t>(whole.instances[static_cast<size_t>(instance)].mesh)].material;
+    if (material >= 0) surface.material = whole.materials[static_cast<size_t>(material)].name;
+    surface.alpha = point.alpha, surface.share = path.through * point.alpha;
+    story.reference.color += surface.share * surface.radiance;
+    for (size_t l = 0; l < story.lights.size(); ++l) story.lights[l].surfaces += surface.share * of_lights[l];
+    story.surfaces.push_back(std::move(surface));
+}
+
+// The ray from surface to surface, as trace_samples() goes.
+void follow(const RayScene& scene, RayStory& story) {
+    const Prepared prepared = prepare_frame(find_mode("march"), scene.view, scene.snapshot, scene.truth, nullptr);
+    Stretches s;
+    PixelSample sample;
+    start_paths(scene.view, {&story.pixel, 1}, 0, s, {&sample, 1});
+    story.origin = s.path[0].ray.origin, story.direction = s.path[0].ray.direction;
+    for (int layer = 0; layer < most_layers; ++layer) {
+        find_surfaces(scene.snapshot, layer, s);
+        Path& path = s.path[0];
+        const bool open = !s.hit(0);
+        const float length = open ? fog_reach(scene.snapshot.media, path.ray) : s.length[0];
+        const Ray ray{path.ray.origin, path.ray.direction, length};
+        const RayNumbers numbers = ray_numbers(scene.view, layer, s);
+        const RayBatch batch{{&ray, 1}, {numbers.ids, 1},       {},        {numbers.jitter, 1}, {numbers.places, 1},
+                             {},        {numbers.positions, 1}, {&open, 1}};
+        const RayPart part{ray, batch, story.end, story.depth, path.through};
+        float transmittance = 1;
+        add_reference(prepared, part, story, transmittance);
+        append_fog(scene, part, story);
+        path.through *= transmittance, story.end += length;
+
+        const SurfacesMet met = surfaces_met(scene.snapshot, layer, s);
+        if (met.count == 0) {
+            story.background = background_radiance(scene.snapshot.background, path.ray.direction, path.screen);
+            story.background_share = path.through;
+            story.reference.color += path.through * story.background;
+            return;
+        }
+        add_surface(scene, prepared, layer, s, met.points[0], story.end, story);
+        story.hits = met.points[0].alpha >= 1;
+        if (!advance(scene.view, met, s, {&sample, 1})) return;
+    }
+}
+}
+
+double difference(const Answer& answer, const Answer& reference) {
+    const double is = luminance(answer.inscatter), should_be = luminance(reference.inscatter);
+    return is == should_be ? 0 : should_be > 0 ? is / should_be - 1 : double(infinity);
+}
+
+std::string_view name_of(Lighting state) {
+    constexpr std::string_view names[] = {"lit", "half shadow", "shadow", "out of reach"};
+    return names[static_cast<size_t>(state)];
+}
+
+std::string name_of_instance(const Snapshot& snapshot, int instance) {
+    const Scene& scene = *snapshot.scene;
+    const Instance& placed = scene.instances[static_cast<size_t>(instance)];
+    if (placed.node >= 0 && !scene.nodes[static_cast<size_t>(placed.node)].name.empty())
+        return scene.nodes[static_cast<size_t>(placed.node)].name;
+    const std::string& name = scene.meshes[static_cast<size_t>(placed.mesh)].name;
+    return name.empty() ? "mesh " + std::to_string(placed.mesh) : name;
+}
+
+RayStory explain_ray(const View& view, const Snapshot& snapshot, const Settings& settings, ivec2 pixel,
+                     const ExplainOptions& options) {
+    const Settings truth = truth_for(snapshot, settings, options.light_points);
+    RayScene scene{centered(view), snapshot, settings, truth, march_snapshot(snapshot, truth.march, truth.style), {},
+                   options};
+    add_depths(scene);
+    RayStory story;
+    start_story(scene, pixel, story);
+    follow(scene, story);
+    story.reference.finite = is_finite(story.reference.inscatter) && is_finite(story.reference.color);
+
+    const double parts = static_cast<double>(options.modes.size()) + 1;
+    for (size_t i = 0; i < options.modes.size(); ++i) {
+        if (options.progress) options.progress(static_cast<double>(i + 1) / parts);
+        if (options.cancel && *options.cancel) fail(ExitCode::internal, "explain", "cancelled");
+        story.answers.push_back(answer_of(*options.modes[i], scene, story));
+    }
+    return story;
+}
+}

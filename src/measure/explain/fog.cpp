@@ -1,0 +1,200 @@
+// The fog of one part of the ray in steps, and what each light does there.
+#include "measure/explain/parts.h"
+#include "volume/medium.h"
+
+#include "integrate/style.h"
+#include "scene/cone.h"
+#include "trace/transmittance/light_depth.h"
+#include "volume/rays/fog_pieces.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int near_steps = 64; // of equal angle, as a local light sees what it reaches
+
+// The density of one medium integrated from the start of the ray, in closed form.
+struct Column {
+    const std::vector<DensityPiece>& pieces;
+    std::vector<double> before; // each piece
+
+    explicit Column(const std::vector<DensityPiece>& all) : pieces(all) {
+        double sum = 0;
+        for (const DensityPiece& piece : pieces) before.push_back(sum), sum += piece.column(piece.high);
+    }
+    double to(double t) const {
+        const auto after = std::ranges::upper_bound(pieces, t, {}, &DensityPiece::low);
+        if (after == pieces.begin()) return 0;
+        const size_t i = static_cast<size_t>(after - pieces.begin()) - 1;
+        return before[i] + pieces[i].column(std::min(t, pieces[i].high));
+    }
+};
+
+struct FogOnPart {
+    FogPieces fog;
+    std::vector<Column> columns; // of each medium
+
+    Stretch range() const { return {fog.pieces.front().low, fog.pieces.back().high}; }
+    double depth_to(double t) const {
+        double sum = 0;
+        for (size_t m = 0; m < columns.size(); ++m) sum += fog.extinction[m] * columns[m].to(t);
+        return sum;
+    }
+};
+
+// Ends of steps: evenly spread, by optical depth too, around lamps, and where a light's shadow begins or ends.
+std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
+    const Stretch range = on.range();
+    std::vector<double> ends{range.low, range.high};
+    for (int i = 1; i < count; ++i) ends.push_back(range.low + range.length() * i / count);
+    const double depth = on.depth_to(range.high);
+    for (int i = 1; i < count; ++i) {
+        double low = range.low, high = range.high;
+        while (high - low > 1e-6 * range.length())
+            (on.depth_to(0.5 * (low + high)) < depth * i / count ? low : high) = 0.5 * (low + high);
+        ends.push_back(0.5 * (low + high));
+    }
+    for (const LightOnPart& light : lights) {
+        double first = range.high, last = range.low;
+        for (const LightStretch& stretch : light.lit) {
+            ends.push_back(stretch.low), ends.push_back(stretch.high);
+            if (stretch.state == Lighting::out_of_reach) continue;
+            first = std::min(first, std::max(stretch.low, range.low));
+            last = std::max(last, std::min(stretch.high, range.high));
+        }
+        const LightAlong& along = light.along;
+        if (!along.local() || !(first < last)) continue;
+        const double scale = std::max({along.distance, double(along.light->radius), double(smallest_radius)});
+        const double from = std::atan((first - along.nearest) / scale), to = std::atan((last - along.nearest) / scale);
+        for (int i = 1; i < near_steps; ++i)
+            ends.push_back(along.nearest + scale * std::tan(from + (to - from) * i / near_steps));
+    }
+    std::erase_if(ends, [&](double t) { return !(t >= range.low && t <= range.high); });
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < 1e-9 * range.high; }),
+               ends.end());
+    return ends;
+}
+
+// A step with the mean densities of all media.
+struct Place {
+    double low, high;
+    std::vector<double> densities;
+    double middle() const { return 0.5 * (low + high); }
+};
+
+RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on, const Place& place) {
+    const StyleSettings& style = scene.truth.style;
+    const double length = place.high - place.low;
+    RayStep step;
+    step.low = part.start + place.low, step.high = part.start + place.high;
+    for (size_t m = 0; m < place.densities.size(); ++m) {
+        const Optics& optics = scene.fog.media[m].optics;
+        step.extinction += place.densities[m] * optics.extinction;
+        step.glow += static_cast<float>(place.densities[m]) *
+                     (optics.extinction * optics.albedo * scene.fog.ambient + optics.emission);
+    }
+    const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
+    const bool fades = style.range < StyleSettings{}.range;
+    const float away = eye_distance(scene.view.camera, part.ray.at(static_cast<float>(place.middle())));
+    const double seen = part.through * (fades ? style_fade(style, away) : 1);
+    step.depth = part.depth + on.depth_to(place.middle());
+    step.to_eye = seen * std::exp(-style.view_depth * on.depth_to(place.middle()));
+    step.reach =
+        seen * std::exp(-style.view_depth * before) * length * (across > 0 ? -std::expm1(-across) / across : 1);
+    return step;
+}
+
+// Mean share of the light over a step.
+float share_over(const std::vector<LightStretch>& shares, double low, double high) {
+    auto stretch = std::ranges::upper_bound(shares, low, {}, &LightStretch::high);
+    double sum = 0;
+    for (; stretch != shares.end() && stretch->low < high; ++stretch)
+        sum += stretch->share * (std::min(high, stretch->high) - std::max(low, stretch->low));
+    return static_cast<float>(sum / (high - low));
+}
+
+// What the fog between a light and the steps lets through.
+std::vector<LightAtStep> dimmed(const LightDepth& depth, const Ray& ray, std::span<const Place> places) {
+    std::vector<LightAtStep> at(places.size());
+    alignas(64) float x[16] = {}, y[16] = {}, z[16] = {}, depths[16];
+    alignas(64) int32_t active[16];
+    for (size_t first = 0; first < places.size(); first += 16) {
+        const size_t count = std::min<size_t>(16, places.size() - first);
+        for (size_t i = 0; i < 16; ++i) {
+            active[i] = i < count ? -1 : 0;
+            if (i >= count) continue;
+            const dvec3 point = dvec3(ray.origin) + places[first + i].middle() * dvec3(ray.direction);
+            x[i] = float(point.x), y[i] = float(point.y), z[i] = float(point.z);
+        }
+        light_depths(depth, x, y, z, active, depths);
+        for (size_t i = 0; i < count; ++i) at[first + i].transmittance = std::exp(-depths[i]);
+    }
+    return at;
+}
+
+// Light scattered towards the eye in the middle of a step, when all of the light is seen.
+vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& part, const Place& place) {
+    const ArrivingAt arriving = arriving_at(along, place.middle());
+    const double cosine = glm::dot(arriving.to_light, dvec3(part.ray.direction));
+    dvec3 sum(0);
+    for (size_t m = 0; m < place.densities.size(); ++m) {
+        const Optics& optics = scene.fog.media[m].optics;
+        sum += place.densities[m] * optics.extinction * phase_value_of<double>(optics.phase, cosine) *
+               dvec3(optics.albedo);
+    }
+    return vec3(arriving.amount * sum * dvec3(along.light->intensity * along.light->volume_scale));
+}
+
+std::vector<Place> places_of(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
+    const std::vector<double> ends = step_ends(on, lights, count);
+    std::vector<Place> places;
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        Place place{ends[i], ends[i + 1], {}};
+        for (const Column& column : on.columns)
+            place.densities.push_back((column.to(place.high) - column.to(place.low)) / (place.high - place.low));
+        places.push_back(std::move(place));
+    }
+    return places;
+}
+
+// Moves a stretch of a part to where it lies on the whole ray.
+LightStretch moved(LightStretch stretch, double by) {
+    stretch.low += by, stretch.high += by;
+    return stretch;
+}
+}
+
+void append_fog(const RayScene& scene, const RayPart& part, RayStory& story) {
+    FogOnPart on;
+    find_fog(part.ray, scene.fog.media, scene.truth.march.min_transmittance, on.fog);
+    for (size_t m = 0; m < on.fog.media; ++m) on.columns.emplace_back(on.fog.densities[m]);
+    std::vector<LightOnPart> lights;
+    for (size_t l = 0; l < story.lights.size(); ++l) lights.push_back(light_on(scene, part, l));
+
+    const size_t first = story.steps.size();
+    std::vector<Place> places;
+    if (!on.fog.pieces.empty()) places = places_of(on, lights, scene.options.steps);
+    for (const Place& place : places) {
+        story.steps.push_back(step_at(scene, part, on, place));
+        story.glow += static_cast<float>(story.steps.back().reach) * story.steps.back().glow;
+    }
+    for (size_t l = 0; l < lights.size(); ++l) {
+        std::vector<LightAtStep> at = dimmed(scene.depths[l], part.ray, places);
+        for (size_t i = 0; i < places.size(); ++i)
+            at[i].share = share_over(lights[l].shares, places[i].low, places[i].high);
+        if (story.lights[l].sampled) add_alpha_shadows(scene, part, first, story, lights[l], at);
+        for (size_t i = 0; i < places.size(); ++i)
+            if (at[i].share > 0)
+                at[i].scattered =
+                    at[i].share * at[i].transmittance * scattered(scene, lights[l].along, part, places[i]);
+        name_blockers(scene, part, lights[l]);
+        for (const LightStretch& stretch : lights[l].lit)
+            story.lights[l].stretches.push_back(moved(stretch, part.start));
+        story.lights[l].at.insert(story.lights[l].at.end(), at.begin(), at.end());
+    }
+    for (size_t m = 0; m < on.columns.size(); ++m)
+        story.media[m].depth += on.fog.extinction[m] * on.columns[m].to(part.ray.t_max);
+    story.depth += on.depth_to(part.ray.t_max);
+}
+}

@@ -1,0 +1,124 @@
+// What modes say of one pixel.
+#include "measure/explain/parts.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "modes/mode.h"
+#include "render/frame/pixel_sum.h"
+#include "render/frame/samples.h"
+#include "trace/transmittance/light_depth.h"
+
+namespace tyndall {
+namespace {
+constexpr int tile_side = 4;
+constexpr int noisy_batches = 32;
+constexpr int largest_picture = 1 << 20; // pixels that a mode of whole pictures is asked for
+
+FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view, const Prepared& prepared) {
+    return {view,
+            scene.snapshot,
+            prepared.scatter,
+            mode.surfaces,
+            scene.settings.march.light_points,
+            prepared.light_depths};
+}
+
+void take(const PixelSample& sample, Answer& answer) {
+    answer.inscatter = sample.inscatter, answer.color = sample.color;
+    answer.transmittance = sample.transmittance, answer.validity = sample.validity, answer.steps = sample.steps;
+    answer.finite = sample.finite();
+}
+
+// The pixel in the midst of its tile: a mode may let neighbours share steps.
+void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+    const Prepared prepared = prepare_frame(mode, scene.view, scene.snapshot, scene.settings, nullptr);
+    const ivec2 corner = pixel / tile_side * tile_side, end = glm::min(corner + tile_side, scene.view.size);
+    ivec2 pixels[16];
+    PixelSample samples[16];
+    size_t count = 0, own = 0;
+    for (int y = corner.y; y < end.y; ++y)
+        for (int x = corner.x; x < end.x; ++x) {
+            if (ivec2(x, y) == pixel) own = count;
+            pixels[count++] = {x, y};
+        }
+    trace_samples(tracer_of(mode, scene, scene.view, prepared), {pixels, count}, 0, {samples, count}, {});
+    take(samples[own], answer);
+}
+
+// The mean of many samples, and how far it may be off: from the spread of independent batches.
+void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+    View view = scene.view;
+    view.pixel_samples = answer.samples = scene.options.noisy_samples, view.batches = noisy_batches;
+    const Prepared prepared = prepare_frame(mode, view, scene.snapshot, scene.settings, nullptr);
+    const FrameTracer tracer = tracer_of(mode, scene, view, prepared);
+    std::vector<PixelSample> samples(static_cast<size_t>(view.pixel_samples));
+    parallel_for(view.pixel_samples, [&](int64_t s) {
+        if (scene.options.cancel && *scene.options.cancel) fail(ExitCode::internal, "explain", "cancelled");
+        trace_samples(tracer, {&pixel, 1}, static_cast<int>(s), {&samples[static_cast<size_t>(s)], 1}, {});
+    });
+
+    PixelSum sum;
+    double steps = 0;
+    const int batch_size = view.pixel_samples / noisy_batches;
+    for (size_t s = 0; s < samples.size(); ++s) {
+        answer.finite = answer.finite && samples[s].finite();
+        steps += samples[s].steps;
+        sum.add(samples[s]);
+        if ((s + 1) % static_cast<size_t>(batch_size) == 0) sum.end_batch(batch_size);
+    }
+    const float count = static_cast<float>(view.pixel_samples);
+    answer.inscatter = vec3(sum.inscatter_mean.mean), answer.color = vec3(sum.color_mean.mean);
+    answer.transmittance = sum.transmittance / count, answer.validity = sum.validity / count;
+    answer.steps = static_cast<int>(std::lround(steps / view.pixel_samples));
+    answer.standard_error = glm::sqrt(sum.inscatter_mean.variance());
+    answer.remark = formatted("mean of %d samples, +- its standard error", answer.samples);
+    if (scene.settings.path.orders > 1) answer.remark += "; light may scatter more than once, the reference's does not";
+}
+
+// The whole picture, smaller where it is large.
+void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+    View view = scene.view;
+    int shrink = 1;
+    while (view.size.x / shrink * (view.size.y / shrink) > largest_picture) ++shrink;
+    view.size = glm::max(view.size / shrink, ivec2(1));
+    const ivec2 p = glm::min(pixel / shrink, view.size - 1);
+    FrameStats stats;
+    FrameOptions options;
+    options.cancel = scene.options.cancel;
+    const Layers layers = render_frame(mode, view, scene.snapshot, scene.settings, options, stats);
+    answer.inscatter = layers.inscatter.at(p.x, p.y), answer.color = layers.color.at(p.x, p.y);
+    answer.transmittance = layers.transmittance.at(p.x, p.y), answer.validity = layers.validity.at(p.x, p.y);
+    answer.picture = view.size;
+    answer.remark = formatted("taken from a whole picture of %dx%d", view.size.x, view.size.y);
+    answer.finite = is_finite(answer.inscatter) && is_finite(answer.color);
+}
+
+// Whether a light gets to the ray, or a medium lies on it.
+bool concerns(const Limit& limit, const RayStory& story) {
+    constexpr std::string_view light = "light ", medium = "medium ";
+    const std::string_view where = limit.where;
+    const auto reaches = [](const LightStretch& stretch) { return stretch.state != Lighting::out_of_reach; };
+    if (where.starts_with(light))
+        return std::ranges::any_of(story.lights, [&](const LightOnRay& on) {
+            return on.name == where.substr(light.size()) && std::ranges::any_of(on.stretches, reaches);
+        });
+    if (where.starts_with(medium))
+        return std::ranges::any_of(
+            story.media, [&](const MediumOnRay& on) { return on.name == where.substr(medium.size()) && on.depth > 0; });
+    return true;
+}
+}
+
+Answer answer_of(const Mode& mode, const RayScene& scene, const RayStory& story) {
+    Answer answer;
+    answer.mode = mode.name, answer.accuracy = mode.accuracy;
+    for (Limit& limit : mode.limits(scene.view, scene.snapshot, scene.settings))
+        if (concerns(limit, story)) answer.limits.push_back(std::move(limit));
+    if (mode.surfaces == Surfaces::post)
+        ask_picture(mode, scene, story.pixel, answer);
+    else
+        (error_is_noise(mode) ? ask_often : ask_tile)(mode, scene, story.pixel, answer);
+    return answer;
+}
+}

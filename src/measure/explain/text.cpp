@@ -1,0 +1,170 @@
+// The report for people.
+#include "measure/explain/text.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr size_t columns = 100;
+
+std::string surface_text(const SurfaceOnRay& surface) {
+    std::string text = formatted("  %9s m  ", digits(surface.distance).c_str()) + printable(surface.name, 40);
+    if (!surface.material.empty()) text += " (" + printable(surface.material, 40) + ")";
+    if (surface.alpha < 1) text += ", alpha " + digits(surface.alpha);
+    return wrapped(
+        text + ": radiance " + color_text(surface.radiance) + ", " + percent(surface.share) + " of it arrives", 13);
+}
+
+std::string ray_text(const RayStory& story) {
+    std::string text = "The ray\n";
+    text += "  from " + color_text(story.origin) + " m towards " + color_text(story.direction) + "\n";
+    if (story.steps.empty()) {
+        text += "  no fog on its way\n";
+    } else {
+        std::string media;
+        for (const MediumOnRay& medium : story.media)
+            if (medium.depth > 0)
+                media += (media.empty() ? "" : " + ") + printable(medium.name, 40) + " " + digits(medium.depth);
+        text += wrapped("  fog from " + digits(story.steps.front().low) + " to " + digits(story.steps.back().high) +
+                            " m, optical depth " + digits(story.depth) + " (" + media +
+                            "): " + percent(story.reference.transmittance) + " of the light behind it comes through",
+                        6);
+    }
+    for (const SurfaceOnRay& surface : story.surfaces) text += surface_text(surface);
+    if (!story.hits)
+        text += "     behind    background: radiance " + color_text(story.background) + ", " +
+                percent(story.background_share) + " of it arrives\n";
+    return text;
+}
+
+const char* kind_text(LightKind kind) {
+    return kind == LightKind::sun ? "sun" : kind == LightKind::spot ? "spot" : "point";
+}
+
+// Metres of the ray on which a light does this.
+double length_of(const LightOnRay& light, Lighting state) {
+    double sum = 0;
+    for (const LightStretch& stretch : light.stretches)
+        if (stretch.state == state) sum += stretch.high - stretch.low;
+    return sum;
+}
+
+std::string lights_text(const RayStory& story) {
+    std::string text = "Light that arrives, nits (other: ambient light, emission, background)\n";
+    text += formatted("  %-16s %-5s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
+    text += formatted("  %-16s %-5s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
+    const auto row = [&](const std::string& name, const char* kind, vec3 fog, vec3 surfaces, const std::string& lit) {
+        text += formatted("  %-16s %-5s %s %s %8s\n", cut(printable(name, 40), 16).c_str(), kind,
+                          color_columns(fog).c_str(), color_columns(surfaces).c_str(), lit.c_str());
+    };
+    vec3 of_lights(0);
+    for (const LightOnRay& light : story.lights) {
+        row(light.name, kind_text(light.kind), light.fog, light.surfaces, digits(length_of(light, Lighting::full)));
+        of_lights += light.surfaces;
+    }
+    const vec3 behind = story.reference.color - story.reference.inscatter;
+    row("other", "", story.glow, glm::max(behind - of_lights, vec3(0)), "");
+    row("all", "", story.reference.inscatter, behind, "");
+    return text;
+}
+
+std::string stretches_text(const RayStory& story) {
+    std::string text = "Where each light comes in\n";
+    for (const LightOnRay& light : story.lights) {
+        std::string name = cut(printable(light.name, 40), 16);
+        for (const LightStretch& stretch : light.stretches) {
+            std::string line = formatted("  %-16s %9.3f %9.3f m   ", name.c_str(), stretch.low, stretch.high);
+            line += name_of(stretch.state);
+            if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
+            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " comes in";
+            text += wrapped(line, 45);
+            name.clear();
+        }
+    }
+    if (!story.steps.empty() && std::ranges::any_of(story.lights, &LightOnRay::sampled))
+        text += "  (shadows of MASK and BLEND surfaces are as the steps see them)\n";
+    return text;
+}
+}
+
+std::string color_text(vec3 v) { return digits(v.x) + " " + digits(v.y) + " " + digits(v.z); }
+
+std::string color_columns(vec3 v) {
+    return formatted("%9s %9s %9s", digits(v.x).c_str(), digits(v.y).c_str(), digits(v.z).c_str());
+}
+
+std::string channels() { return formatted("%9s %9s %9s", "R", "G", "B"); }
+
+std::string cut(std::string text, size_t most) { return text.size() <= most ? text : text.substr(0, most - 1) + "~"; }
+
+std::string wrapped(const std::string& text, size_t indent) {
+    std::string result, line;
+    for (size_t start = 0; start < text.size();) {
+        const size_t space = std::min(text.find(' ', start), text.size());
+        const std::string word = text.substr(start, space - start);
+        if (!line.empty() && line.size() + 1 + word.size() > columns) {
+            result += line + "\n";
+            line = std::string(indent, ' ') + word;
+        } else {
+            line += (start == 0 ? "" : " ") + word;
+        }
+        start = space + 1;
+    }
+    return result + line + "\n";
+}
+
+std::string digits(double value) { return formatted("%.4g", value); }
+
+std::string percent(double share) {
+    const double value = 100 * share;
+    return formatted(value == 0 || value >= 99.95 ? "%.0f %%"
+                     : value < 0.01               ? "%.0e %%"
+                     : value < 10                 ? "%.2f %%"
+                                                  : "%.1f %%",
+                     value);
+}
+
+std::string difference_text(const Answer& answer, const Answer& reference) {
+    const double off = difference(answer, reference);
+    if (std::isinf(off)) return "none expected";
+    const auto text = [](double value, const char* sign) {
+        const double size = std::abs(100 * value);
+        return formatted(size >= 100 ? "%s%.0f" : size >= 10 ? "%s%.1f" : "%s%.2f", sign, size);
+    };
+    std::string result = std::abs(off) < 5e-5 ? "0.00" : text(off, off < 0 ? "-" : "+");
+    if (answer.standard_error && luminance(reference.inscatter) > 0)
+        result += " +- " + text(luminance(*answer.standard_error) / luminance(reference.inscatter), "");
+    return result + " %";
+}
+
+vec3 added_by(const RayStory& story, size_t step) {
+    vec3 sum = story.steps[step].glow;
+    for (const LightOnRay& light : story.lights) sum += light.at[step].scattered;
+    return static_cast<float>(story.steps[step].reach) * sum;
+}
+
+std::string title_line(const RayStory& story, const StoryTitle& title) {
+    std::string text = printable(title.scene, 60) + formatted(", frame %d", title.frame);
+    if (!title.camera.empty()) text += ", camera " + printable(title.camera, 40);
+    return text + formatted(", pixel %d,%d of %dx%d, ", story.pixel.x, story.pixel.y, story.size.x, story.size.y) +
+           title.quality;
+}
+
+std::string explain_text(const RayStory& story, const StoryTitle& title) {
+    std::string text = wrapped(title_line(story, title), 2);
+    for (const std::string& part : {ray_text(story), lights_text(story), stretches_text(story), steps_text(story),
+                                    modes_text(story), limits_text(story)})
+        if (!part.empty()) text += "\n" + part;
+    // Empty cells leave no blanks at the ends of lines.
+    std::string result;
+    for (const char c : text) {
+        if (c == '\n')
+            while (result.ends_with(' ')) result.pop_back();
+        result += c;
+    }
+    return result;
+}
+}

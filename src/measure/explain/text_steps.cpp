@@ -1,0 +1,106 @@
+// The table of steps for people.
+#include "measure/explain/text.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int most_rows = 20;
+constexpr size_t most_light_columns = 4;
+
+// Steps put together over one stretch of the ray.
+struct Row {
+    double low = 0, high = 0, depth = 0, reach = 0;
+    dvec3 source{0}, added{0};           // per metre, times metres; at the eye
+    std::vector<double> share, to_light; // of each light, times metres
+};
+
+Row row_of(const RayStory& story, double low, double high) {
+    Row row{low,
+            high,
+            0,
+            0,
+            dvec3(0),
+            dvec3(0),
+            std::vector<double>(story.lights.size()),
+            std::vector<double>(story.lights.size())};
+    for (size_t i = 0; i < story.steps.size(); ++i) {
+        const RayStep& step = story.steps[i];
+        const double length = std::min(high, step.high) - std::max(low, step.low);
+        if (!(length > 0)) continue;
+        const double part = length / (step.high - step.low);
+        row.depth += step.extinction * length, row.reach += step.reach * part;
+        row.source += length * dvec3(step.glow), row.added += part * dvec3(added_by(story, i));
+        for (size_t l = 0; l < story.lights.size(); ++l) {
+            row.source += length * dvec3(story.lights[l].at[i].scattered);
+            row.share[l] += length * story.lights[l].at[i].share;
+            row.to_light[l] += length * story.lights[l].at[i].transmittance;
+        }
+    }
+    return row;
+}
+
+// Ends of rows at round distances.
+std::vector<double> row_ends(const RayStory& story) {
+    const double low = story.steps.front().low, high = story.steps.back().high;
+    double length = std::pow(10.0, std::floor(std::log10((high - low) / most_rows)));
+    for (const double factor : {2.0, 2.5, 2.0})
+        if ((high - low) / length > most_rows - 1) length *= factor;
+    std::vector<double> ends{low};
+    for (double end = (std::floor(low / length) + 1) * length; end < high; end += length) ends.push_back(end);
+    ends.push_back(high);
+    return ends;
+}
+
+// The lights that give most of the fog's light.
+std::vector<size_t> main_lights(const RayStory& story) {
+    std::vector<size_t> all;
+    for (size_t l = 0; l < story.lights.size(); ++l)
+        if (luminance(story.lights[l].fog) > 0) all.push_back(l);
+    std::ranges::stable_sort(
+        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
+    all.resize(std::min(all.size(), most_light_columns));
+    return all;
+}
+}
+
+std::string steps_text(const RayStory& story) {
+    if (story.steps.empty()) return {};
+    const std::vector<size_t> lights = main_lights(story);
+    const bool both = 2 * lights.size() <= most_light_columns;
+    std::string text = "Step by step (luminance, nits)\n";
+    if (!lights.empty()) text += std::string(67, ' ');
+    for (const size_t l : lights)
+        text += formatted(both ? " %17s" : " %8s", cut(printable(story.lights[l].name, 40), both ? 17 : 8).c_str());
+    if (!lights.empty()) text += "\n";
+    text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per metre",
+                      "arrives");
+    for (size_t l = 0; l < lights.size(); ++l) text += formatted(both ? " %8s %8s" : " %8s", "lit", "to light");
+    text += "\n";
+    dvec3 sum(0);
+    double depth = 0;
+    const std::vector<double> ends = row_ends(story);
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        const Row row = row_of(story, ends[i], ends[i + 1]);
+        const double length = row.high - row.low;
+        depth += row.depth, sum += row.added;
+        text +=
+            formatted("  %8.3f %8.3f %9s %8s %8s %10s %10s", row.low, row.high, digits(row.depth / length).c_str(),
+                      digits(depth).c_str(), percent(row.reach / length).c_str(),
+                      digits(luminance(vec3(row.source / length))).c_str(), digits(luminance(vec3(row.added))).c_str());
+        for (const size_t l : lights) {
+            text += formatted(" %8s", percent(row.share[l] / length).c_str());
+            if (both) text += formatted(" %8s", percent(row.to_light[l] / length).c_str());
+        }
+        text += "\n";
+    }
+    const double all = luminance(vec3(sum)), exact = luminance(story.reference.inscatter);
+    text += formatted("  %zu steps add up to %s, the reference is %s", story.steps.size(), digits(all).c_str(),
+                      digits(exact).c_str());
+    if (exact > 0) text += formatted(": off by %.2f %%", 100 * std::abs(all / exact - 1));
+    return text + "\n";
+}
+}

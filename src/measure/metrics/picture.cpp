@@ -1,0 +1,85 @@
+#include "measure/metrics/picture.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "render/image/exr.h"
+
+namespace tyndall {
+namespace {
+using Channels = std::map<std::string, const Image<float>*>; // of one layer, by what follows the last dot
+
+Image<vec3> combined(const Image<float>& r, const Image<float>& g, const Image<float>& b) {
+    Image<vec3> result(r.size);
+    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] = {r.pixels[i], g.pixels[i], b.pixels[i]};
+    return result;
+}
+
+bool is_color(const Channels& channels) {
+    return channels.contains("R") && channels.contains("G") && channels.contains("B");
+}
+
+Image<vec3> color_of(const Channels& channels) {
+    return combined(*channels.at("R"), *channels.at("G"), *channels.at("B"));
+}
+
+[[noreturn]] void refuse_colorless(const std::string& file, const std::map<std::string, Channels>& layers) {
+    std::vector<std::string> names;
+    for (const auto& [layer, channels] : layers)
+        for (const auto& channel : channels) names.push_back((layer.empty() ? "" : layer + ".") + channel.first);
+    refuse(file,
+           "has no colour to compare: neither channels R, G, B nor Y; there is " + printable(joined(names, ", "), 200));
+}
+
+std::string size_text(ivec2 size) { return std::to_string(size.x) + " x " + std::to_string(size.y); }
+std::string window_text(const Picture& picture) {
+    return size_text(picture.beauty.size) + " at " + std::to_string(picture.low.x) + "," +
+           std::to_string(picture.low.y);
+}
+}
+
+const Image<vec3>* Picture::layer(const std::string& name) const {
+    const auto found = layers.find(name);
+    return found == layers.end() ? nullptr : &found->second;
+}
+
+Picture read_picture(const std::filesystem::path& file) {
+    const ExrFile exr = read_exr(file);
+    std::map<std::string, Channels> layers;
+    for (const auto& [name, image] : exr.channels) {
+        const size_t dot = name.rfind('.');
+        const bool plain = dot == name.npos;
+        layers[plain ? "" : name.substr(0, dot)][plain ? name : name.substr(dot + 1)] = &image;
+    }
+
+    Picture picture;
+    picture.file = file.string(), picture.display = exr.display, picture.low = exr.low;
+    const auto style = exr.attributes.find("stylised");
+    picture.stylised = style != exr.attributes.end() && style->second != "0";
+    const Channels& own = layers[""];
+    picture.grey = !is_color(own);
+    if (picture.grey && !own.contains("Y")) refuse_colorless(picture.file, layers);
+    picture.beauty = picture.grey ? combined(*own.at("Y"), *own.at("Y"), *own.at("Y")) : color_of(own);
+
+    for (const auto& [name, channels] : layers) {
+        if (name.empty()) continue;
+        if (is_color(channels)) picture.layers[name] = color_of(channels);
+        if (channels.size() != 1) continue;
+        const Image<float>& value = *channels.begin()->second;
+        picture.layers[name] = combined(value, value, value);
+    }
+    return picture;
+}
+
+void check_same_frame(const Picture& test, const Picture& reference) {
+    const std::string other = "the reference " + printable(reference.file, 120);
+    if (test.display != reference.display)
+        refuse(test.file, "is a picture of " + size_text(test.display) + " pixels, " + other + " one of " +
+                              size_text(reference.display));
+    if (test.low != reference.low || test.beauty.size != reference.beauty.size)
+        refuse(test.file, "holds the crop " + window_text(test) + ", " + other + " " + window_text(reference) +
+                              "; render both with the same --crop");
+    if (test.grey != reference.grey)
+        refuse(test.file, std::string(test.grey ? "has luminance only, " : "has colour, ") + other +
+                              (test.grey ? " colour" : " luminance only"));
+}
+}

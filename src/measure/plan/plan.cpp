@@ -1,0 +1,150 @@
+#include "measure/plan/plan.h"
+
+#include "base/text.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
+#include "render/adaptive/to_target.h"
+#include "trace/snapshot.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+// Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
+Term history_term(const View& view, const Snapshot& snapshot, const Contender& chosen, double error,
+                  const TermControl& control) {
+    Term term{"frames before", "", "left out"};
+    View centers = view;
+    centers.filter = PixelFilter::center;
+    const Settings& settings = chosen.choice.candidate.settings;
+    const FrameOptions options{false, nullptr, control.cancel, {}, {}};
+    const Pilot pilot = make_pilot(*chosen.mode, centers, snapshot, nullptr, options, [] { return true; });
+    const Measured measured = measure(pilot, *chosen.mode, snapshot, settings, options, steady_seconds);
+    const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
+    term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
+    term.needed = term.bound > error;
+    term.why = percent_text(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
+               (samples < 2 ? " sample" : " samples") + " per pixel";
+    return term;
+}
+
+// The worst limit that may be why a mode is off. What the reference leaves out as well is not.
+const Limit* worst_limit(const std::vector<Limit>& limits) {
+    const Limit* worst = nullptr;
+    for (const Limit& limit : limits)
+        if (!limit.why.starts_with("light scatters once only") && limit.severity != Severity::info &&
+            (!worst || limit.severity > worst->severity))
+            worst = &limit;
+    return worst;
+}
+
+// Why a mode that was measured lost, given its best candidate and the winner.
+std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const std::vector<Limit>& limits) {
+    if (best.gets_there() && goal.error > 0)
+        return "gets there in " + seconds_text(best.seconds) +
+               formatted(", %.2g times as long", best.seconds / winner.seconds);
+    std::string text =
+        goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
+    if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
+        text = "too noisy: " + formatted("%.0f", 1.0 * most_target_samples) + " samples would not do";
+    if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
+        text += ", in " + seconds_text(best.seconds) + " at least";
+    if (const Limit* limit = worst_limit(limits)) text += "; " + limit->where + ": " + limit->why;
+    return text;
+}
+
+// The best that each mode has shown.
+std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& contest, const View& view,
+                                   const Snapshot& snapshot, const Goal& goal) {
+    std::vector<Standing> standings;
+    const Contender& winner = contest.best();
+    for (const Mode& mode : modes) {
+        Standing standing{&mode, {}, "a look, not light: its error is as large as it is"};
+        if (mode.accuracy == Accuracy::multiple_scattering)
+            standing.why = "takes no part: errors here are of light scattered once, it traces all (--mode path)";
+        else if (mode.accuracy != Accuracy::look)
+            standing.why = "takes no part: it has no light scattered again, which is asked for";
+        for (const Contender& contender : contest.contenders)
+            if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
+                standing.best = contender;
+        if (standing.best) {
+            const std::vector<Limit> limits = mode.limits(view, snapshot, standing.best->choice.candidate.settings);
+            standing.why = &mode == winner.mode ? "" : loss(*standing.best, winner, goal, limits);
+        }
+        standings.push_back(std::move(standing));
+    }
+    std::ranges::stable_sort(standings, [&](const Standing& a, const Standing& b) {
+        if (!a.best || !b.best) return a.best.has_value() > b.best.has_value();
+        return beats(*a.best, *b.best, goal);
+    });
+    return standings;
+}
+}
+
+Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
+               Goal goal, const TermControl& control) {
+    if (!goal.clock) goal.clock = steady_seconds;
+    Plan plan{goal, {}, settings, {}, {}};
+    const auto part = [&](double from, double to) {
+        return [&control, from, to](double done) {
+            if (control.progress) control.progress(from + (to - from) * done);
+        };
+    };
+    const double start = goal.clock();
+    const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
+    plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
+    plan.settings = without_needless(plan.terms, settings);
+    const bool path_is_free = settings.path.orders == settings_for(goal.quality).path.orders;
+    if (plan.settings.fluence.orders < 2 && path_is_free) plan.settings.path.orders = 1; // as all others
+    plan.terms_seconds = goal.clock() - start;
+
+    const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
+    Contest contest = hold_contest(modes, view, snapshot, plan.settings, settings, goal, options);
+    plan.chosen = contest.best(), plan.contest_seconds = contest.seconds;
+    plan.standings = standings_of(modes, contest, view, snapshot, goal);
+    if (!snapshot.media.empty()) plan.terms.push_back(history_term(view, snapshot, plan.chosen, wanted, control));
+    part(0.9, 1)(1);
+    return plan;
+}
+
+std::string Plan::certificate() const {
+    std::string text = std::string(chosen.mode->name);
+    if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
+    text += ": error " + percent_text(chosen.error) + (chosen.gets_there() ? " expected" : " at best");
+    if (goal.error > 0) text += ", " + percent_text(goal.error) + " wanted";
+    if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
+    std::string left_out;
+    for (const Term& term : terms)
+        if (!term.needed && term.bound > 0)
+            left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
+                        " (" + term.simpler + ": at most " + percent_text(term.bound) +
+                        (term.rigorous ? " for certain)" : ")");
+    if (settings.fluence.orders > 1)
+        text += "; light scattered again comes from a grid whose own error is not measured";
+    return text + (left_out.empty() ? "" : "; not needed: " + left_out);
+}
+
+std::string plan_text(const Plan& plan) {
+    std::string text = "what the light needs                              without it\n";
+    for (const Term& term : plan.terms) {
+        const std::string name = term.name + (term.where.empty() ? "" : " of " + term.where);
+        text += formatted("  %-6s  %-38.38s  %-10s  %s\n", term.needed ? "needed" : "-", name.c_str(),
+                          term.simpler.c_str(), term.why.c_str());
+    }
+    text += "\nmodes\n";
+    for (const Standing& standing : plan.standings) {
+        const std::string name(standing.mode->name);
+        if (standing.mode == plan.chosen.mode) {
+            const Contender& best = plan.chosen;
+            text += formatted("  %-14s %s: %s in %s", name.c_str(), best.gets_there() ? "chosen" : "comes closest",
+                              percent_text(best.error).c_str(), seconds_text(best.seconds).c_str());
+            if (best.gets_there())
+                text += formatted(", %.0f %s per pixel", best.samples, best.samples < 2 ? "sample" : "samples");
+            text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
+        } else {
+            text += "  " + name + std::string(15 - std::min<size_t>(14, name.size()), ' ') + standing.why + "\n";
+        }
+    }
+    return text;
+}
+}

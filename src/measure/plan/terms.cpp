@@ -1,0 +1,257 @@
+#include "measure/plan/terms.h"
+
+#include "base/text.h"
+#include "modes/techniques.h"
+#include "render/adaptive/candidates.h"
+#include "render/adaptive/goal.h"
+#include "scene/light.h"
+#include "trace/fluence/scattering_orders.h"
+#include "trace/occlusion/scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+#include <optional>
+
+namespace tyndall {
+namespace {
+// A picture to compare with the right one.
+struct Variant {
+    const Mode* mode;
+    Snapshot snapshot;
+    Settings settings;
+};
+
+// The march with surfaces and background as bright as without fog before them.
+Mode undimmed_march() {
+    Mode mode = find_mode("march");
+    mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+        const ScatterFunction inner = prepare_march(view, snapshot, settings, history);
+        return ScatterFunction([inner](const RayBatch& batch, std::span<Scatter> results) {
+            inner(batch, results);
+            for (Scatter& result : results) result.transmittance = 1;
+        });
+    };
+    return mode;
+}
+
+// Settings at which the march is right enough to tell what a term is worth: its own errors cancel.
+Settings careful(const Settings& settings) {
+    for (const Candidate& candidate : ladder_of(find_mode("march"), settings))
+        if (candidate.name == "final") {
+            Settings result = candidate.settings;
+            result.pixel.samples = settings.pixel.samples;
+            return result;
+        }
+    return settings;
+}
+
+struct Terms {
+    const View& view;
+    const Snapshot& snapshot;
+    const Settings base;
+    double error; // asked for
+    const TermControl& control;
+    std::optional<Pilot> pilot{}, marched{}; // made when first needed
+    std::vector<Term> terms{};
+
+    FrameOptions options() const { return {false, nullptr, control.cancel, {}, {}}; }
+
+    Pilot make(const Settings& truth) const {
+        return make_pilot(find_mode("march"), view, snapshot, &truth, options(), [] { return false; });
+    }
+    const Pilot& usual() {
+        if (!pilot) pilot = make(base);
+        return *pilot;
+    }
+    const Pilot& with_marched_light() {
+        if (marched) return *marched;
+        Settings truth = base;
+        truth.march.light = LightTransmittance::marched;
+        return *(marched = make(truth));
+    }
+    SquaredError error_of(const Pilot& against, const Variant& variant) const {
+        return measure(against, *variant.mode, variant.snapshot, variant.settings, options(), steady_seconds)
+            .integrator;
+    }
+
+    // Root mean square over mean of the picture, whichever is larger of its colour and its fog light: no E is larger
+    // than this times the largest relative error of a pixel.
+    double contrast() {
+        double squares[2] = {}, means[2] = {}, weights[2] = {};
+        const std::vector<vec3>& values = usual().truth;
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (!is_finite(values[i])) continue;
+            const double weight = tiles_stood_for(usual(), i / pilot_values);
+            squares[i % 2] += weight * glm::dot(values[i], values[i]) / 3;
+            means[i % 2] += weight * (values[i].x + values[i].y + values[i].z) / 3, weights[i % 2] += weight;
+        }
+        double most = 1;
+        for (int layer = 0; layer < 2; ++layer)
+            if (means[layer] > 0) most = std::max(most, std::sqrt(squares[layer] * weights[layer]) / means[layer]);
+        return most;
+    }
+
+    // A term with the largest relative error of a pixel without it, for certain; infinite where none is known. It is
+    // measured only if that does not do.
+    template<class MakeVariant>
+    void add(Term term, double most, const Pilot& (Terms::*against)(), const MakeVariant& variant) {
+        const double allowed = term_share * error, bound = most == 0 ? 0 : most * contrast();
+        if (bound <= allowed) {
+            term.error = term.bound = bound, term.rigorous = true, term.needed = false;
+            if (term.why.empty())
+                term.why = bound == 0 ? "there is none" : "no pixel is off by more than " + percent_text(most);
+        } else {
+            const SquaredError seen = error_of((this->*against)(), variant());
+            term.error = std::sqrt(seen.value), term.bound = std::sqrt(seen.bound);
+            term.needed = term.bound > allowed;
+            term.why = percent_text(term.error) + " measured, at most " + percent_text(term.bound);
+        }
+        terms.push_back(std::move(term));
+    }
+
+    Variant changed() const { return {&find_mode("march"), snapshot, base}; }
+};
+
+void add_shadows(Terms& terms) {
+    const bool blocked = terms.snapshot.occluders && !terms.snapshot.occluders->empty();
+    for (size_t i = 0; i < terms.snapshot.lights.size(); ++i) {
+        const Light& light = terms.snapshot.lights[i];
+        Term term{"shadows", light.name, "left out"};
+        if (!light.shadows)
+            term.why = "the scene says it casts none";
+        else if (!blocked)
+            term.why = "there is nothing that could cast them";
+        terms.add(term, light.shadows && blocked ? infinity : 0, &Terms::usual, [&] {
+            Variant variant = terms.changed();
+            variant.snapshot.lights[i].shadows = false;
+            return variant;
+        });
+    }
+}
+
+// Left out, or the same for all points: exp(-d) against 1 is off by less than e^d - 1 of what is right.
+void add_dimming(Terms& terms, double thickest) {
+    const std::pair<LightTransmittance, const char*> ways[] = {{LightTransmittance::off, "left out"},
+                                                               {LightTransmittance::average, "average"},
+                                                               {LightTransmittance::froxel, "froxels"},
+                                                               {LightTransmittance::grid, "grid"}};
+    if (terms.snapshot.lights.empty()) return;
+    for (const auto& [way, name] : ways) {
+        const double bound = way == LightTransmittance::off ? std::expm1(thickest) : infinity;
+        terms.add({"dimming of light on its way", "", name}, bound, &Terms::with_marched_light, [&, way = way] {
+            Variant variant = terms.changed();
+            variant.settings.march.light = way;
+            return variant;
+        });
+        if (!terms.terms.back().needed) return;
+    }
+}
+
+// Isotropic light against the least that fog scatters into any direction.
+double phase_bound(const Snapshot& snapshot) {
+    double most = 0;
+    for (const Medium& medium : snapshot.media) {
+        double least = infinity;
+        for (const double cosine : {-1.0, 0.0, 1.0})
+            least = std::min(least, phase_value_of<double>(medium.optics.phase, cosine));
+        most = std::max(most, 1 / (4 * std::numbers::pi * least) - 1);
+    }
+    return most > 1e-6 ? most : 0;
+}
+
+void add_switches(Terms& terms) {
+    const Snapshot& snapshot = terms.snapshot;
+    const auto any_medium = [&](auto&& says) { return std::ranges::any_of(snapshot.media, says); };
+    const auto without = [&](bool MarchSettings::*term) {
+        return [&terms, term] {
+            Variant variant = terms.changed();
+            variant.settings.march.*term = false;
+            return variant;
+        };
+    };
+    const bool bricks = any_medium([](const Medium& medium) { return medium.kind == DensityKind::bricks; });
+    terms.add({"changing density", "", "even fog"}, bricks ? infinity : 0, &Terms::usual,
+              without(&MarchSettings::heterogeneity));
+    terms.add({"direction of scattering", "", "isotropic"}, phase_bound(snapshot), &Terms::usual,
+              without(&MarchSettings::phase));
+    const bool glows = any_medium([](const Medium& medium) { return max_component(medium.optics.emission) > 0; });
+    terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&MarchSettings::emission));
+    const bool ambient = max_component(snapshot.ambient) > 0;
+    terms.add({"ambient light in fog", "", "left out"}, ambient ? infinity : 0, &Terms::usual,
+              without(&MarchSettings::ambient));
+}
+
+void add_surfaces(Terms& terms, double thickest) {
+    const Mode undimmed = undimmed_march();
+    terms.add({"fog before surfaces", "", "left out"}, std::expm1(thickest), &Terms::usual, [&] {
+        Variant variant = terms.changed();
+        variant.mode = &undimmed;
+        return variant;
+    });
+}
+}
+
+namespace {
+// The power that fog scatters again, over what it scatters once: as an error, since it is what the picture lacks.
+void add_orders(Terms& terms) {
+    const ScatteringRatio found = measured_ratio(terms.snapshot);
+    Term term{"light scattered again", "", "left out", found.ratio, found.high};
+    term.needed = term.bound > term_share * terms.error;
+    term.why = formatted("fog scatters %s of its light again (%s to %s)", percent_text(found.ratio).c_str(),
+                         percent_text(found.low).c_str(), percent_text(found.high).c_str());
+    const double bound = truncation_bound(terms.snapshot, 1);
+    if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent_text(bound).c_str());
+    if (terms.base.fluence.orders < 2) term.why += "; not asked for (--orders all)";
+    terms.terms.push_back(std::move(term));
+}
+}
+
+std::string percent_text(double share) {
+    return share < infinity ? formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share) : "any";
+}
+
+double thickest_line(const Snapshot& snapshot) {
+    double depth = 0;
+    for (const Medium& medium : snapshot.media) {
+        const vec3 size = medium.world_bounds.size();
+        depth += is_finite(size) ? medium.majorant() * glm::length(size) : infinity;
+    }
+    return depth;
+}
+
+std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Settings& settings, double error,
+                           const TermControl& control) {
+    if (snapshot.media.empty()) return {};
+    Terms terms{view, snapshot, careful(settings), error, control};
+    const double thickest = thickest_line(snapshot);
+    const auto done = [&](double share) {
+        if (control.progress) control.progress(share);
+    };
+    if (!snapshot.lights.empty()) add_orders(terms);
+    add_shadows(terms), done(0.3);
+    add_dimming(terms, thickest), done(0.7);
+    add_switches(terms), done(0.9);
+    add_surfaces(terms, thickest), done(1);
+    return std::move(terms.terms);
+}
+
+Settings without_needless(const std::vector<Term>& terms, Settings settings) {
+    MarchSettings& march = settings.march;
+    bool shadows = false, needless = false;
+    for (const Term& term : terms) {
+        if (term.name == "shadows") (term.needed ? shadows : needless) |= term.bound > 0;
+        if (term.name == "light scattered again" && !term.needed) settings.fluence.orders = 1;
+        if (term.needed || term.bound == 0) continue; // switching off what is not there changes nothing
+        if (term.name == "dimming of light on its way" && term.simpler == "left out")
+            march.light = LightTransmittance::off;
+        if (term.name == "dimming of light on its way" && term.simpler == "average")
+            march.light = LightTransmittance::average;
+        if (term.name == "changing density") march.heterogeneity = false;
+        if (term.name == "direction of scattering") march.phase = false;
+        if (term.name == "emission") march.emission = false;
+        if (term.name == "ambient light in fog") march.ambient = false;
+    }
+    if (needless && !shadows) march.visibility = Visibility::off;
+    return settings;
+}
+}

@@ -1,0 +1,222 @@
+// Modes that look back at the frames before: lights that move, dim and go out, cuts, a bad frame; and the voxels of
+// the view that hold this light.
+#include "measure/stress/trial.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/phase.h"
+
+#include "modes/fog_picture.h"
+#include "modes/history.h"
+#include "scene/light.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+constexpr std::string_view remembering = "froxel shadow-map cone";
+constexpr int long_enough = 8; // frames until a history has settled
+// The light of eight frames lies along a way nearly as long as the beam is wide: half of it elsewhere.
+const std::vector<Excuse> trail_of_froxels{{"leaves a trail", 0.5}};
+const std::vector<Excuse> blur_of_froxels{{"blurred by a third of a froxel", 0.1}};
+// The eye moves by 0.2 optical depths, and light within a froxel is one value: it may jump by that.
+const std::vector<Excuse> blurred{{"optical depths deep", 0.22}};
+const std::vector<Excuse> unseen{
+    {"shafts are as coarse as froxels"}, {"shadows are not seen"}, {"shadows of surfaces are not seen"}};
+
+Medium dust(float extinction = 0.3f) { return even_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f)); }
+const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
+
+std::vector<Mesh> roof() {
+    return {box_of({-9, 2, -9}, {-0.5f, 2.1f, 9}, -1), box_of({0.5f, 2, -9}, {9, 2.1f, 9}, -1)};
+}
+
+StressScene spot_and_sun(Light spot, Camera camera = camera_from({0, 0, 6}, vec3(0))) {
+    return stress_scene({dust()}, {slanting, spot}, camera, roof());
+}
+Light spot_at(float x) {
+    Light spot = spot_light({x, 1.8f, 0}, {0, -1, 0}, 20, 0.25f, 0.35f);
+    spot.radius = 0.05f;
+    return spot;
+}
+StressScene lit(double) { return spot_and_sun(spot_at(0.3f)); }
+
+// The same, of a file that has keys for the spot's place.
+StressScene lit_by_moving(double) {
+    StressScene scene = lit(0);
+    LightSource source;
+    source.name = scene.snapshot.lights[1].name;
+    source.position.times = {0, 1}, source.position.values = {vec3(-1, 1.8f, 0), vec3(1, 1.8f, 0)};
+    scene.scene->lights = {source};
+    return scene;
+}
+
+// Frame n of a shot: jitter moves on, surfaces stay those of `first`.
+Layers next_frame(Trial& trial, StressScene scene, const StressScene& first, int frame, History& history) {
+    scene.scene = first.scene, scene.snapshot.scene = first.scene.get();
+    scene.snapshot.occluders = first.snapshot.occluders;
+    scene.snapshot.frame = scene.view.frame = frame;
+    return trial.render(scene, &history);
+}
+
+void settle(Trial& trial, const StressScene& scene, History& history) {
+    for (int frame = 0; frame < long_enough; ++frame) next_frame(trial, scene, scene, frame, history);
+}
+
+// A light changes to `factor` of its intensity: the share of it that is missing or left so many frames later.
+double off_after(Trial& trial, float factor, int frames) {
+    History history;
+    settle(trial, trial.scene, history);
+    StressScene dimmed = trial.scene;
+    dimmed.snapshot.lights[1].intensity *= factor;
+    if (factor == 0) dimmed.snapshot.lights.pop_back();
+    Layers last;
+    for (int i = 0; i < frames; ++i) last = next_frame(trial, dimmed, trial.scene, long_enough + i, history);
+    StressScene dark = trial.scene;
+    dark.snapshot.lights.pop_back();
+    const double whole = mean_of(trial.render().inscatter) - mean_of(trial.render(dark).inscatter);
+    return std::abs(mean_of(last.inscatter) - mean_of(trial.render(dimmed).inscatter)) / whole;
+}
+double left_when_out(Trial& trial) { return off_after(trial, 0, static_cast<int>(trial.value)); }
+double left_when_dimmed(Trial& trial) { return off_after(trial, static_cast<float>(trial.value), 4); }
+
+// A spot that moves by so much a frame: how much worse with a history than without.
+double trail(Trial& trial) {
+    History history;
+    const float step = static_cast<float>(trial.value);
+    Layers last;
+    StressScene scene;
+    for (int i = 0; i < long_enough; ++i) {
+        scene = spot_and_sun(spot_at(-1 + step * static_cast<float>(i)));
+        last = next_frame(trial, scene, trial.scene, i, history);
+    }
+    const Layers truth = trial.truth_of_scene(scene);
+    return difference(last, truth) - difference(trial.render(scene), truth);
+}
+
+// A pillar close to the eye, which moves by so much a frame: what comes out from behind it must not lag.
+StressScene behind_pillar(float x) {
+    std::vector<Mesh> meshes = roof();
+    meshes.push_back(box_of({-0.2f, -3, 3.5f}, {0.2f, 2, 3.8f}, -1));
+    return stress_scene({dust()}, {slanting}, camera_from({x, 0, 6}, {x, 0, 0}), meshes);
+}
+// Of a file that has keys for the eye's place.
+StressScene pillar(double) {
+    StressScene scene = behind_pillar(-1);
+    CameraSource source;
+    source.name = scene.view.camera.name;
+    source.position.times = {0, 1}, source.position.values = {vec3(-1, 0, 6), vec3(1, 0, 6)};
+    scene.scene->cameras = {source};
+    return scene;
+}
+double uncovered(Trial& trial) {
+    History history;
+    Layers last;
+    StressScene scene;
+    for (int i = 0; i < long_enough; ++i) {
+        scene = behind_pillar(-1 + static_cast<float>(trial.value) * static_cast<float>(i));
+        last = next_frame(trial, scene, trial.scene, i, history);
+    }
+    const Layers truth = trial.truth_of_scene(scene);
+    return difference(last, truth) - difference(trial.render(scene), truth);
+}
+
+enum class Cut { camera, lens, size, scene };
+double after_cut(Trial& trial) {
+    History history;
+    settle(trial, trial.scene, history);
+    StressScene other = trial.scene;
+    switch (static_cast<Cut>(static_cast<int>(trial.value))) {
+    case Cut::camera:
+        other.view.camera = camera_from({5, 0.5f, 3}, vec3(0));
+        break;
+    case Cut::lens:
+        other.view.camera.vertical_fov = 0.4f;
+        break;
+    case Cut::size:
+        other.view.size = {32, 20};
+        break;
+    case Cut::scene:
+        other = spot_and_sun(spot_at(-1));
+        break;
+    }
+    other.snapshot.frame = other.view.frame = long_enough;
+    History none;
+    const Layers picture = trial.render(other, &history);
+    return difference(picture, trial.render(other, &none));
+}
+
+// A frame of fog that is no number: the next must show nothing of it.
+double after_bad_frame(Trial& trial) {
+    History history;
+    settle(trial, trial.scene, history);
+    const uint64_t before = trial.faults.non_finite;
+    StressScene bad = trial.scene;
+    bad.snapshot.media[0].optics.emission = vec3(static_cast<float>(trial.value));
+    next_frame(trial, bad, trial.scene, long_enough, history);
+    trial.faults.non_finite = before; // of the bad frame itself
+    const Layers next = next_frame(trial, trial.scene, trial.scene, long_enough + 1, history);
+    return difference(next, trial.truth());
+}
+
+double with_history(Trial& trial) {
+    History history;
+    settle(trial, trial.scene, history);
+    return difference(next_frame(trial, trial.scene, trial.scene, long_enough, history), trial.truth());
+}
+
+StressScene deep(double depth) {
+    const float d = static_cast<float>(depth);
+    return stress_scene({even_medium(1 / d, {vec3(-2 * d, -3, -d), vec3(2 * d, 3, 0)})}, {slanting},
+                        camera_from({0, 0, 1}, {0, 0, -1}));
+}
+
+StressScene near_wall(double distance) {
+    const float z = 3 - static_cast<float>(distance);
+    return stress_scene({dust()}, {sun_light({0.3f, -1, -0.5f}, 10)}, camera_from({0, 0, 3}, vec3(0)),
+                        {box_of({-30, -30, z - 1}, {30, 30, z}, -1)});
+}
+
+StressScene thick_around(double extinction) {
+    return stress_scene({dust(static_cast<float>(extinction))}, {slanting}, camera_from(vec3(0), {0, 0, -1}));
+}
+
+// The eye moves by a centimetre: change beyond that of the truth.
+double nudge(Trial& trial) {
+    StressScene moved = trial.scene;
+    moved.view.camera.position.z -= 0.01f;
+    const double before = mean_of(trial.render().inscatter), after = mean_of(trial.render(moved).inscatter);
+    const double was = mean_of(trial.truth().inscatter), is = mean_of(trial.truth_of_scene(moved).inscatter);
+    return std::abs(after / before - is / was);
+}
+}
+
+std::vector<StressCase> stress_history() {
+    constexpr std::string_view group = "froxels and history";
+    return {
+        StressCase("light-out", group, "a light goes out", "frames since", "", {4, 2, 1}, remembering, {}, lit,
+                   {0.02, "share of its light that is left", left_when_out}),
+        StressCase("light-dims", group, "a light is dimmed", "to", "", {0.98, 0.9, 0.7, 0.3}, remembering, {}, lit,
+                   {0.1, "share of it that is left or missing four frames later", left_when_dimmed}),
+        StressCase("moving-light", group, "a spot moves on", "way per frame", "m", {0.002, 0.005, 0.02, 0.1},
+                   remembering, trail_of_froxels, lit_by_moving,
+                   {0.05, "relative RMSE above that without a history", trail}),
+        StressCase("uncovered", group, "the eye moves past a pillar", "way per frame", "m",
+                   {0.001, 0.005, 0.02, 0.05, 0.2}, remembering, blur_of_froxels, pillar,
+                   {0.05, "relative RMSE above that without a history", uncovered}),
+        StressCase("cut", group, "cuts: camera, lens, picture size, scene", "cut", "", {0, 1, 2, 3}, remembering, {},
+                   lit, {0, "difference from a frame without history", after_cut}),
+        StressCase("bad-frame", group, "a frame of NaN or infinite light is forgotten", "light", "",
+                   {NAN, INFINITY, -INFINITY}, remembering, unseen, lit, {-1, to_truth, after_bad_frame}),
+        StressCase("still", group, "a still picture with a history", "frames", "", {8}, remembering, unseen, lit,
+                   {-1, to_truth, with_history}),
+        StressCase("deep-view", group, "fog goes on far into the picture", "depth", "m", {5, 50, 500, 5000},
+                   "march froxel shadow-map shadow-volume cone path", {}, deep),
+        StressCase("near-wall", group, "a wall comes near: no half slice is lost", "distance", "m", {4, 1, 0.2, 0.03},
+                   "march froxel shadow-map shadow-volume cone path", {}, near_wall,
+                   {0.03, to_truth, nullptr, 2e-3, "march froxel shadow-volume cone"}),
+        StressCase("nudge", group, "the eye moves a centimetre in thick fog", "extinction", "1/m", {0.1, 1, 5, 20},
+                   "march froxel shadow-map shadow-volume cone", blurred, thick_around,
+                   {0.01, "change of the mean beyond the truth's", nudge}),
+    };
+}
+}

@@ -1,0 +1,116 @@
+// How fog spreads light: lobes, signs, colours, layers.
+#include "measure/stress/trial.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
+
+namespace tyndall {
+namespace {
+constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
+constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
+
+const Box unit{vec3(-1), vec3(1)};
+const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
+
+// The middle of the picture looks by 3 degrees past the sun.
+StressScene towards_sun(double g) {
+    const Medium fog = even_medium(0.4f, unit, forward_phase(static_cast<float>(g)));
+    return stress_scene({fog}, {sun_light({0.05f, 0, 1}, 10)}, camera_from({0, 0, 4}, vec3(0)));
+}
+
+// A thin sheet, so that light and fog are the same seen along the sun's way and against it.
+StressScene narrow(double g, float z) {
+    const Medium fog = even_medium(0.01f, unit, forward_phase(static_cast<float>(g)));
+    StressScene scene = stress_scene({fog}, {sun_light({0, 0, 1}, 10)}, camera_from({0, 0, z}, vec3(0), 1e-3f));
+    scene.view.size = {8, 8};
+    return scene;
+}
+StressScene into_sun(double g) { return narrow(g, 4); }
+
+// Looking at the sun is ((1 + g) / (1 - g))^3 times as bright as looking away from it.
+double ratio_off(Trial& trial) {
+    const double g = trial.value;
+    const double into = mean_of(trial.render().inscatter), away = mean_of(trial.render(narrow(g, -4)).inscatter);
+    return std::abs(into / away / std::pow((1 + g) / (1 - g), 3) - 1);
+}
+
+StressScene kinds(double kind) {
+    constexpr Phase phases[] = {{PhaseKind::isotropic, 0},
+                                {PhaseKind::rayleigh, 0},
+                                {PhaseKind::schlick, 0.5f},
+                                {PhaseKind::schlick, -0.5f},
+                                {PhaseKind::henyey_greenstein, 1e-4f}};
+    return stress_scene({even_medium(0.4f, unit, phases[static_cast<int>(kind)])}, {noon},
+                        camera_from({0, 0, 4}, vec3(0)));
+}
+
+StressScene in_even_light(double depth) {
+    const Medium fog =
+        even_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0.8f));
+    StressScene scene = stress_scene({fog}, {}, flat_camera({0, 0, 5}, vec3(0), 2));
+    scene.snapshot.ambient = vec3(2);
+    return scene;
+}
+
+// Unshadowed: albedo · ambient · (1 - T).
+double even_light_off(Trial& trial) {
+    return std::abs(mean_of(trial.render().inscatter) / (0.8 * 2 * -std::expm1(-trial.value)) - 1);
+}
+
+StressScene dim_or_bright(double) {
+    return stress_scene({even_medium(0.4f, unit, forward_phase(0.3f))}, {noon}, camera_from({0, 0, 4}, vec3(0)));
+}
+
+// Light is linear: the picture of a sun of other strength, divided by it.
+double not_linear(Trial& trial) {
+    const float factor = static_cast<float>(trial.value);
+    StressScene other = trial.scene;
+    for (Light& light : other.snapshot.lights) light.intensity *= factor;
+    Layers layers = trial.render(other);
+    for (Image<vec3>* image : {&layers.color, &layers.inscatter})
+        for (vec3& pixel : image->pixels) pixel /= factor;
+    return difference(layers, trial.render());
+}
+
+StressScene two_colours(double) {
+    Light blue = spot_light({0, 1.5f, 0}, {0.2f, -1, 0}, 5, 0.4f, 0.6f);
+    blue.intensity = vec3(0.2f, 0.5f, 5), blue.radius = 0.05f;
+    return stress_scene({even_medium(0.4f, unit, forward_phase(0.5f), vec3(0.9f, 0.6f, 0.3f))}, {noon, blue},
+                        camera_from({0, 0, 4}, vec3(0)));
+}
+
+// The layers of the lights together are the fog's light.
+double sum_off(Trial& trial) {
+    const Layers layers = trial.render();
+    Layers sum = layers;
+    sum.color = sum.inscatter = Image<vec3>(layers.size, vec3(0));
+    for (const auto& [name, light] : layers.lights)
+        for (size_t i = 0; i < light.pixels.size(); ++i) sum.inscatter.pixels[i] += light.pixels[i];
+    sum.color = layers.color;
+    return difference(sum, layers);
+}
+}
+
+std::vector<StressCase> stress_scattering() {
+    constexpr std::string_view group = "scattering";
+    return {
+        StressCase("forward-lobe", group, "looking past the sun through a lobe that gets narrow", "g", "",
+                   {0, 0.5, 0.8, 0.95, 0.99}, all, {}, towards_sun, {0.05, "error of the mean", error_of_mean}),
+        StressCase("backward-lobe", group, "the same of fog that sends light back", "g", "", {-0.3, -0.8, -0.99}, all,
+                   {}, towards_sun),
+        StressCase("phase-sign", group, "fog of positive g is bright around the sun", "g", "", {0.2, 0.5, 0.8}, all, {},
+                   into_sun, {0.01, "error of bright to dark side, ((1+g)/(1-g))^3", ratio_off}),
+        StressCase("phase-kinds", group, "isotropic, Rayleigh, Schlick, hardly Henyey-Greenstein", "kind", "",
+                   {0, 1, 2, 3, 4}, all, {}, kinds),
+        StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8}, exact,
+                   {}, in_even_light, {0.005, "error of the mean against the closed form", even_light_off}),
+        StressCase("linear", group, "twice the light is twice the picture", "sun", "times", {2, 1e-6, 1e6, 1e12}, exact,
+                   {}, dim_or_bright, {1e-4, "relative RMSE of the picture by the light's strength", not_linear}),
+        StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0},
+                   "march froxel shadow-map shadow-volume cone billboard radial-blur path", {}, two_colours,
+                   {1e-5, "relative RMSE of the sum", sum_off}),
+    };
+}
+}

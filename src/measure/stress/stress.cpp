@@ -1,0 +1,158 @@
+// Runs the cases and judges them.
+#include "measure/stress/stress.h"
+
+#include "base/error.h"
+#include "measure/stress/trial.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
+
+#include <chrono>
+
+namespace tyndall {
+namespace {
+constexpr double small_error = 0.05; // below it a mode is not wrong
+constexpr double degraded_times = 3; // what is allowed, for a mode that says it is degraded
+
+std::vector<std::string_view> pieces(std::string_view text, char separator) {
+    std::vector<std::string_view> result;
+    while (!text.empty()) {
+        const size_t end = std::min(text.find(separator), text.size());
+        if (end > 0) result.push_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return result;
+}
+
+// Relative RMSE that counts as holding what a mode promises at preview.
+double promised(const Mode& mode) {
+    switch (mode.accuracy) {
+    case Accuracy::even_fog:
+    case Accuracy::multiple_scattering:
+        return 0.03;
+    default:
+        return 0.1;
+    }
+}
+
+bool names(std::string_view list, std::string_view name) { return std::ranges::count(pieces(list, ' '), name) > 0; }
+
+double allowed_to(const Mode* mode, const StressMeasure& measure) {
+    if (mode && names(measure.exact_modes, mode->name)) return measure.exact;
+    return measure.allowed >= 0 || !mode ? measure.allowed : promised(*mode);
+}
+
+// The largest error that a limit excuses; below 0: none.
+double excused_by(const Limit& limit, const StressCase& stress, double allowed) {
+    double most = -1;
+    for (const Excuse& excuse : stress.excuses) {
+        if (limit.severity == Severity::info || limit.why.find(excuse.phrase) == std::string::npos) continue;
+        if (limit.severity == Severity::wrong) return infinity;
+        most = std::max({most, degraded_times * allowed, excuse.up_to});
+    }
+    return most;
+}
+
+// What the mode says of the scene before it renders.
+void ask_limits(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
+    for (const Limit& limit : mode.limits(scene.view, scene.snapshot, scene.settings)) {
+        point.wrong |= limit.severity == Severity::wrong;
+        const double excused = excused_by(limit, stress, point.allowed);
+        if (excused <= point.excused_up_to) continue;
+        point.excused_up_to = excused;
+        point.warning = std::string(name_of(limit.severity)) + ": " + limit.where + ": " + limit.why;
+    }
+}
+
+StressPoint run_point(const StressCase& stress, const Mode* mode, double value, const StressScene& scene,
+                      std::optional<Truth>& truth, const StressControl& control) {
+    if (control.cancel && *control.cancel) fail(ExitCode::internal, "stress", "cancelled");
+    StressPoint point;
+    point.value = value;
+    point.allowed = allowed_to(mode, stress.measure);
+    Trial trial{mode, value, point.allowed, scene, truth, control.cancel};
+    if (mode) ask_limits(stress, *mode, scene, point);
+    point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
+    if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;
+    if (std::isnan(point.error)) point.error = infinity;
+    point.non_finite = trial.faults.non_finite, point.negative = trial.faults.negative;
+    if (truth) point.non_finite += truth->faults.non_finite, point.negative += truth->faults.negative;
+    return point;
+}
+}
+
+bool takes_part(const StressCase& stress, const Mode& mode) { return names(stress.modes, mode.name); }
+
+std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
+                                     const StressControl& control) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<const Mode*> taking;
+    for (const Mode& mode : modes)
+        if (takes_part(stress, mode)) taking.push_back(&mode);
+    if (stress.modes.empty()) taking.push_back(nullptr);
+
+    std::vector<StressResult> results;
+    for (const Mode* mode : taking) results.push_back({&stress, std::string(mode ? mode->name : "program"), {}, 0});
+    for (const double value : stress.values) {
+        if (taking.empty()) break;
+        const StressScene scene = stress.scene ? stress.scene(value) : StressScene{};
+        std::optional<Truth> truth;
+        for (size_t i = 0; i < taking.size(); ++i) {
+            const auto start = Clock::now();
+            results[i].points.push_back(run_point(stress, taking[i], value, scene, truth, control));
+            results[i].seconds += std::chrono::duration<double>(Clock::now() - start).count();
+        }
+    }
+    return results;
+}
+
+std::vector<StressResult> run_stress(std::span<const StressCase* const> cases, std::span<const Mode> modes,
+                                     const StressControl& control) {
+    std::vector<StressResult> results;
+    for (size_t i = 0; i < cases.size(); ++i) {
+        for (StressResult& result : run_stress(*cases[i], modes, control)) results.push_back(std::move(result));
+        if (control.progress) control.progress(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
+    }
+    return results;
+}
+
+const StressPoint* StressResult::first() const {
+    const auto silent = std::ranges::find_if(points, &StressPoint::silent);
+    if (silent != points.end()) return &*silent;
+    const auto off = std::ranges::find_if(points, [](const StressPoint& point) { return !point.holds(); });
+    return off != points.end() ? &*off : nullptr;
+}
+
+Verdict StressResult::verdict() const {
+    const StressPoint* point = first();
+    return !point ? Verdict::holds : point->silent() ? Verdict::fails : Verdict::degrades;
+}
+
+WrongWarnings wrong_warnings(std::span<const StressResult> results) {
+    WrongWarnings warnings;
+    for (const StressResult& result : results)
+        for (const StressPoint& point : result.points)
+            warnings.count += point.wrong, warnings.idle += point.wrong && point.measured < small_error;
+    return warnings;
+}
+
+std::string_view name_of(Verdict verdict) {
+    constexpr std::string_view names[] = {"holds", "degrades", "fails"};
+    return names[static_cast<size_t>(verdict)];
+}
+
+const std::vector<StressCase>& stress_cases() {
+    static const std::vector<StressCase> cases = [] {
+        std::vector<StressCase> all;
+        for (auto* group : {stress_lamps, stress_fog, stress_shadows, stress_history, stress_scattering, stress_orders,
+                            stress_files, stress_data, stress_looks, stress_program})
+            for (StressCase& stress : group()) all.push_back(std::move(stress));
+        return all;
+    }();
+    return cases;
+}
+}

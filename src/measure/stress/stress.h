@@ -1,0 +1,98 @@
+// The stability suite: the known ways in which fog techniques fail, as tiny scenes with one condition swept from mild
+// to hard, rendered by every mode that claims to handle it. A mode may hold, or say beforehand that it will not; what
+// it must not do is fail in silence.
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+struct Mode;
+struct StressScene;
+struct Trial; // both of measure/stress/trial.h
+
+// How an error is measured, and how large it may be.
+struct StressMeasure {
+    double allowed = -1; // below 0: what the mode promises at preview
+    std::string_view criterion = "relative RMSE of picture or fog light against the exact march";
+    double (*error)(Trial& trial) = nullptr; // null = by the criterion above
+    double exact = -1;                       // what is allowed to modes that are exact here
+    std::string_view exact_modes{};          // names between spaces
+};
+
+// A limit that may excuse an error. `wrong` excuses any. `degraded` says that the picture is coarse, not that it is
+// another one: it excuses three times what is allowed, or so much as what it says amounts to in the case.
+struct Excuse {
+    std::string_view phrase; // a part of the limit
+    double up_to = 0;
+};
+
+struct StressCase {
+    std::string_view id, group, title; // title: what is put to the test
+    std::string_view sweep, unit;      // the condition that is swept
+    std::vector<double> values;        // from mild to hard
+    std::string_view modes;            // names between spaces; empty = a part of the program that all modes share
+    std::vector<Excuse> excuses;       // empty: every mode has to hold throughout
+    StressScene (*scene)(double value) = nullptr;
+    StressMeasure measure{};
+};
+
+// All cases, group by group.
+const std::vector<StressCase>& stress_cases();
+
+// Whether the case is one for the mode.
+bool takes_part(const StressCase& stress, const Mode& mode);
+
+enum class Verdict { holds, degrades, fails };
+
+struct StressPoint {
+    double value = 0;
+    double error = 0, allowed = 0;
+    double measured = -1;                  // relative RMSE where the mode called itself wrong; else -1
+    bool wrong = false;                    // some limit says so
+    std::string warning;                   // the worst limit that may excuse the error, in words; empty = none
+    double excused_up_to = -1;             // the largest error that is excused; below 0 without such a limit
+    uint64_t non_finite = 0, negative = 0; // samples dropped and values that are no number; values below 0, or shares
+                                           // above 1; of the truth as well
+
+    bool said() const { return excused_up_to >= 0; }
+    bool clean() const { return non_finite == 0 && negative == 0; }
+    bool holds() const { return clean() && error <= allowed; }
+    bool silent() const { return !clean() || (!holds() && !(error <= excused_up_to)); }
+};
+
+// One mode in one case.
+struct StressResult {
+    const StressCase* stress = nullptr;
+    std::string mode; // "program" when all modes share what is tested
+    std::vector<StressPoint> points;
+    double seconds = 0;
+
+    Verdict verdict() const;
+    const StressPoint* first() const; // the point that decides the verdict; null when it holds
+};
+
+struct StressControl {
+    std::atomic<bool>* cancel = nullptr;
+    std::function<void(double)> progress; // 0..1
+};
+
+// Runs a case with those of the modes that it names; the program's own when there is one. Throws Error (internal) when
+// cancelled.
+std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
+                                     const StressControl& control);
+std::vector<StressResult> run_stress(std::span<const StressCase* const> cases, std::span<const Mode> modes,
+                                     const StressControl& control);
+
+// How often a mode called itself `wrong`, and how often its measured error was below 5 % then.
+struct WrongWarnings {
+    int count = 0, idle = 0;
+};
+WrongWarnings wrong_warnings(std::span<const StressResult> results);
+
+std::string_view name_of(Verdict verdict);
+}

@@ -1,0 +1,221 @@
+// Renders the tiny scenes of the stability suite, counts what is no light, and measures.
+#include "measure/stress/trial.h"
+
+#include "measure/metrics/halves.h"
+#include "measure/metrics/metrics.h"
+#include "modes/mode.h"
+#include "render/adaptive/candidates.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/occlusion/scene.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
+
+namespace tyndall {
+namespace {
+constexpr int most_samples = 1024; // per pixel, of a mode whose error is noise
+
+uint64_t negative_in(const Image<vec3>& image) {
+    return static_cast<uint64_t>(std::ranges::count_if(
+        image.pixels, [](vec3 value) { return std::min(value.x, std::min(value.y, value.z)) < 0; }));
+}
+
+// Values that no share of light can have.
+uint64_t no_share_in(const Image<float>& image) {
+    constexpr float rounding = 1e-5f;
+    return static_cast<uint64_t>(
+        std::ranges::count_if(image.pixels, [](float value) { return !(value >= 0 && value <= 1 + rounding); }));
+}
+
+uint64_t non_finite_in(const Image<vec3>& image) {
+    return static_cast<uint64_t>(std::ranges::count_if(image.pixels, [](vec3 value) { return !is_finite(value); }));
+}
+
+// Whether all that is wrong with a picture is noise, of which its variance tells: a march looks at soft lights by
+// chance, as paths do.
+bool is_noise(const Trial& trial) {
+    const Snapshot& snapshot = trial.scene.snapshot;
+    const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
+    return error_is_noise(*trial.mode) ||
+           (trial.mode->name == "march" && shadows && std::ranges::any_of(snapshot.lights, is_soft));
+}
+
+// Depths that are none; infinite ones are those of the background.
+uint64_t no_depth_in(const Image<float>& depth) {
+    return static_cast<uint64_t>(std::ranges::count_if(depth.pixels, [](float value) { return !(value >= 0); }));
+}
+
+void count_faults(const Layers& layers, const FrameStats& stats, Faults& faults) {
+    faults.non_finite += stats.non_finite + non_finite_in(layers.color) + non_finite_in(layers.inscatter);
+    faults.negative += negative_in(layers.color) + negative_in(layers.inscatter) + no_share_in(layers.alpha) +
+                       no_share_in(layers.transmittance) + no_share_in(layers.validity) + no_depth_in(layers.depth);
+    for (const auto& [name, light] : layers.lights)
+        faults.non_finite += non_finite_in(light), faults.negative += negative_in(light);
+}
+
+// Squared bias that two independent pictures show, and two standard errors of it; both in squares of the truth's mean.
+struct Bias {
+    double squared = 0, doubt = 0;
+};
+Bias bias_of(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth) {
+    const Estimate squared = product_of_errors(a, b, truth, truth);
+    const double unit = mean_of(truth) * mean_of(truth);
+    return {relative(squared.value, unit), relative(2 * squared.standard_error, unit)};
+}
+
+// The bias that is beyond doubt, from enough samples that one as large as is allowed would be. Where even the most
+// samples are too few, the largest that there may be.
+double bias_to_truth(Trial& trial) {
+    const Layers& truth = trial.truth();
+    StressScene again = trial.scene;
+    again.view.seed += 1;
+    const double allowed = trial.allowed * trial.allowed;
+    for (;; trial.noisy_samples *= 2) {
+        const Layers a = trial.render(), b = trial.render(again);
+        const Bias both[] = {bias_of(a.color, b.color, truth.color),
+                             bias_of(a.inscatter, b.inscatter, truth.inscatter)};
+        double least = 0, most = 0, doubt = 0;
+        for (const Bias& bias : both) {
+            least = std::max(least, bias.squared - bias.doubt), doubt = std::max(doubt, bias.doubt);
+            most = std::max(most, std::max(bias.squared, 0.0) + bias.doubt);
+        }
+        if (doubt <= allowed || least > allowed) return std::sqrt(least);
+        if (trial.noisy_samples >= most_samples) return std::sqrt(most);
+        // The doubt about the product of two errors that are noise falls with the samples.
+        while (2 * trial.noisy_samples < most_samples && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
+    }
+}
+
+// The same of the mean of the fog's light.
+double bias_of_mean(Trial& trial) {
+    constexpr int pictures = 8;
+    const double truth = mean_of(trial.truth().inscatter);
+    for (;; trial.noisy_samples *= 4) {
+        double mean = 0, squares = 0;
+        StressScene scene = trial.scene;
+        for (int i = 0; i < pictures; ++i, ++scene.view.seed) {
+            const double off = mean_of(trial.render(scene).inscatter) / truth - 1;
+            mean += off / pictures, squares += off * off;
+        }
+        const double variance = std::max(0.0, squares / pictures - mean * mean);
+        const double doubt = 2 * std::sqrt(variance / (pictures - 1));
+        const double least = std::abs(mean) - doubt;
+        if (doubt <= 0.5 * trial.allowed || least > trial.allowed) return std::max(0.0, least);
+        if (trial.noisy_samples >= most_samples) return std::abs(mean) + doubt;
+    }
+}
+}
+
+Layers Trial::render(const StressScene& what, History* history) {
+    View view = what.view;
+    view.per_light = true;
+    if (is_noise(*this)) view.pixel_samples = noisy_samples;
+    FrameOptions options;
+    options.cancel = cancel, options.history = history;
+    FrameStats stats;
+    Layers layers = render_frame(*mode, view, what.snapshot, what.settings, options, stats);
+    count_faults(layers, stats, faults);
+    return layers;
+}
+
+Layers Trial::truth_of_scene(const StressScene& what) {
+    Settings settings = truth_of(what.settings);
+    View view = what.view;
+    if (std::ranges::any_of(what.snapshot.lights, is_soft)) settings.march.light_points = 16, view.pixel_samples = 8;
+    FrameOptions options;
+    options.cancel = cancel;
+    FrameStats stats;
+    Layers layers = render_frame(find_mode("march"), view, what.snapshot, settings, options, stats);
+    count_faults(layers, stats, faults);
+    return layers;
+}
+
+const Layers& Trial::truth() {
+    if (!known_truth) {
+        const Faults own = std::exchange(faults, {});
+        Layers layers = truth_of_scene(scene);
+        known_truth = {std::move(layers), std::exchange(faults, own)};
+    }
+    return known_truth->layers;
+}
+
+double mean_of(const Image<vec3>& image) {
+    double sum = 0;
+    for (const vec3 value : image.pixels) sum += (double(value.x) + value.y + value.z) / 3;
+    return sum / static_cast<double>(image.pixels.size());
+}
+
+double most_of(const Image<vec3>& image) {
+    float most = 0;
+    for (const vec3 value : image.pixels) most = std::max(most, max_component(glm::abs(value)));
+    return most;
+}
+
+double difference(const Image<vec3>& test, const Image<vec3>& reference) {
+    const Errors errors = measure_errors(test, reference);
+    return relative(errors.rmse, errors.mean_reference);
+}
+
+double difference(const Layers& test, const Layers& reference) {
+    return std::max(difference(test.color, reference.color), difference(test.inscatter, reference.inscatter));
+}
+
+double error_to_truth(Trial& trial) {
+    return is_noise(trial) ? bias_to_truth(trial) : difference(trial.render(), trial.truth());
+}
+
+double error_of_mean(Trial& trial) {
+    if (is_noise(trial)) return bias_of_mean(trial);
+    return std::abs(mean_of(trial.render().inscatter) / mean_of(trial.truth().inscatter) - 1);
+}
+
+double leak(Trial& trial) {
+    StressScene open = trial.scene;
+    open.snapshot.occluders = nullptr, open.snapshot.scene = nullptr;
+    return mean_of(trial.render().inscatter) / mean_of(trial.render(open).inscatter);
+}
+
+Light spot_light(vec3 position, vec3 direction, float candela, float inner, float outer) {
+    Light light = point_light(position, candela);
+    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
+    light.inner_cone = inner, light.outer_cone = outer;
+    return light;
+}
+
+Camera camera_from(vec3 position, vec3 target, float vertical_fov) {
+    return look_at(position, target, vec3(0, 1, 0), vertical_fov);
+}
+
+Camera flat_camera(vec3 position, vec3 target, float height) {
+    Camera camera = look_at(position, target, vec3(0, 1, 0), 0.7f);
+    camera.ortho_height = height;
+    return camera;
+}
+
+StressScene stress_scene(std::vector<Medium> media, std::vector<Light> lights, Camera camera, std::vector<Mesh> meshes,
+                         std::vector<Material> materials) {
+    StressScene result;
+    result.settings.path.orders = 1, result.settings.froxel.tile = 1;
+    result.view.camera = camera, result.view.size = stress_size;
+    result.view.pixel_samples = 1, result.view.filter = PixelFilter::center;
+    result.view.jitter = result.settings.pixel.jitter;
+    result.scene = std::make_shared<Scene>();
+    result.scene->materials = std::move(materials);
+    for (Mesh& mesh : meshes) {
+        result.scene->meshes.push_back(std::move(mesh));
+        result.scene->instances.push_back({-1, static_cast<int>(result.scene->meshes.size()) - 1});
+    }
+    Box bounds;
+    for (const Medium& medium : media)
+        if (is_finite(medium.world_bounds.size())) bounds.grow(medium.world_bounds);
+    for (const Light& light : lights)
+        if (light.kind != LightKind::sun) bounds.grow(light.position);
+    result.snapshot = snapshot_of(std::move(media), std::move(lights));
+    if (!bounds.empty()) result.snapshot.bounds = bounds;
+    result.snapshot.scene = result.scene.get();
+    if (!result.scene->meshes.empty()) add_surfaces(*result.scene, result.snapshot);
+    return result;
+}
+}

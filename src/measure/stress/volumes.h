@@ -1,0 +1,15 @@
+// Small grids that cases are made of. Internal to stress.
+#pragma once
+#include "measure/stress/trial.h"
+#include "scene/light.h"
+
+namespace tyndall {
+// Of fog in the unit box, in the sun.
+StressScene looking_at(Medium medium);
+
+float blob(vec3 p);
+float roughness(vec3 p);
+
+constexpr std::string_view seen_modes = "march froxel shadow-map shadow-volume"; // that sample a grid, without noise
+inline const Light noon_light = sun_light({0.3f, -1, -0.2f}, 10);
+}

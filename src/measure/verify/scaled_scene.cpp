@@ -1,0 +1,40 @@
+// Lengths, and what is measured per length, multiplied throughout a scene.
+#include "measure/verify/scaled_scene.h"
+
+namespace tyndall {
+namespace {
+template<class T> void scale(Keyed<T>& keyed, float factor) {
+    for (T& value : keyed.values) value *= factor;
+}
+
+void scale_light(LightSource& light, float factor) {
+    scale(light.position, factor), scale(light.radius, factor);
+    light.range *= factor;
+    if (light.kind != LightKind::sun) scale(light.intensity, factor * factor);
+}
+
+void scale_medium(MediumSource& medium, float factor) {
+    scale(medium.translation, factor), scale(medium.scale, factor);
+    scale(medium.height_base, factor), scale(medium.height_falloff, factor);
+    scale(medium.extinction, 1 / factor), scale(medium.emission, 1 / factor);
+}
+}
+
+Scene scaled(Scene scene, float factor) {
+    for (Node& node : scene.nodes) {
+        scale(node.translation, factor);
+        if (node.matrix) (*node.matrix)[3] *= vec4(vec3(factor), 1);
+    }
+    for (Mesh& mesh : scene.meshes)
+        for (vec3& position : mesh.positions) position *= factor;
+    for (CameraSource& camera : scene.cameras) {
+        scale(camera.position, factor), scale(camera.target, factor);
+        camera.near *= factor, camera.far *= factor, camera.ortho_height *= factor;
+    }
+    for (LightSource& light : scene.lights) scale_light(light, factor);
+    for (MediumSource& medium : scene.media) scale_medium(medium, factor);
+    for (Billboard& card : scene.billboards)
+        card.from *= factor, card.to *= factor, card.width_from *= factor, card.width_to *= factor;
+    return scene;
+}
+}

@@ -1,0 +1,134 @@
+// Rays that meet one beam card: where, and how much of the card is seen there (see base/simd/simd.h for how such files
+// are compiled).
+#if defined(TYNDALL_MODES_BILLBOARD_CARD_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_BILLBOARD_CARD_SIMD_H
+#undef TYNDALL_MODES_BILLBOARD_CARD_SIMD_H
+#else
+#define TYNDALL_MODES_BILLBOARD_CARD_SIMD_H
+#endif
+
+#include "base/simd/simd.h"
+#include "modes/billboard/billboard.h"
+#include "volume/medium_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+struct Packet {
+    Vec3s origin, direction;
+    Floats t_max, before; // length, and the way from the eye to the origin
+};
+
+// Where rays meet a card: along the beam 0..1 and in metres, across it -1..1.
+struct OnCard {
+    Mask16 met;
+    Floats t, share, along, across, half;
+    Vec3s point;
+};
+
+HWY_INLINE Floats smooth(float low, float high, const Floats& x) {
+    const Floats s = max(min((x - low) * (1 / std::max(high - low, 1e-6f)), 1.0f), 0.0f);
+    return s * s * (3.0f - 2.0f * s);
+}
+
+// Random numbers 0..1 of lattice points.
+HWY_INLINE Floats random16(const Ints& x, const Ints& y, int32_t seed) {
+    Ints h = x * 374761393 + y * 668265263 + static_cast<int32_t>(static_cast<uint32_t>(seed) * 69069u);
+    h = (h ^ shift_right<13>(h)) * 1274126177;
+    h = h ^ shift_right<16>(h);
+    return to_floats(h & 0xffff) * (1.0f / 65535);
+}
+
+// Value noise 0..1 in two dimensions.
+HWY_INLINE Floats value_noise(const Floats& x, const Floats& y, int32_t seed) {
+    const Floats fx = floor(x), fy = floor(y);
+    const Ints i = truncate(fx), j = truncate(fy);
+    const Floats u = x - fx, v = y - fy;
+    const Floats su = u * u * (3.0f - 2.0f * u), sv = v * v * (3.0f - 2.0f * v);
+    const Floats low = mixed(random16(i, j, seed), random16(i + 1, j, seed), su);
+    const Floats high = mixed(random16(i, j + 1, seed), random16(i + 1, j + 1, seed), su);
+    return mixed(low, high, sv);
+}
+
+// Where rays meet the plane of a card, and which of them do within it.
+HWY_INLINE OnCard meet(const Packet& packet, const CardQuad& quad) {
+    OnCard on;
+    const Floats slope = dot(packet.direction, splat(quad.normal));
+    const Mask16 level = abs(slope) < 1e-6f;
+    on.t = dot(splat(quad.start) - packet.origin, splat(quad.normal)) / select(level, 1.0f, slope);
+    on.point = fused(packet.direction, on.t, packet.origin);
+    const Vec3s off = on.point - splat(quad.start);
+    on.along = dot(off, splat(quad.along)), on.share = on.along * (1 / quad.length);
+    on.half = max(fused(on.share, quad.half_to - quad.half_from, quad.half_from), 1e-5f);
+    on.across = dot(off, splat(quad.side)) / on.half;
+    on.met = (!level) & (on.t > 0.0f) & (on.t < packet.t_max) & (on.share > 0.0f) & (on.share < 1.0f) &
+             (abs(on.across) < 1.0f);
+    return on;
+}
+
+// Random stripes along the beam, coarse and fine, that change slowly on their way: 0..1.
+HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, const OnCard& on) {
+    const BillboardSettings& s = billboards.settings;
+    const int32_t seed = static_cast<int32_t>(quad.seed * 1000);
+    const Floats moved = (on.along - s.scroll * billboards.seconds) * 0.7f;
+    // Narrow cards have fewer stripes: none thinner than on a card 40 cm wide.
+    const float stripes = s.stripes * std::clamp(std::max(quad.half_from, quad.half_to) * (1 / 0.2f), 0.15f, 1.0f);
+    const Floats x = fused(on.across, 0.5f * stripes, quad.seed);
+    const Floats coarse = value_noise(x * 0.37f, moved * 0.5f, seed), fine = value_noise(x, moved, seed + 1);
+    const Floats both = min(coarse * 0.6f + fine * 0.4f, 1.0f);
+    const Floats light = smooth(0.2f, 0.8f, both);
+    return fused(light - 1.0f, s.streaks, 1.0f);
+}
+
+// Dust: round dots in some cells of a grid that drifts along and across the beam, never smaller than a pixel.
+HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+    constexpr float cell = 0.11f, radius = 0.004f, populated = 0.35f; // metres, metres, share of cells
+    const float time = billboards.seconds;
+    const int32_t seed = static_cast<int32_t>(quad.seed * 1000) + 7;
+    const Floats x = (on.across * on.half + 0.02f * std::sin(0.7f * time + quad.seed)) * (1 / cell);
+    const Floats y = (on.along - 2 * billboards.settings.scroll * time) * (1 / cell);
+    const Floats fx = floor(x), fy = floor(y);
+    const Ints i = truncate(fx), j = truncate(fy);
+    const Floats dx = (x - fx) - mixed(0.3f, 0.7f, random16(i, j, seed));
+    const Floats dy = (y - fy) - mixed(0.3f, 0.7f, random16(i, j, seed + 1));
+    const Floats pixel = (on.t + packet.before) * (0.9f * billboards.pixel);
+    const Floats size = min(max(pixel, radius) * (1 / cell), 0.3f);
+    const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // of dots held at a pixel's size
+    const Floats off = fused(dx, dx, dy * dy) / (size * size);
+    const Floats chance = random16(i, j, seed + 2);
+    const Floats bright = zero_unless(chance < populated, chance * (1 / populated));
+    return bright * dim * max(1.0f - off, 0.0f);
+}
+
+// Share of the card's brightness that its soft borders, surfaces close behind and fades leave.
+HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+    const BillboardSettings& s = billboards.settings;
+    const Floats away = on.t + packet.before;
+    Floats share = 1.0f - smooth(1 - s.soft, 1, abs(on.across));
+    share = share * smooth(0, 0.06f, on.share) * (1.0f - smooth(0.8f, 1, on.share));
+    if (s.soft_depth > 0) share = share * smooth(0, s.soft_depth, packet.t_max - on.t);
+    if (s.near_fade > 0) share = share * smooth(0.25f * s.near_fade, s.near_fade, away);
+    share = share * (1.0f - smooth(0.5f * s.far_fade, s.far_fade, away));
+    const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
+    // Of two crossed cards sin² + cos² is seen, whatever side they are seen from.
+    share = share * (quad.crossed ? facing : smooth(0, 0.75f, facing));
+    if (billboards.style.range < 1e6f)
+        share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
+    return share;
+}
+
+// How far a ray runs inside the beam: the chord of its elliptic cross-section, longer on a slant.
+HWY_INLINE Floats chord(const CardQuad& quad, const OnCard& on, const Packet& packet) {
+    const Floats cosine = dot(packet.direction, splat(quad.axis));
+    const Floats sine = sqrt(max(1.0f - cosine * cosine, 1e-4f));
+    const Floats a = fused(on.share, quad.width_to.x - quad.width_from.x, quad.width_from.x);
+    const Floats b = fused(on.share, quad.width_to.y - quad.width_from.y, quad.width_from.y);
+    const Floats x = dot(packet.direction, splat(quad.across[0])) / max(a, 1e-6f);
+    const Floats y = dot(packet.direction, splat(quad.across[1])) / max(b, 1e-6f);
+    const Floats middle = 2.0f / max(sqrt(fused(x, x, y * y)), 1e-6f);
+    return min(middle, quad.length + 4.0f * on.half / sine);
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

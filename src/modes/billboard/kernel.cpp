@@ -1,0 +1,185 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/billboard/kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/billboard/billboard.h"
+
+#include "base/simd/simd.h"
+#include "integrate/batch_simd.h"
+#include "modes/billboard/card_simd.h"
+#include "modes/billboard/reach_simd.h"
+#include "trace/transmittance/light_depth_simd.h"
+#include "volume/medium_simd.h"
+#include "volume/phase_simd.h"
+
+#include <array>
+#include <bit>
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
+    alignas(64) float v[8][16];
+    for (size_t lane = 0; lane < 16; ++lane) {
+        const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
+        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
+        v[6][lane] = lane < batch.rays.size() ? ray.t_max : 0;
+        v[7][lane] = glm::dot(ray.origin - billboards.camera.position, ray.direction);
+    }
+    return {
+        {load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}, load(v[6]), max(load(v[7]), 0.0f)};
+}
+
+// Radiance per unit of the light's intensity, by an even beam in even fog: J (1 - e^-σc).
+Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+    const Light& light = billboards.snapshot.lights[quad.light];
+    const bool sun = light.kind == LightKind::sun;
+    const LightPaths to_light = light_paths(light, on.point), to_eye{packet.origin, packet.direction, on.t};
+    Floats extinction = 0.0f, depth = 0.0f;
+    Vec3s scattered = splat(vec3(0));
+    const Floats cosine = dot(to_light.direction, packet.direction);
+    for (const Medium& medium : billboards.snapshot.media) {
+        const Floats here = density16(medium, on.point) * medium.optics.extinction;
+        extinction = extinction + here;
+        scattered = fused(splat(medium.optics.albedo), here * phase_value(medium.optics.phase, cosine), scattered);
+        depth = depth + analytic_depth16(medium, to_light) * billboards.style.light_depth;
+        if (billboards.settings.fog) depth = depth + analytic_depth16(medium, to_eye) * billboards.style.view_depth;
+    }
+    Floats arriving = 1.0f;
+    if (!sun) {
+        // Close to the light cards stay as bright as 15 cm away from it.
+        const float reach = std::max(light.radius, 0.15f);
+        const Vec3s towards = splat(light.position) - on.point;
+        const Floats square = dot(towards, towards);
+        arriving = 1.0f / max(square, reach * reach);
+        if (!std::isinf(light.range)) {
+            const Floats share = square * (1 / (light.range * light.range));
+            arriving = arriving * max(1.0f - share * share, 0.0f);
+        }
+    }
+    const Floats length = chord(quad, on, packet);
+    return scattered * (arriving * exp(-depth) * length * mean_transmittance(extinction * length));
+}
+
+// Light of a sun in the open, per unit of its intensity: single scattering of even fog without shadows, in three
+// pieces of the way through fog, the nearest the shortest.
+Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet& packet) {
+    const StyleSettings& style = billboards.style;
+    Floats low = infinity, high = 0.0f;
+    for (const Medium& medium : billboards.snapshot.media) {
+        const Ranges in = inside_box(medium, {packet.origin, packet.direction, packet.t_max});
+        const Mask16 there = in.high > in.low;
+        low = select(there, min(low, in.low), low), high = select(there, max(high, in.high), high);
+    }
+    const Mask16 foggy = high > low;
+    if (!any(foggy)) return splat(vec3(0));
+    low = zero_unless(foggy, low), high = zero_unless(foggy, high);
+    const Floats cosine = -dot(packet.direction, splat(light.direction));
+    Vec3s sum = splat(vec3(0));
+    Floats depth = 0.0f, from = low;
+    for (const float share : {1.0f / 9, 4.0f / 9, 1.0f}) {
+        const Floats to = fused(high - low, share, low), middle = 0.5f * (from + to);
+        const LightPaths piece{fused(packet.direction, from, packet.origin), packet.direction, to - from};
+        const LightPaths to_sun = light_paths(light, fused(packet.direction, middle, packet.origin));
+        Vec3s scattered = splat(vec3(0));
+        Floats change = 0.0f, light_depth = 0.0f;
+        for (const Medium& medium : billboards.snapshot.media) {
+            const Floats part = analytic_depth16(medium, piece);
+            scattered = fused(splat(medium.optics.albedo), part * phase_value(medium.optics.phase, cosine), scattered);
+            change = change + part, light_depth = light_depth + analytic_depth16(medium, to_sun);
+        }
+        const float dimmed = billboards.settings.fog ? style.view_depth : 0;
+        Floats arriving =
+            exp(-(depth * dimmed + light_depth * style.light_depth)) * mean_transmittance(change * dimmed);
+        if (style.range < 1e6f)
+            arriving =
+                arriving * max(min((style.range - middle - packet.before) * (1 / (0.2f * style.range)), 1.0f), 0.0f);
+        sum = sum + scattered * zero_unless(foggy, arriving);
+        depth = depth + change, from = to;
+    }
+    return sum;
+}
+
+using Sixteen = std::array<float, 16>;
+
+// What a thread sums for one light, and keeps from packet to packet: plain floats, of 16 rays side by side.
+struct LightSum {
+    Sixteen cards[3]{}, brightest{};
+};
+
+HWY_INLINE Vec3s loaded(const Sixteen (&from)[3]) {
+    return {load(from[0].data()), load(from[1].data()), load(from[2].data())};
+}
+
+// Adds what rays see of a card to its light's sum; returns how much of the card they see.
+HWY_INLINE Floats draw(const Billboards& billboards, const CardQuad& quad, const Packet& packet, LightSum& sum) {
+    const OnCard on = meet(packet, quad);
+    if (!any(on.met)) return 0.0f;
+    const Floats share = zero_unless(on.met, mask(billboards, quad, on, packet)) * quad.share;
+    if (!any(share > 0.0f)) return 0.0f;
+    Floats texture = streaks(billboards, quad, on);
+    if (billboards.settings.specks > 0)
+        texture = fused(specks(billboards, quad, on, packet), 6 * billboards.settings.specks, texture);
+    const Vec3s light = beam_light(billboards, quad, on, packet) * splat(quad.tint);
+    const Floats brightest = zero_unless(on.met, max(max(light.x, light.y), light.z));
+    const Vec3s total = loaded(sum.cards) + light * zero_unless(on.met, share * texture);
+    store(total.x, sum.cards[0].data()), store(total.y, sum.cards[1].data()), store(total.z, sum.cards[2].data());
+    store(max(load(sum.brightest.data()), brightest), sum.brightest.data());
+    return share;
+}
+
+// All that one light gives, per unit of its intensity. However many cards lie over each other, it is at most twice as
+// bright as its brightest beam.
+HWY_INLINE Vec3s whole_light(const Billboards& billboards, size_t index, const LightSum& sum, const Packet& packet) {
+    const Vec3s cards = loaded(sum.cards);
+    const Floats bound = load(sum.brightest.data()) * (2 * std::max(billboards.settings.brightness, 1.0f));
+    const Floats brightness = max(max(cards.x, cards.y), cards.z);
+    const Vec3s bounded = cards * select(brightness > bound, bound / max(brightness, 1e-30f), 1.0f);
+    const float veil = billboards.veils[index];
+    if (!(veil > 0)) return bounded;
+    return bounded + veil_light(billboards, billboards.snapshot.lights[index], packet) * veil;
+}
+
+void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local std::vector<LightSum> sums;
+    const Snapshot& snapshot = billboards.snapshot;
+    const size_t lights = snapshot.lights.size();
+    sums.assign(lights, {});
+    const Packet packet = make_packet(billboards, batch);
+    const Spread spread = spread_of(packet, billboards.camera);
+    Floats drawn = 0.0f;
+    for (size_t group = 0; group < billboards.groups.size(); ++group)
+        for (uint32_t bits = within_reach(billboards.groups[group], spread); bits; bits &= bits - 1) {
+            const CardQuad& quad = billboards.quads[16 * group + static_cast<size_t>(std::countr_zero(bits))];
+            drawn = max(drawn, draw(billboards, quad, packet, sums[static_cast<size_t>(quad.light)]));
+        }
+
+    Vec3s radiance = splat(vec3(0));
+    for (size_t l = 0; l < lights; ++l) {
+        const Light& light = snapshot.lights[l];
+        const Vec3s part = whole_light(billboards, l, sums[l], packet) * splat(light.intensity * light.volume_scale);
+        radiance = radiance + part;
+        add_per_light(part, l, lights, batch);
+    }
+    Floats depth = 0.0f;
+    if (billboards.settings.fog)
+        for (const Medium& medium : snapshot.media)
+            depth = depth + analytic_depth16(medium, {packet.origin, packet.direction, packet.t_max});
+    alignas(64) float v[5][16];
+    store(radiance.x, v[0]), store(radiance.y, v[1]), store(radiance.z, v[2]);
+    store(exp(-depth), v[3]), store(select(drawn > 0.0f, 0.0f, 0.5f), v[4]);
+    for (size_t lane = 0; lane < batch.rays.size(); ++lane)
+        results[lane] = {vec3(v[0][lane], v[1][lane], v[2][lane]), v[3][lane], v[4][lane], 0, vec3(0)};
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(billboard_packet_kernel);
+void billboard_packet(const Billboards& billboards, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(billboard_packet_kernel)(billboards, batch, results);
+}
+}
+#endif

@@ -1,0 +1,111 @@
+// What a light sees.
+#include "modes/billboard/search.h"
+
+#include "base/parallel.h"
+#include "trace/occlusion/scene.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+vec3 octahedral_direction(float x, float y) {
+    vec3 d(x, y, 1 - std::abs(x) - std::abs(y));
+    if (d.z < 0) {
+        const float fx = (1 - std::abs(y)) * std::copysign(1.0f, x), fy = (1 - std::abs(x)) * std::copysign(1.0f, y);
+        d.x = fx, d.y = fy;
+    }
+    return glm::normalize(d);
+}
+
+Box shown(const Snapshot& snapshot) {
+    Box box = snapshot.occluders && !snapshot.occluders->empty() ? snapshot.occluders->bounds() : snapshot.bounds;
+    Box fog;
+    for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
+    if (!fog.empty()) box.low = glm::max(box.low, fog.low), box.high = glm::min(box.high, fog.high);
+    return box.empty() ? snapshot.bounds : box;
+}
+}
+
+Ray LightView::ray(int cell) const {
+    const float x = (static_cast<float>(cell % n) + 0.5f) / static_cast<float>(n);
+    const float y = (static_cast<float>(cell / n) + 0.5f) / static_cast<float>(n);
+    if (light->kind == LightKind::sun) return {corner + x * right + y * up, light->direction, reach};
+    if (light->kind == LightKind::point) return {light->position, octahedral_direction(2 * x - 1, 2 * y - 1), reach};
+    const vec3 direction = light->direction + (2 * x - 1) * right + (2 * y - 1) * up;
+    return {light->position, glm::normalize(direction), reach};
+}
+
+vec3 LightView::place(int cell) const {
+    const Ray at = ray(cell);
+    return light->kind == LightKind::sun ? at.origin : at.direction;
+}
+
+float LightView::cell_size() const {
+    if (light->kind == LightKind::point) return std::sqrt(4 * pi) / static_cast<float>(n);
+    const float side = std::sqrt(glm::length(right) * glm::length(up));
+    return (light->kind == LightKind::sun ? side : 2 * side) / static_cast<float>(n);
+}
+
+int LightView::neighbour(int cell, int dx, int dy) const {
+    int x = cell % n + dx, y = cell / n + dy;
+    const bool beside = x < 0 || x >= n, above = y < 0 || y >= n;
+    if (!beside && !above) return y * n + x;
+    if (light->kind != LightKind::point || (beside && above)) return -1;
+    // The octahedron's borders fold onto themselves.
+    if (beside) x = std::clamp(x, 0, n - 1), y = n - 1 - y;
+    if (above) y = std::clamp(y, 0, n - 1), x = n - 1 - x;
+    return y * n + x;
+}
+
+LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level) {
+    LightView view{&light, n};
+    const Box box = shown(snapshot);
+    view.reach = 2 * glm::length(snapshot.bounds.size()) + 1;
+    vec3 u, v;
+    make_frame(light.direction, u, v);
+    if (level && std::abs(light.direction.y) < 0.99f) {
+        u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // rows of the grid follow the ground
+        v = glm::cross(light.direction, u);
+    }
+    if (light.kind == LightKind::spot) {
+        const float half = std::tan(std::min(light.outer_cone, 1.4f));
+        view.right = half * u, view.up = half * v;
+    } else if (light.kind == LightKind::sun) {
+        Box flat; // the box in the light's frame
+        for (int corner = 0; corner < 8; ++corner) {
+            const vec3 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                         corner & 4 ? box.high.z : box.low.z);
+            flat.grow(vec3(glm::dot(p, u), glm::dot(p, v), glm::dot(p, light.direction)));
+        }
+        const float behind = flat.low.z - 0.5f * glm::length(snapshot.bounds.size());
+        view.corner = flat.low.x * u + flat.low.y * v + behind * light.direction;
+        view.right = (flat.high.x - flat.low.x) * u, view.up = (flat.high.y - flat.low.y) * v;
+    }
+    return view;
+}
+
+std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
+    std::vector<Cell> cells(static_cast<size_t>(view.n) * view.n);
+    const int packets = static_cast<int>((cells.size() + 15) / 16);
+    parallel_for(packets, [&](int64_t packet) {
+        Ray rays[16];
+        Hits hits;
+        const int first = static_cast<int>(packet) * 16;
+        const int count = std::min(16, static_cast<int>(cells.size()) - first);
+        for (int i = 0; i < count; ++i) rays[i] = view.ray(first + i);
+        if (snapshot.occluders) snapshot.occluders->closest({rays, size_t(count)}, 0, hits);
+        for (int i = 0; i < count; ++i) {
+            Cell& cell = cells[first + i];
+            cell.hit = snapshot.occluders ? std::min(hits.t[i], view.reach) : view.reach;
+            cell.from = cell.hit;
+            for (const Medium& medium : snapshot.media) {
+                const Interval in = clip(medium.world_bounds, rays[i].origin, rays[i].direction, {0, cell.hit});
+                if (!in.empty()) cell.from = std::min(cell.from, in.low), cell.to = std::max(cell.to, in.high);
+            }
+            const bool in_cone = view.light->kind != LightKind::spot ||
+                                 glm::dot(rays[i].direction, view.light->direction) >= std::cos(view.light->outer_cone);
+            if (!in_cone) cell.from = cell.to = cell.hit = 0;
+        }
+    });
+    return cells;
+}
+}

@@ -1,0 +1,185 @@
+// Analytic volume lights: what of even fog each light reaches, in closed form and without shadows.
+#include "modes/cone/cone.h"
+
+#include "integrate/style.h"
+#include "modes/fog_picture.h"
+#include "modes/history.h"
+#include "modes/limits.h"
+#include "modes/techniques.h"
+#include "trace/occlusion/scene.h"
+#include "trace/snapshot.h"
+#include "volume/bricks/bricks.h"
+
+namespace tyndall {
+namespace {
+Medium seen_from(const Medium& medium, dvec3 anchor) {
+    Medium moved = medium;
+    moved.world_to_local[3] = vec4(dmat4(medium.world_to_local) * glm::dvec4(anchor, 1));
+    moved.height_base = static_cast<float>(medium.height_base - anchor.y);
+    return moved;
+}
+
+// The faces of a box, along one axis, that ways to the light can leave it by: the ones that face the light, or of
+// points outside the box either.
+std::vector<double> faces(const Medium& medium, int axis, double towards_low, double towards_high, bool both) {
+    const double low = medium.bounds.low[axis], high = medium.bounds.high[axis];
+    std::vector<double> result;
+    if (std::isfinite(low) && (both || towards_low > 0)) result.push_back(low);
+    if (std::isfinite(high) && (both || towards_high > 0)) result.push_back(high);
+    return result;
+}
+
+// Planes through the light and the edges of a box.
+void add_edge_planes(const Medium& medium, const Light& light, bool both, std::vector<vec4>& planes) {
+    const dmat4 m(medium.world_to_local);
+    const bool sun = light.kind == LightKind::sun;
+    const dvec3 apex(m[3]), travel = glm::dmat3(m) * dvec3(light.direction); // local; the light is the anchor
+    const auto faces_of = [&](int axis) {
+        const double low = medium.bounds.low[axis], high = medium.bounds.high[axis];
+        if (sun) return faces(medium, axis, travel[axis], -travel[axis], both);
+        return faces(medium, axis, low - apex[axis], apex[axis] - high, both);
+    };
+    for (int i = 0; i < 3; ++i)
+        for (const double fi : faces_of(i))
+            for (int j = i + 1; j < 3; ++j)
+                for (const double fj : faces_of(j)) {
+                    // n·(q - edge) = 0 with n across both the edge and the way to the light.
+                    const double ni = sun ? travel[j] : fj - apex[j], nj = sun ? -travel[i] : apex[i] - fi;
+                    const dvec3 row_i(m[0][i], m[1][i], m[2][i]), row_j(m[0][j], m[1][j], m[2][j]);
+                    const dvec3 normal = ni * row_i + nj * row_j;
+                    const double offset = ni * (apex[i] - fi) + nj * (apex[j] - fj);
+                    planes.push_back(vec4(vec3(normal), static_cast<float>(offset)));
+                }
+}
+
+bool contains(const Box& box, dvec3 point) {
+    return glm::all(glm::greaterThanEqual(point, dvec3(box.low))) &&
+           glm::all(glm::lessThanEqual(point, dvec3(box.high)));
+}
+
+bool endless(const Medium& medium) {
+    return glm::all(glm::isinf(medium.bounds.low)) && glm::all(glm::isinf(medium.bounds.high));
+}
+
+// `light` null: for transmittance and glow alone.
+AnchoredFog anchored(std::span<const Medium> media, dvec3 anchor, const Light* light) {
+    AnchoredFog fog;
+    fog.anchor = anchor;
+    fog.direct = light && light->kind != LightKind::sun;
+    for (const Medium& medium : media) {
+        const Medium& moved = fog.media.emplace_back(seen_from(medium, anchor));
+        const bool height = moved.kind == DensityKind::height;
+        const bool around = contains(moved.bounds, dvec3(moved.world_to_local[3]));
+        fog.direct &= !height && (endless(moved) || (media.size() == 1 && around));
+        if (height) fog.kinks.push_back(vec4(0, 1, 0, -moved.height_base));
+        if (light) add_edge_planes(moved, *light, media.size() > 1, fog.kinks);
+    }
+    return fog;
+}
+
+ConeEdges edges_of(const Light& light, const ConeSettings& settings) {
+    const auto versine = [](double angle) { return 2 * std::sin(0.5 * angle) * std::sin(0.5 * angle); };
+    const double outer = light.outer_cone, soft = settings.inner * outer;
+    const double scale = 1 / std::max(versine(outer) - versine(light.inner_cone), 1e-6);
+    const double even = settings.edge == ConeEdge::soft ? versine(soft) : std::max(versine(outer) - 1 / scale, 0.0);
+    ConeEdges edges;
+    edges.cosine = static_cast<float>(std::max(std::cos(outer), 0.0)), edges.sine = static_cast<float>(std::sin(outer));
+    edges.even_cosine = static_cast<float>(1 - even);
+    edges.even_sine = static_cast<float>(std::sqrt(even * (2 - even)));
+    edges.versine = static_cast<float>(versine(outer)), edges.scale = static_cast<float>(scale);
+    edges.angle = light.outer_cone, edges.soft_scale = static_cast<float>(1 / std::max(outer - soft, 1e-6));
+    return edges;
+}
+
+ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& cone) {
+    ConeLight result;
+    const bool sun = light.kind == LightKind::sun;
+    result.light = light;
+    result.fog = anchored(snapshot.media, sun ? dvec3(cone.eye) : dvec3(light.position), &light);
+    result.edges = edges_of(light, cone.settings);
+    result.reach = std::max(light.radius, smallest_radius);
+    if (light.kind == LightKind::spot && light.outer_cone > 0)
+        result.near_plane = static_cast<float>(cone.settings.near_radius / std::tan(double(light.outer_cone)));
+    result.light.position = vec3(0);
+    result.linear_range = std::isinf(light.range) ? glm::length(snapshot.bounds.size()) : light.range;
+    return result;
+}
+}
+
+float AnchoredFog::extinction() const {
+    float sum = 0;
+    for (const Medium& medium : media) sum += medium.optics.extinction;
+    return sum;
+}
+
+Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    Snapshot seen = stylised(snapshot, settings.style);
+    Cone cone;
+    cone.settings = settings.cone, cone.style = settings.style, cone.eye = view.camera.position;
+    cone.noise_rise = static_cast<float>(settings.cone.noise_speed * snapshot.seconds);
+    cone.casts = snapshot.occluders && !snapshot.occluders->empty();
+    for (const Medium& medium : seen.media)
+        if (medium.kind == DensityKind::bricks) cone.grids.push_back(medium.bricks->bounds);
+    seen.media = even_media(seen.media);
+    cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
+    for (const Medium& medium : seen.media) cone.glow.push_back(glow_per_extinction(medium.optics, seen.ambient));
+    for (const Light& light : seen.lights) cone.lights.push_back(cone_light(light, seen, cone));
+    return cone;
+}
+
+// Whether surfaces keep a light from fog that the picture shows.
+bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
+    constexpr int points = 16; // on each ray
+    for (Ray& ray : probing_rays(view, snapshot)) {
+        Hits hits;
+        snapshot.occluders->closest({&ray, 1}, 0, hits);
+        ray.t_max = std::min(ray.t_max, hits.t[0]);
+        for (int i = 0; i < points; ++i) {
+            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
+            const Arrival at = arrival(light, point);
+            if (max_component(at.irradiance) <= 0) continue;
+            if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
+        }
+    }
+    return false;
+}
+
+std::vector<Limit> cone_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits;
+    const bool casts = snapshot.occluders && !snapshot.occluders->empty();
+    for (const Light& light : snapshot.lights) {
+        const std::string where = "light " + light.name;
+        const bool sun = light.kind == LightKind::sun;
+        if (casts && light.shadows && sun && is_shadowed(view, snapshot, light))
+            limits.push_back({Severity::wrong, where, "a sun has no cone and shadows are not seen: no shafts"});
+        else if (casts && light.shadows)
+            limits.push_back({Severity::degraded, where, "shadows of surfaces are not seen in its light"});
+        if (!sun && light.radius > 0)
+            limits.push_back({Severity::info, where, "shines as from a point; its radius only caps the brightness"});
+        if (!sun && settings.cone.attenuation != ConeAttenuation::inverse_square)
+            limits.push_back({Severity::degraded, where, "cone.attenuation is not the inverse square: not physical"});
+        if (light.kind == LightKind::spot && settings.cone.edge == ConeEdge::soft)
+            limits.push_back({Severity::degraded, where, "cone.edge is soft: its own inner cone is not used"});
+        if (light.kind == LightKind::spot && settings.cone.near_radius > 0)
+            limits.push_back({Severity::info, where, "cone.near_radius cuts away the light next to it"});
+        if (!sun && settings.cone.noise > 0)
+            limits.push_back({Severity::info, where, "cone.noise modulates its light: a look"});
+    }
+    for (const Medium& medium : snapshot.media)
+        if (medium.kind == DensityKind::bricks)
+            limits.push_back({Severity::degraded, "medium " + medium.name,
+                              "drawn as even fog of its mean density in the grid's bounds"});
+    add_single_scattering_limits(view, snapshot, limits);
+    return limits;
+}
+
+ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+    const auto cone = std::make_shared<const Cone>(make_cone(view, snapshot, settings));
+    ScatterFunction scatter = [cone](const RayBatch& batch, std::span<Scatter> results) {
+        cone_packet(*cone, batch, results);
+    };
+    if (history) follow(*history, view, snapshot, settings);
+    if (settings.cone.picture == PictureShare::full && !history) return scatter;
+    return from_fog_picture(view, snapshot, {settings.cone.picture}, std::move(scatter), history);
+}
+}

@@ -1,0 +1,180 @@
+// Spots and point lights along sixteen rays, integrated in the angle seen from the light (see base/simd/simd.h for how
+// such files are compiled).
+#if defined(TYNDALL_MODES_CONE_LOCAL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_CONE_LOCAL_SIMD_H
+#undef TYNDALL_MODES_CONE_LOCAL_SIMD_H
+#else
+#define TYNDALL_MODES_CONE_LOCAL_SIMD_H
+#endif
+
+#include "modes/cone/packet_simd.h"
+#include "volume/noise/noise.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// Strength of a spot at sixteen angles from its axis.
+HWY_INLINE Floats edge(const Packet& packet, const ConeEdges& edges, const Floats& sine2, const Floats& cosine) {
+    if (packet.cone.settings.edge == ConeEdge::soft) {
+        const Floats angle = angle_of(sqrt(sine2), max(cosine, 0.0f));
+        const Floats x = max(min((edges.angle - angle) * edges.soft_scale, 1.0f), 0.0f);
+        return x * x * (3.0f - 2.0f * x);
+    }
+    const Floats versine = sine2 / (1.0f + cosine);
+    const Floats x = max(min((edges.versine - versine) * edges.scale, 1.0f), 0.0f);
+    return x * x;
+}
+
+// Noise that rises through the light, 1 on average.
+Floats dust(const Cone& cone, const Vec3s& world) {
+    const FractalNoise noise{3, cone.settings.noise_size, 2, 0.5f, 77, 0, false};
+    Lanes x, y, z, values;
+    store(world.x, x.data()), store(world.y - cone.noise_rise, y.data()), store(world.z, z.data());
+    fractal_noise(noise, 0, x, y, z, values);
+    const Floats swing = max(min(load(values.data()) * 4.0f, 1.0f), -1.0f);
+    return fused(swing, cone.settings.noise, 1.0f);
+}
+
+// What a local light sends to s, less the inverse square: window and edge, and r² where the attenuation is another.
+HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Floats& s,
+                           const Floats& distance, const Floats& inverse) {
+    Floats amount = 1.0f;
+    if (!std::isinf(light.light.range) && packet.cone.settings.attenuation != ConeAttenuation::linear) {
+        const Floats share = distance * (1 / light.light.range), square = share * share;
+        amount = max(1.0f - square * square, 0.0f);
+    }
+    if (packet.cone.settings.attenuation == ConeAttenuation::linear)
+        amount = max(1.0f - distance * (1 / light.linear_range), 0.0f);
+    if (light.light.kind == LightKind::spot) {
+        const Floats aside = fused(s, seen.axis_out, -(seen.distance * seen.axis_along)) * inverse;
+        const Floats cosine = fused(s, seen.axis_along, seen.distance * seen.axis_out) * inverse;
+        amount = amount * edge(packet, light.edges, fused(aside, aside, seen.axis_across * seen.axis_across), cosine);
+    }
+    return amount;
+}
+
+// The stretch of the rays that a local light reaches, from the nearest point.
+Stretch16 reached(const Packet& packet, const ConeLight& light, const SeenRays& seen) {
+    Stretch16 stretch{packet.stretch.low - seen.nearest, packet.stretch.high - seen.nearest};
+    const auto cut = [&](const Stretch16& by) HWY_ATTR {
+        stretch = {max(stretch.low, by.low), min(stretch.high, by.high)};
+    };
+    float range = light.light.range;
+    if (packet.cone.settings.attenuation == ConeAttenuation::linear) range = light.linear_range;
+    if (!std::isinf(range)) {
+        const Floats half = sqrt(max(range * range - seen.squared, 0.0f));
+        cut({-half, half});
+    }
+    if (packet.cone.style.range < no_range) cut({-infinity, packet.cone.style.range - packet.before - seen.nearest});
+    if (light.light.kind != LightKind::spot) return stretch;
+    cut(inside_wedge(seen, light.edges.cosine, light.edges.sine));
+    if (light.near_plane > 0) {
+        const Floats along = seen.axis_along, start = light.near_plane - seen.distance * seen.axis_out;
+        const Mask16 level = abs(along) < 1e-20f;
+        const Floats s = start / select(level, 1.0f, along);
+        const Floats free = select(start > 0.0f, infinity, -infinity); // level rays: all or nothing
+        cut({select(level, free, select(along > 0.0f, s, -infinity)), select(along < 0.0f, s, infinity)});
+    }
+    return stretch;
+}
+
+// Far from the light, compared with how near it the ray passes, metres are packed into little angle: what falls or
+// grows by e per metre is an edge there. Such stretches are cut where that has happened a little, once, and four times.
+void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Stretch16& stretch) {
+    Floats rate = packet.fog.extinction();
+    for (const Medium& medium : packet.fog.media)
+        if (medium.kind == DensityKind::height) rate = rate + abs(packet.direction.y) * (1 / medium.height_falloff);
+    const Floats scale = 1.0f / max(rate, 1e-20f), behind = max(stretch.low, 0.0f), before = min(stretch.high, 0.0f);
+    for (const float share : {1.0f / 16, 0.25f, 1.0f, 4.0f}) {
+        const Floats at = behind + share * scale, mirrored = before - share * scale;
+        const Mask16 packed = (stretch.high > stretch.low) & (share * scale > seen.distance);
+        if (any(packed & (at < stretch.high))) add_break(packet, at);
+        // Before the light the two ways together stay as long in fog that is around all.
+        if (!packet.fog.direct && any(packed & (mirrored > stretch.low))) add_break(packet, mirrored);
+    }
+}
+
+void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Stretch16& stretch) {
+    add_break(packet, 0.0f);
+    if (any(seen.distance < light.reach)) {
+        const Floats half = sqrt(max(light.reach * light.reach - seen.squared, 0.0f));
+        add_break(packet, half), add_break(packet, -half);
+    }
+    if (light.light.kind == LightKind::spot && light.edges.even_sine > 0) {
+        const Stretch16 even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
+        add_break(packet, even.low), add_break(packet, even.high);
+    }
+    add_decay_breaks(packet, seen, stretch);
+}
+
+// Light of a local light at the nodes of one piece.
+void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Stretch16& piece, int count) {
+    const AnglePiece angles(piece, seen);
+    const Floats middle = 0.5f * (piece.low + piece.high);
+    const Floats length = piece.high - piece.low;
+    const Mask16 capped = fused(middle, middle, seen.squared) < light.reach * light.reach;
+    const bool has_cap = any(capped),
+               inverse_square = packet.cone.settings.attenuation == ConeAttenuation::inverse_square;
+    const Floats whole = select(capped, length * (1 / (light.reach * light.reach)), angles.per_distance);
+    for (const QuadratureNode& node : gauss_legendre(count)) {
+        const float at = static_cast<float>(node.at), weight = static_cast<float>(node.weight);
+        Floats s = angles.place(at);
+        if (has_cap) s = select(capped, angles.cubic(at), s);
+        const Floats square = max(fused(s, s, seen.squared), 1e-30f), inverse = 1.0f / sqrt(square);
+        const Floats distance = square * inverse, t = seen.nearest + s;
+        const Floats share = has_cap ? select(capped, 3 * at * at * weight, weight) : Floats(weight);
+        Floats amount = whole * share * strength(packet, light, seen, s, distance, inverse);
+        if (!inverse_square) amount = amount * select(capped, light.reach * light.reach, square);
+        const Vec3s point = packet.at(t);
+        const Floats depth =
+            fused(view_depth(packet, t), packet.cone.style.view_depth, light_depth(packet, light, point, distance));
+        amount = amount * exp(-depth) * fade(packet, t);
+        if (packet.cone.settings.noise > 0) amount = amount * dust(packet.cone, point + splat(vec3(packet.fog.anchor)));
+        add_node(packet, t, amount, -(s * inverse), true);
+    }
+}
+
+bool add_local(Packet& packet, const ConeLight& light) {
+    const SeenRays seen = seen_rays(packet.origin, packet.rest, packet.direction, light.light.direction);
+    if (light.light.kind == LightKind::spot) {
+        const Stretch16 wedge = inside_wedge(seen, light.edges.cosine, light.edges.sine);
+        if (!any((wedge.high > wedge.low) & (wedge.high > -seen.nearest) & (wedge.low < packet.t_max - seen.nearest)))
+            return false;
+    }
+    find_fog(packet);
+    Stretch16 stretch = reached(packet, light, seen);
+    const Mask16 lit = stretch.high > stretch.low;
+    if (!any(lit)) return false;
+    stretch = {zero_unless(lit, stretch.low), zero_unless(lit, stretch.high)};
+    packet.scratch.breaks.clear();
+    add_light_breaks(packet, light, seen, stretch);
+    add_fog_breaks(packet, seen.nearest);
+    sort_breaks(packet, stretch);
+
+    const auto depth_at = [&](const Floats& s) HWY_ATTR {
+        const Floats distance = sqrt(fused(s, s, seen.squared)), t = seen.nearest + s;
+        return fused(view_depth(packet, t), packet.cone.style.view_depth,
+                     light_depth(packet, light, packet.at(t), distance));
+    };
+    const std::vector<Lanes>& breaks = packet.scratch.breaks;
+    Floats before = 0.0f;
+    bool known = false;
+    for (size_t i = 0; i + 1 < breaks.size(); ++i) {
+        const Stretch16 piece{load(breaks[i].data()), load(breaks[i + 1].data())};
+        const Mask16 there = piece.high > piece.low;
+        if (!any(there)) continue;
+        if (!known) before = depth_at(piece.low);
+        const Floats after = depth_at(piece.high), change = abs(after - before);
+        const Mask16 bright = there & (min(before, after) < 60.0f);
+        before = after, known = true;
+        if (!any(bright)) continue;
+        const float share = most(zero_unless(bright, AnglePiece(piece, seen).angle)) * (2 / pi);
+        const Floats length = zero_unless(bright, piece.high - piece.low);
+        add_piece(packet, light, seen, piece, node_count(packet, share, zero_unless(bright, change), length));
+    }
+    return true;
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

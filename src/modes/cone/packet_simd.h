@@ -1,0 +1,195 @@
+// Sixteen rays in even fog: how far it reaches, how deep it is, and where it has kinks (see base/simd/simd.h for how
+// such files are compiled).
+#if defined(TYNDALL_MODES_CONE_PACKET_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_CONE_PACKET_SIMD_H
+#undef TYNDALL_MODES_CONE_PACKET_SIMD_H
+#else
+#define TYNDALL_MODES_CONE_PACKET_SIMD_H
+#endif
+
+#include "base/simd/reduce_simd.h"
+#include "base/simd/simd.h"
+#include "integrate/gauss_legendre.h"
+#include "modes/cone/cone.h"
+#include "modes/cone/geometry_simd.h"
+#include "trace/transmittance/light_depth_simd.h"
+#include "volume/phase_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+using Lanes = std::array<float, 16>;
+constexpr float no_range = 1e6f; // of the style: the fog's light goes on for ever
+
+// Memory that a thread keeps from packet to packet. Plain floats: containers know nothing of vector registers.
+struct Scratch {
+    std::vector<Lanes> from, to; // where the rays enter and leave each medium
+    std::vector<Lanes> sums;     // per medium: its share of the light
+    std::vector<Lanes> breaks;   // where the integrand has a kink
+    Lanes shares;                // of optical depth, for statistics
+};
+
+// The rays among the fog of one light.
+struct Packet {
+    const Cone& cone;
+    const AnchoredFog& fog;
+    Vec3s origin, direction; // from the fog's anchor
+    Vec3s rest;              // of the origin, what floats lose
+    Floats t_max, before;    // length, and the way from the eye to the origin
+    Scratch& scratch;
+    Stretch16 stretch; // from first to last fog
+
+    HWY_INLINE size_t media() const { return fog.media.size(); }
+    HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
+};
+
+Packet make_packet(const Cone& cone, const AnchoredFog& fog, const RayBatch& batch, Scratch& scratch) {
+    alignas(64) float v[11][16];
+    for (size_t lane = 0; lane < 16; ++lane) {
+        const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
+        const dvec3 exact = dvec3(ray.origin) - fog.anchor;
+        const vec3 from(exact), rest(exact - dvec3(from));
+        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = from[axis], v[3 + axis][lane] = ray.direction[axis];
+        for (int axis = 0; axis < 3; ++axis) v[8 + axis][lane] = rest[axis];
+        v[6][lane] = lane < batch.rays.size() ? ray.t_max : 0;
+        v[7][lane] = glm::dot(ray.origin - cone.eye, ray.direction);
+    }
+    return {cone,
+            fog,
+            {load(v[0]), load(v[1]), load(v[2])},
+            {load(v[3]), load(v[4]), load(v[5])},
+            {load(v[8]), load(v[9]), load(v[10])},
+            load(v[6]),
+            max(load(v[7]), 0.0f),
+            scratch,
+            {0.0f, 0.0f}};
+}
+
+void find_fog(Packet& packet) {
+    Scratch& scratch = packet.scratch;
+    packet.stretch = {infinity, 0.0f};
+    for (size_t m = 0; m < packet.media(); ++m) {
+        const Ranges inside = inside_box(packet.fog.media[m], {packet.origin, packet.direction, packet.t_max});
+        const Floats to = max(inside.high, inside.low);
+        const Mask16 any_fog = to > inside.low;
+        store(inside.low, scratch.from[m].data()), store(to, scratch.to[m].data());
+        packet.stretch.low = select(any_fog, min(packet.stretch.low, inside.low), packet.stretch.low);
+        packet.stretch.high = select(any_fog, max(packet.stretch.high, to), packet.stretch.high);
+    }
+}
+
+// Optical depth from the rays' origin to t.
+HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
+    Floats sum = 0.0f;
+    for (size_t m = 0; m < packet.media(); ++m) {
+        const Medium& medium = packet.fog.media[m];
+        const Floats from = load(packet.scratch.from[m].data());
+        const Floats to = min(t, load(packet.scratch.to[m].data()));
+        Floats depth = max(to - from, 0.0f) * medium.optics.extinction;
+        if (medium.kind == DensityKind::height) {
+            const Floats y0 = fused(packet.direction.y, from, packet.origin.y);
+            const Floats y1 = fused(packet.direction.y, to, packet.origin.y);
+            depth = zero_unless(depth > 0.0f, depth * mean_height_density(medium, y0, y1));
+        }
+        sum = sum + depth;
+    }
+    return sum;
+}
+
+// Extinction of a medium at t, inside a piece that no border of it divides.
+HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
+    const Medium& medium = packet.fog.media[m];
+    const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
+    Floats value = medium.optics.extinction;
+    if (medium.kind == DensityKind::height) {
+        const Floats height = max(fused(packet.direction.y, t, packet.origin.y) - medium.height_base, 0.0f);
+        value = value * exp(height * (-1 / medium.height_falloff));
+    }
+    return packet.media() == 1 ? value : zero_unless(inside, value);
+}
+
+HWY_INLINE Floats light_depth(const Packet& packet, const ConeLight& light, const Vec3s& point,
+                              const Floats& distance) {
+    const bool sun = light.light.kind == LightKind::sun;
+    const Floats length = sun ? Floats(sun_distance) : max(distance - light.light.radius, 0.0f);
+    const float scale = packet.cone.style.light_depth;
+    if (packet.fog.direct) return length * (packet.fog.extinction() * scale);
+    const Vec3s towards = sun ? splat(-light.light.direction) : point * (-1.0f / max(distance, 1e-12f));
+    Floats sum = 0.0f;
+    for (const Medium& medium : packet.fog.media) sum = sum + analytic_depth16(medium, {point, towards, length});
+    return sum * scale;
+}
+
+// Share of the fog's light that style.range leaves.
+HWY_INLINE Floats fade(const Packet& packet, const Floats& t) {
+    const float range = packet.cone.style.range;
+    if (range >= no_range) return 1.0f;
+    return max(min((range - (t + packet.before)) * (1 / (0.2f * range)), 1.0f), 0.0f);
+}
+
+// Adds `amount` of light from a place to the sums of the media there. Without a light: of emission and ambient light.
+HWY_INLINE void add_node(const Packet& packet, const Floats& t, const Floats& amount, const Floats& cosine,
+                         bool has_light) {
+    for (size_t m = 0; m < packet.media(); ++m) {
+        const Phase phase = packet.fog.media[m].optics.phase;
+        Floats value = amount * extinction(packet, m, t);
+        if (has_light) value = value * phase_value(phase, cosine);
+        float* sum = packet.scratch.sums[m].data();
+        store(load(sum) + value, sum);
+    }
+}
+
+void add_break(const Packet& packet, const Floats& t) {
+    Lanes& lanes = packet.scratch.breaks.emplace_back();
+    store(t, lanes.data());
+}
+
+// Ends of media, kinks of height fog and of the ways to the light, and the fade of the style; `start` = t of the
+// coordinate's zero.
+void add_fog_breaks(const Packet& packet, const Floats& start) {
+    for (size_t m = 0; packet.media() > 1 && m < packet.media(); ++m) {
+        add_break(packet, load(packet.scratch.from[m].data()) - start);
+        add_break(packet, load(packet.scratch.to[m].data()) - start);
+    }
+    for (const vec4& plane : packet.fog.kinks) {
+        const Floats slope = dot(packet.direction, splat(vec3(plane)));
+        const Mask16 level = abs(slope) < 1e-20f;
+        const Floats t = -(dot(packet.origin, splat(vec3(plane))) + plane.w) / select(level, 1.0f, slope);
+        add_break(packet, select(level, infinity, t - start));
+    }
+    if (packet.cone.style.range < no_range) add_break(packet, 0.8f * packet.cone.style.range - packet.before - start);
+}
+
+// Brings the breaks into ascending order in every lane and into the stretch, whose ends join them.
+void sort_breaks(const Packet& packet, const Stretch16& stretch) {
+    std::vector<Lanes>& breaks = packet.scratch.breaks;
+    add_break(packet, stretch.low), add_break(packet, stretch.high);
+    const size_t count = breaks.size();
+    for (size_t i = 0; i < count; ++i)
+        store(max(min(load(breaks[i].data()), stretch.high), stretch.low), breaks[i].data());
+    for (size_t end = count; end > 1; --end)
+        for (size_t i = 0; i + 1 < end; ++i) {
+            const Floats a = load(breaks[i].data()), b = load(breaks[i + 1].data());
+            store(min(a, b), breaks[i].data()), store(max(a, b), breaks[i + 1].data());
+        }
+}
+
+// How many nodes a piece needs: the more, the wider its angle and the more its optical depth and density change.
+int node_count(const Packet& packet, float share, const Floats& change, const Floats& length) {
+    Floats amount = change;
+    float narrowest = 1;
+    for (const Medium& medium : packet.fog.media) {
+        if (medium.kind == DensityKind::height)
+            amount = amount + min(abs(packet.direction.y) * length * (1 / medium.height_falloff), 30.0f);
+        const float g = medium.optics.phase.kind == PhaseKind::isotropic ? 0 : std::abs(medium.optics.phase.g);
+        narrowest = std::min(narrowest, 1 - std::min(g, largest_g));
+    }
+    const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
+    const float change_at_most = std::min(most(amount), 60.0f);
+    const float wanted = 7 + (nodes - 2) * (2 * share * lobe + change_at_most * 0.16f);
+    return std::clamp(static_cast<int>(wanted), 2, most_gauss_nodes);
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,170 @@
+// Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
+// again for every camera ray.
+#include "base/simd/simd.h"
+#include "integrate/style.h"
+#include "modes/froxel/lookup.h"
+#include "modes/froxel/memory.h"
+#include "modes/froxel/still.h"
+#include "modes/history.h"
+#include "modes/techniques.h"
+#include "trace/shadows/kept_shadows.h"
+
+#include <mutex>
+
+namespace tyndall {
+namespace {
+struct FroxelFrame {
+    FroxelScene scene;
+    FroxelPicture picture;
+    bool has_history = false;
+    int frame = 0;
+
+    // Of each light, and of all other light: made when first asked for.
+    std::once_flag parts_made;
+    std::vector<FroxelSums> parts;
+};
+
+// The scene as the settings see it.
+void set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
+    const MarchSettings& terms = settings.march;
+    scene.snapshot = stylised(snapshot, settings.style);
+    scene.settings = settings.froxel, scene.style = settings.style;
+    if (!terms.heterogeneity) scene.snapshot.media = even_media(scene.snapshot.media);
+    for (Medium& medium : scene.snapshot.media) {
+        if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
+        if (!terms.emission) medium.optics.emission = vec3(0);
+    }
+    if (!terms.ambient) scene.snapshot.ambient = vec3(0);
+    std::vector<const Medium*> bricks;
+    for (const Medium& medium : scene.snapshot.media)
+        if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
+    scene.depths.reserve(snapshot.lights.size()); // columns know their grid by its place
+    for (const Light& light : scene.snapshot.lights) {
+        scene.depths.push_back(
+            make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));
+        LightDepth& depth = scene.depths.back();
+        depth.scale = settings.style.light_depth;
+        const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0;
+        scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
+        scene.cones.push_back(cone_falloff(light));
+    }
+    scene.fluence = kept_fluence(scene.snapshot, settings.fluence, view.seed);
+    if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
+    if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
+}
+
+// The tiles as the pixels of a picture of their own.
+Camera tile_camera(const FroxelGrid& grid) {
+    Camera camera = grid.camera;
+    const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.picture.y);
+    camera.vertical_fov = 2 * std::atan(std::tan(0.5f * camera.vertical_fov) * wider);
+    camera.ortho_height *= wider;
+    return camera;
+}
+
+// What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
+void set_shadows(FroxelFrame& frame, FroxelStill& still) {
+    FroxelScene& scene = frame.scene;
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (scene.settings.visibility != FroxelVisibility::slices || !occluders || occluders->empty()) return;
+    const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
+    constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
+    for (const Light& light : scene.snapshot.lights) {
+        scene.views.emplace_back();
+        if (!light.shadows) continue;
+        if (is_soft(light) && spread) {
+            scene.slices = occluders->shadow_slices();
+            continue;
+        }
+        const std::shared_ptr<const ShadowVolumes> volumes = kept_shadow_volumes(scene.snapshot, light);
+        scene.views.back() =
+            std::make_unique<const ShadowView>(view_from(*volumes, tile_camera(still.grid), still.grid.size, margin));
+    }
+}
+
+// What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.
+Recollection remembered(std::shared_ptr<FroxelMemory> memory, const FroxelStill& still) {
+    if (!still.same_froxels) return recall(*memory, still.grid, still.tiles);
+    return {memory.use_count() == 1 ? std::move(memory->light) : memory->light, {}};
+}
+
+// This frame's light with what the history knows of it; the history then knows this frame.
+FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<FroxelMemory>& memory) {
+    const FroxelSettings& settings = frame.scene.settings;
+    const float view_depth = frame.picture.view_depth;
+    FroxelLight light;
+    FroxelSums sums;
+    if (frame.frame == 0 || !memory) {
+        light = fill_still_froxels(frame.scene, still, {});
+        sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
+        clean(still.grid, still.tiles, light);
+    } else {
+        Recollection past = remembered(std::exchange(memory, nullptr), still);
+        light = std::move(past.light);
+        const std::vector<Light>& lights = frame.scene.snapshot.lights;
+        std::vector<uint8_t> stale;
+        const bool settled = still.settled();
+        if (settings.amortise) stale = stale_froxels(still.grid, light, lights, frame.frame, settled);
+        const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
+        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
+        const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
+        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled, past.blur};
+        sums = blend_history(still.grid, still.tiles, now, pass, light);
+        frame.has_history = true;
+    }
+    memory = std::make_shared<FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
+    return sums;
+}
+
+void make_parts(FroxelFrame& frame) {
+    const FroxelPicture& picture = frame.picture;
+    const int lights = static_cast<int>(frame.scene.snapshot.lights.size());
+    for (int part = 0; part < lights + frame.has_history; ++part)
+        frame.parts.push_back(integrate_froxels(
+            picture.grid, picture.tiles, fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame}),
+            picture.view_depth));
+}
+
+// The lights' parts are those of this frame alone; where the history changed their sum they change alike.
+void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
+    std::call_once(frame.parts_made, [&] { make_parts(frame); });
+    const size_t lights = frame.scene.snapshot.lights.size(), parts = frame.parts.size();
+    std::vector<vec3> light(batch.rays.size() * parts);
+    look_up_froxels(frame.picture, batch, results, frame.parts, light);
+    for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
+        const std::span<const vec3> of_ray{light.data() + ray * parts, parts};
+        vec3 sum(0), scale(1);
+        for (const vec3& part : of_ray) sum += part;
+        for (int c = 0; c < 3 && frame.has_history; ++c) scale[c] = sum[c] > 0 ? results[ray].radiance[c] / sum[c] : 0;
+        for (size_t i = 0; i < lights; ++i) batch.per_light[ray * lights + i] = scale * of_ray[i];
+    }
+}
+}
+
+ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+    auto frame = std::make_shared<FroxelFrame>();
+    if (history) frame->frame = follow(*history, view, snapshot, settings);
+    if (settings.froxel.history == 0) frame->frame = 0;
+    set_scene(view, snapshot, settings, frame->scene);
+
+    const FroxelMemory* memory = history ? history->froxels.get() : nullptr;
+    FroxelStill still = look_at_scene(view, frame->scene.snapshot, settings.froxel, memory ? &memory->still : nullptr);
+    if (still.grid.faces.empty()) { // no fog in view
+        if (history) history->froxels = nullptr;
+        return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
+    }
+    set_shadows(*frame, still);
+
+    FroxelPicture& picture = frame->picture;
+    picture.lookup = settings.froxel.lookup, picture.view_depth = settings.style.view_depth;
+    picture.grid = still.grid, picture.tiles = still.tiles;
+    picture.sums =
+        history ? sums_with_history(*frame, still, history->froxels)
+                : integrate_froxels(picture.grid, picture.tiles,
+                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
+    return [frame](const RayBatch& batch, std::span<Scatter> results) {
+        if (batch.per_light.empty()) return look_up_froxels(frame->picture, batch, results);
+        look_up_with_parts(*frame, batch, results);
+    };
+}
+}

@@ -1,0 +1,182 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/froxel/lookup.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/froxel/lookup.h"
+
+#include "modes/froxel/place_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+using TapTag = hn::CappedTag<float, 8>;
+constexpr size_t tap_lanes = hn::MaxLanes(TapTag());
+constexpr size_t tap_parts = 8 / tap_lanes;
+
+// Sums at the faces before and behind depths of 16 rays: red, green, blue and optical depth of each.
+struct FaceSums {
+    Floats near[4], far[4];
+    Floats share;  // of the slice before the depth
+    Floats behind; // planar depth of the face behind
+};
+
+// Rays between the same tiles that end in the slices least..most: each slice for all of them at once.
+void mix_slices(const Places& places, const float* const* columns, const Ints& slice, int least, int most,
+                FaceSums& result) {
+    const Floats place = to_floats(slice);
+    for (int k = least; k <= most; ++k) {
+        const Mask16 here = place == static_cast<float>(k);
+        for (size_t c = 0; c < 4; ++c) {
+            Floats near = 0.0f, far = 0.0f;
+            for (int t = 0; t < places.count; ++t) {
+                const float* from = columns[t] + 4 * k + c;
+                const Floats weight = load(places.weights[t]);
+                near = fused(weight, from[0], near), far = fused(weight, from[4], far);
+            }
+            result.near[c] = k == least ? near : select(here, near, result.near[c]);
+            result.far[c] = k == least ? far : select(here, far, result.far[c]);
+        }
+    }
+}
+
+// Ray by ray. Both faces of a slice lie side by side in memory: eight floats per tile.
+void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& places, const int32_t (&slice)[16],
+              FaceSums& result) {
+    alignas(64) float values[2][64]; // [face][4 · lane + channel]
+    const TapTag tag;
+    for (size_t lane = 0; lane < 16; ++lane) {
+        hn::Vec<TapTag> total[tap_parts];
+        for (size_t p = 0; p < tap_parts; ++p) total[p] = hn::Zero(tag);
+        for (int t = 0; t < places.count; ++t) {
+            const float* from = sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
+            const auto weight = hn::Set(tag, places.weights[t][lane]);
+            for (size_t p = 0; p < tap_parts; ++p)
+                total[p] = hn::MulAdd(weight, hn::LoadU(tag, from + p * tap_lanes), total[p]);
+        }
+        alignas(32) float both[8];
+        for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, both + p * tap_lanes);
+        std::memcpy(values[0] + 4 * lane, both, 16), std::memcpy(values[1] + 4 * lane, both + 4, 16);
+    }
+    for (size_t i = 0; i < parts; ++i) {
+        const auto load_four = [&](const float* from, Floats(&to)[4]) HWY_ATTR {
+            hn::LoadInterleaved4(FloatTag(), from + 4 * i * lane_step, to[0].part[i], to[1].part[i], to[2].part[i],
+                                 to[3].part[i]);
+        };
+        load_four(values[0], result.near), load_four(values[1], result.far);
+    }
+}
+
+FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
+    constexpr int few = 4;
+    const FroxelGrid& grid = picture.grid;
+    const float* columns[16]; // of the tiles around, where those are the same for all rays
+    for (int t = 0; t < places.count && places.together; ++t)
+        columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
+    const SliceLanes slices = slices_around(grid, z);
+    FaceSums result;
+    result.behind = slices.behind;
+    result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
+    for (int t = 0; t < places.count && places.together; ++t) __builtin_prefetch(columns[t] + 4 * slices.least);
+    if (places.together && slices.most - slices.least < few) {
+        mix_slices(places, columns, slices.slice, slices.least, slices.most, result);
+        return result;
+    }
+    alignas(64) int32_t slice[16];
+    store(slices.slice, slice);
+    mix_rays(grid, sums, places, slice, result);
+    return result;
+}
+
+// Light before a depth and optical depth up to it. Within the slice the light comes as from even fog.
+struct Reached {
+    Vec3s light;
+    Floats depth;     // of the ray
+    Floats last;      // share of the slice's light that lies before the depth
+    Vec3s last_light; // from the last slice
+};
+Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
+    const Floats& slant = places.slant;
+    const Floats before = faces.near[3] * slant;
+    const Floats across = max(faces.far[3] * slant - before, 0.0f), within = across * faces.share;
+    Reached reached;
+    reached.depth = before + within;
+    reached.last = faces.share * mean_transmittance(within * view_depth) / mean_transmittance(across * view_depth);
+    const Vec3s near{faces.near[0], faces.near[1], faces.near[2]}, far{faces.far[0], faces.far[1], faces.far[2]};
+    reached.last_light = (far - near) * reached.last;
+    // The tiles' lines are a little longer or shorter than the ray: in even fog the light is as 1 - e^-depth.
+    const Floats depth = reached.depth * view_depth, ratio = slant / places.tile_slant;
+    const Floats fitted = ratio * mean_transmittance(depth) / mean_transmittance(depth / ratio);
+    reached.light = (near + reached.last_light) * fitted;
+    reached.last_light = reached.last_light * fitted;
+    return reached;
+}
+
+// Light of a stretch that begins behind fog: what lies before it is taken off, and what dims it is undone. Where hardly
+// anything passes the fog before, neither can be told from rounding, nor seen.
+Vec3s light_between(const Reached& start, const Reached& end, float view_depth) {
+    constexpr float least = 1e-4f;
+    const Floats undone = 1.0f / max(exp(start.depth * -view_depth), least);
+    const Vec3s difference = (end.light - start.light) * undone;
+    return {max(difference.x, 0.0f), max(difference.y, 0.0f), max(difference.z, 0.0f)};
+}
+
+void store_light(const Vec3s& light, float (&rgb)[3][16]) {
+    store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
+}
+
+// A surface may cut the ray's last froxels short: their light is known for the part before it only.
+Floats validity_of(const Places& places, const FaceSums& faces, const Reached& end) {
+    const Floats all = end.light.x + end.light.y + end.light.z;
+    const Floats of_last = end.last_light.x + end.last_light.y + end.last_light.z;
+    const Floats last = zero_unless(places.nearest < faces.behind, of_last / max(all, 1e-30f));
+    return max(min(places.kept * (1.0f - last), 1.0f), 0.0f);
+}
+
+void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+                    std::span<const FroxelSums> shares, std::span<vec3> of_shares) {
+    Places places;
+    find_places(picture, batch, places);
+    const bool late = any(places.start > picture.grid.faces.front()); // some ray starts behind the first slice
+    const auto light_of = [&](const FroxelSums& sums, FaceSums& faces, Reached& start, Reached& end) HWY_ATTR {
+        faces = sums_at(picture, sums, places, places.end);
+        end = reach(faces, places, picture.view_depth);
+        if (!late) return end.light;
+        start = reach(sums_at(picture, sums, places, places.start), places, picture.view_depth);
+        return light_between(start, end, picture.view_depth);
+    };
+    FaceSums faces;
+    Reached start{splat(vec3(0)), 0.0f, 0.0f, splat(vec3(0))}, end = start;
+    const Vec3s light = light_of(picture.sums, faces, start, end);
+    const Floats through = exp(start.depth - max(end.depth, start.depth));
+    alignas(64) float rgb[3][16], first[64], seen[16], valid[16];
+    for (size_t i = 0; i < parts; ++i)
+        hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], through.part[i], FloatTag(),
+                              first + 4 * i * lane_step);
+    store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end), valid);
+    for (size_t i = 0; i < batch.rays.size(); ++i) {
+        const float* f = first + 4 * i;
+        if (seen[i] > 0)
+            results[i] = {{f[0], f[1], f[2]}, f[3], valid[i], places.count, vec3(0)};
+        else
+            results[i] = Scatter{.validity = 0};
+    }
+
+    for (size_t share = 0; share < shares.size(); ++share) {
+        store_light(light_of(shares[share], faces, start, end), rgb);
+        for (size_t i = 0; i < batch.rays.size(); ++i)
+            if (seen[i] > 0) of_shares[i * shares.size() + share] = {rgb[0][i], rgb[1][i], rgb[2][i]};
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(look_up_kernel);
+void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+                     std::span<const FroxelSums> parts, std::span<vec3> of_parts) {
+    HWY_DYNAMIC_DISPATCH(look_up_kernel)(picture, batch, results, parts, of_parts);
+}
+}
+#endif

@@ -1,0 +1,19 @@
+// Fog along camera rays, found among integrated froxels.
+#pragma once
+#include "modes/froxel/integrate.h"
+#include "modes/mode.h"
+
+namespace tyndall {
+struct FroxelPicture {
+    FroxelGrid grid;
+    FroxelTiles tiles;
+    FroxelSums sums;
+    FroxelLookup lookup = FroxelLookup::trilinear;
+    float view_depth = 1;
+};
+
+// Radiance, transmittance and validity of up to 16 rays of the grid's camera, each by itself. `parts` are further sums
+// over the same froxels; their light goes to `of_parts`, rays × parts.
+void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+                     std::span<const FroxelSums> parts = {}, std::span<vec3> of_parts = {});
+}

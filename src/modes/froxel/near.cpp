@@ -1,0 +1,96 @@
+// Froxels near a local light: points spread over them.
+#include "base/random.h"
+#include "modes/froxel/lit.h"
+
+namespace tyndall {
+namespace {
+// One line of a froxel as a light near it sees it.
+struct NearLine {
+    vec3 start, direction;
+    float length, nearest, h; // nearest, h: where the line passes the light, and how near
+    float from, to;           // angles of its ends
+    float width2;             // of the light's 1/r²: at least that of the part of the froxel the line stands for
+};
+
+size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, int slice, const Light& light,
+                  NearLine* lines) {
+    const float low = grid.faces[static_cast<size_t>(slice)], high = grid.faces[static_cast<size_t>(slice) + 1];
+    const float* depth = tiles.depth.data() + grid.tile_index(at) * tiles.rays();
+    size_t count = 0;
+    for (size_t ray = 0; ray < tiles.rays() && count < 16; ++ray) {
+        if (!(depth[ray] > low)) continue;
+        const vec2 pixel = grid.pixel_of(vec2(at) + tiles.offsets[ray]);
+        const vec3 start = grid.point(pixel, low), step = grid.line_step(pixel), offset = light.position - start;
+        const float slant = glm::length(step);
+        const vec3 direction = step / slant;
+        lines[count++] = {start,
+                          direction,
+                          slant * (std::min(high, depth[ray]) - low),
+                          glm::dot(offset, direction),
+                          glm::length(glm::cross(offset, direction)),
+                          0,
+                          0,
+                          0};
+    }
+    const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
+    for (size_t i = 0; i < count; ++i) {
+        NearLine& line = lines[i];
+        line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), smallest_radius * smallest_radius);
+        line.h = std::sqrt(line.h * line.h + line.width2);
+        line.from = std::atan(-line.nearest / line.h), line.to = std::atan((line.length - line.nearest) / line.h);
+    }
+    return count;
+}
+
+// Factor on a light's intensity at a point, as arrival() of scene/light.h, with 1/r² of at most 1/width2.
+float falloff_at(const Light& light, vec3 point, float width2) {
+    Light unit = light;
+    unit.intensity = vec3(1);
+    const Arrival arriving = arrival(unit, point);
+    const float reach = std::max(light.radius, smallest_radius);
+    const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
+    return arriving.irradiance.x * squared / std::max(squared, width2);
+}
+}
+
+FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,
+                           int slice, size_t light_index, uint32_t index) {
+    const Light& light = scene.snapshot.lights[light_index];
+    NearLine lines[16];
+    const size_t count = near_lines(grid, tiles, at, slice, light, lines);
+    if (count == 0) return {};
+
+    // The points take the lines in turn and have equal shares of the angle that the light sees of a line.
+    Occluders::ShadowRays shadow;
+    alignas(64) float visible[16], weight[16];
+    vec3 points[16];
+    for (size_t i = 0; i < 16; ++i) {
+        const NearLine& line = lines[i % count];
+        const auto on_line = static_cast<float>((16 - i % count + count - 1) / count);
+        const uint32_t key = hash(index, static_cast<uint32_t>(light_index), static_cast<uint32_t>(i));
+        const float u = (static_cast<float>(i / count) + to_unit(key)) / on_line;
+        const float tangent = std::tan(line.from + u * (line.to - line.from));
+        points[i] = line.start + (line.nearest + line.h * tangent) * line.direction;
+        weight[i] = (line.to - line.from) * line.h * (1 + tangent * tangent) /
+                    (on_line * line.length * static_cast<float>(count));
+        weight[i] *= falloff_at(light, points[i], line.width2);
+
+        const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
+        shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;
+        shadow.dx[i] = ray.direction.x, shadow.dy[i] = ray.direction.y, shadow.dz[i] = ray.direction.z;
+        shadow.t_min[i] = 0, shadow.t_max[i] = ray.t_max;
+        shadow.active[i] = weight[i] > 0 ? -1 : 0, visible[i] = 1;
+    }
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (light.shadows && occluders && !occluders->empty() && scene.settings.visibility != FroxelVisibility::off)
+        occluders->transmission(shadow, visible);
+
+    FroxelArrival result;
+    for (size_t i = 0; i < 16; ++i) {
+        const float amount = weight[i] > 0 ? weight[i] * visible[i] : 0;
+        result.amount += amount, result.point += amount * points[i];
+    }
+    if (result.amount > 0) result.point /= result.amount;
+    return result;
+}
+}

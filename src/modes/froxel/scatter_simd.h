@@ -1,0 +1,196 @@
+// What sixteen froxels send towards the eye (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_SCATTER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
+#undef TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
+#endif
+
+#include "integrate/style_simd.h"
+#include "modes/froxel/lit.h"
+#include "modes/froxel/look_simd.h"
+#include "trace/fluence/fluence_simd.h"
+#include "trace/transmittance/light_grid_simd.h"
+#include "volume/phase_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// What arrives of a light in each lane, through the surfaces in its way, and where.
+struct LaneArrivals {
+    Vec3s point;
+    Floats amount;
+};
+
+// A packet of froxels under way: 16 tiles, one slice, one sample.
+struct Job {
+    const Lanes& where;
+    const Looks& looks;
+    int slice, sample;
+    bool sheet;                    // the lanes are cut down to fog thinner than the slice
+    const FroxelLit* exact;        // with slices
+    const float (*extinction)[16]; // of each medium
+    Floats depth;                  // optical, of the stretches, as far as it dims the fog's own light
+};
+
+// Mean place, as a share of a stretch of this optical depth, of what is seen of even light on it.
+Floats mean_seen_place(const Floats& depth) {
+    const Floats square = depth * depth;
+    const Floats series = fused(depth, fused(square, fused(square, -1.0f / 30240, 1.0f / 720), -1.0f / 12), 0.5f);
+    const Floats large = max(depth, 0.5f);
+    return select(depth < 0.5f, series, 1.0f / large - 1.0f / (exp(min(large, 80.0f)) - 1.0f));
+}
+
+// A slice is seen through its own fog: light near its end counts less. What arrives is taken as spread evenly around
+// its mean place, and asked for where the eye sees it on average. That of a sun reaches to the nearer end of the slice;
+// that of a lamp, as 1/(h² + z²) at h from it, has the spread of its variance h L / atan(L/h) - h² (fitted within 3 %).
+void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& job, const Mask16& which,
+                       LaneArrivals& arrived) {
+    constexpr float clear = 0.01f;
+    const Mask16 dim = which & (arrived.amount > 0.0f) & (job.depth > clear);
+    if (!any(dim)) return;
+    const Floats length = max(lanes.length, 1e-30f);
+    const Floats mean = max(min(dot(arrived.point - lanes.start, lanes.toward) / length, 1.0f), 0.0f);
+    Floats spread = min(mean, 1.0f - mean) * 2.0f;
+    if (light.kind != LightKind::sun) {
+        const Vec3s offset = splat(light.position) - arrived.point;
+        const float least = std::max(light.radius, smallest_radius);
+        const Floats ratio = spread * length * 0.5f / max(sqrt(dot(offset, offset)), least);
+        spread = spread / sqrt(fused(ratio * (pi / 6), ratio / (ratio + 1.5f), 1.0f));
+    }
+    const Floats begin = mean - spread * 0.5f, within = job.depth * spread;
+    const Floats seen = exp(-(job.depth * begin)) * mean_transmittance(within) / mean_transmittance(job.depth);
+    const Floats moved = (mean_seen_place(within) - 0.5f) * spread * lanes.length;
+    arrived.amount = select(dim, arrived.amount * seen, arrived.amount);
+    arrived.point = fused(lanes.toward, zero_unless(dim, moved), arrived.point);
+}
+
+// Froxels whose size counts beside their distance from a local light. An exact line answers for their depth, and for
+// their width where that is a single ray.
+Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes, const Floats& distance) {
+    constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
+    if (light.kind == LightKind::sun || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
+    const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
+    return lanes.active & (distance * distance < size2 * (near * near));
+}
+
+// Share of a light that passes the surfaces on the way to the lanes that shadow rays answer for.
+Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Arriving& plain,
+                    const Mask16& by_rays) {
+    const Light& light = fill.scene.snapshot.lights[index];
+    const Occluders* occluders = fill.scene.snapshot.occluders.get();
+    if (!light.shadows || !occluders || occluders->empty()) return 1.0f;
+    if (fill.scene.settings.visibility == FroxelVisibility::off) return 1.0f;
+    Sample2 places[16];
+    const bool soft = is_soft(light) && fill.spreads();
+    for (size_t i = 0; i < 16 && soft; ++i) {
+        const ivec2 at = job.where.at[i];
+        const auto block = static_cast<uint32_t>((at.y >> 2) * fill.grid.size.x + (at.x >> 2));
+        const uint32_t key = hash(block, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
+        places[i] = sample2(spread_index(fill, at, job.sample), key);
+    }
+    return visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr);
+}
+
+// What arrives where a froxel is large beside its distance from the light.
+void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneArrivals& arrived) {
+    alignas(64) float is_near[16], amount[16], point[3][16];
+    store(select(near, 1.0f, 0.0f), is_near), store(arrived.amount, amount);
+    store(arrived.point.x, point[0]), store(arrived.point.y, point[1]), store(arrived.point.z, point[2]);
+    for (size_t i = 0; i < 16; ++i) {
+        if (!(is_near[i] > 0)) continue;
+        const FroxelArrival one = near_arrival(fill.scene, fill.grid, fill.tiles, job.where.at[i], job.slice, index,
+                                               spread_index(fill, job.where.at[i], job.sample));
+        amount[i] = one.amount;
+        for (int c = 0; c < 3 && one.amount > 0; ++c) point[c][i] = one.point[c];
+    }
+    arrived = {{load(point[0]), load(point[1]), load(point[2])}, load(amount)};
+}
+
+// Light is asked for in the middle of a sheet where it arrives beside it, or the sheet fills less than half the slice.
+void hold_in_fog(const FroxelLanes& lanes, const Looks& looks, const Mask16& which, LaneArrivals& arrived) {
+    const Floats place = dot(arrived.point - lanes.start, lanes.toward);
+    const Floats slice = (load(looks.high) - load(looks.low)) * sqrt(dot(lanes.step, lanes.step));
+    const Mask16 held = which & ((place < 0.0f) | (place > lanes.length) | (lanes.length < slice * 0.5f));
+    arrived.point = {select(held, lanes.point.x, arrived.point.x), select(held, lanes.point.y, arrived.point.y),
+                     select(held, lanes.point.z, arrived.point.z)};
+}
+
+LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
+    const Light& light = fill.scene.snapshot.lights[index];
+    const Arriving plain = arriving(light, fill.scene.cones[index], lanes.point);
+    LaneArrivals arrived{lanes.point, zero_unless(lit, plain.amount)};
+    const Mask16 near = lit & near_lanes(fill, light, lanes, plain.distance);
+    Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: what arrives on the whole stretch is known
+    by_rays = by_rays & !near;
+    if (job.exact) {
+        const Mask16 sliced = lit & !near & (load(job.looks.first) > 0.0f);
+        const size_t at = index * static_cast<size_t>(fill.grid.slices()) + static_cast<size_t>(job.slice);
+        by_rays = by_rays & !sliced, along = along | sliced;
+        if (light.kind == LightKind::sun) {
+            const FroxelLit::Depths& depths = job.exact->depths[at];
+            const Floats length = zero_unless(sliced, load(depths.length));
+            const Mask16 some = length > 0.0f;
+            const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
+            const Floats z = select(some, load(depths.first) / max(length, 1e-30f), lanes.z);
+            arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
+            arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
+        } else {
+            const FroxelLit::Arrivals& exact = job.exact->arrivals[at];
+            const Floats amount = load(exact.amount);
+            const Mask16 some = sliced & (amount > 0.0f);
+            arrived.amount = select(sliced, amount, arrived.amount);
+            arrived.point = {select(some, load(exact.point[0]), arrived.point.x),
+                             select(some, load(exact.point[1]), arrived.point.y),
+                             select(some, load(exact.point[2]), arrived.point.z)};
+        }
+        if (job.sheet) hold_in_fog(lanes, job.looks, sliced, arrived);
+    }
+    if (any(near)) put_near(fill, index, job, near, arrived);
+    see_through_slice(light, lanes, job, along, arrived);
+    if (!any(by_rays)) return arrived;
+    const Floats share = traced_share(fill, index, lanes, job, plain, by_rays);
+    arrived.amount = select(by_rays, arrived.amount * share, arrived.amount);
+    return arrived;
+}
+
+// Light of one kind scattered towards the eye, per metre.
+Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
+    const Light& light = fill.scene.snapshot.lights[index];
+    const LaneArrivals arrived = arrivals(fill, index, lanes, lit, job);
+    const Mask16 reached = arrived.amount > 0.0f;
+    if (!any(reached)) return splat(vec3(0));
+
+    Floats cosine = dot(splat(-light.direction), lanes.toward);
+    if (light.kind != LightKind::sun) {
+        const Vec3s offset = splat(light.position) - arrived.point;
+        cosine = dot(offset, lanes.toward) / max(sqrt(dot(offset, offset)), 1e-12f);
+    }
+    Vec3s scattering = splat(vec3(0));
+    for (size_t m = 0; m < fill.scene.snapshot.media.size(); ++m) {
+        const Optics& optics = fill.scene.snapshot.media[m].optics;
+        const Floats weight = load(job.extinction[m]) * phase_value(optics.phase, cosine);
+        scattering = fused(splat(optics.albedo), weight, scattering);
+    }
+    if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], arrived.point, reached);
+    const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arrived.point, reached));
+    const Floats amount = zero_unless(reached, arrived.amount * dimmed);
+    return scattering * amount * splat(light.intensity * light.volume_scale);
+}
+
+// Emission, ambient light and light that has been scattered before, per metre.
+Vec3s glow_of(const FroxelScene& scene, const FroxelLanes& lanes, const float (*extinction)[16]) {
+    const Snapshot& snapshot = scene.snapshot;
+    Vec3s glow = splat(vec3(0));
+    for (size_t m = 0; m < snapshot.media.size(); ++m) {
+        const vec3 each = glow_per_extinction(snapshot.media[m].optics, snapshot.ambient);
+        glow = fused(splat(each), load(extinction[m]), glow);
+    }
+    if (!scene.fluence) return glow;
+    return glow + scattered_fluence(*scene.fluence, snapshot.media, lanes.point, lanes.toward,
+                                    [&](size_t m) HWY_ATTR { return load(extinction[m]); });
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

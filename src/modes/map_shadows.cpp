@@ -1,0 +1,71 @@
+#include "modes/map_shadows.h"
+
+#include "base/text.h"
+#include "modes/limits.h"
+#include "modes/promise.h"
+#include "modes/settings.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+namespace tyndall {
+namespace {
+constexpr float sharp_pixels = 4; // a texel that covers more of the picture shows
+
+// The largest texel of a light's map at the ends of the rays: its size, and its share of a pixel there.
+void append_resolution_limit(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
+                             std::vector<Limit>& limits) {
+    float largest = 0, pixels = 0;
+    for (const Ray& ray : rays) {
+        const vec3 end = ray.at(ray.t_max);
+        const float texel = texel_size(map, end), depth = planar_depth(view.camera, ray, ray.t_max);
+        const float height = view.camera.ortho_height > 0
+                                 ? view.camera.ortho_height
+                                 : 2 * std::max(depth, 1e-6f) * std::tan(0.5f * view.camera.vertical_fov);
+        largest = std::max(largest, texel);
+        pixels = std::max(pixels, texel * static_cast<float>(view.size.y) / height);
+    }
+    if (largest > 0)
+        limits.push_back({pixels > sharp_pixels ? Severity::degraded : Severity::info, "light " + light.name,
+                          "texels of its shadow map are up to " + number_text("%.2g", largest) + " m wide (" +
+                              number_text("%.2g", pixels) +
+                              " pixels) at the end of the view; edges are as coarse, thinner things and gaps can be "
+                              "missed"});
+}
+
+bool has_blend(const Snapshot& snapshot) {
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->materials, [](const Material& material) {
+               return material.alpha_mode == AlphaMode::blend;
+           });
+}
+}
+
+ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
+    return {settings.resolution, settings.cascades, settings.pcf, settings.bias};
+}
+
+ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings) {
+    ShadowMaps maps;
+    for (const Light& light : snapshot.lights)
+        maps.push_back(kept_shadow_map(view, snapshot, light, shadow_map_options(settings)));
+    return maps;
+}
+
+std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits;
+    const std::vector<Ray> rays = probing_rays(view, snapshot);
+    for (const Light& light : snapshot.lights) {
+        if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) continue;
+        if (is_soft(light))
+            limits.push_back({Severity::degraded, "light " + light.name,
+                              "shadow maps see it from one point: its soft shadows have hard edges in the fog"});
+        append_resolution_limit(view, fitted_shadow_map(view, snapshot, light, shadow_map_options(settings.shadow_map)),
+                                light, rays, limits);
+    }
+    if (snapshot.occluders && snapshot.occluders->has_alpha() && has_blend(snapshot))
+        limits.push_back({Severity::degraded, "BLEND surfaces",
+                          "shadow maps know no half shadows: surfaces of alpha 1/2 and more block all light in the "
+                          "fog, others none"});
+    return limits;
+}
+}

@@ -1,0 +1,296 @@
+#include "modes/march/exact.h"
+
+#include "integrate/light_along.h"
+#include "integrate/light_point.h"
+#include "integrate/style.h"
+#include "volume/medium.h"
+#include "volume/rays/fog_pieces.h"
+
+#include <array>
+#include <utility>
+
+namespace tyndall {
+namespace {
+// Gauss–Legendre on -1..1.
+struct Node {
+    double at, weight;
+};
+constexpr std::array<Node, 2> gauss{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
+
+// A stretch from which a share of a light's points is seen.
+struct LitPart {
+    Stretch stretch;
+    double share = 1;
+};
+
+// Where one more or one less of them is seen.
+struct LitEnd {
+    double t = 0;
+    int change = 0;
+};
+
+// Memory that a thread keeps from ray to ray.
+struct Scratch {
+    FogPieces fog;
+    LightAlong along;
+    std::vector<LitPart> lit; // by the current light
+    std::vector<LitEnd> ends;
+};
+
+struct RayMarch {
+    const March& march;
+    const Ray& ray;
+    Scratch& scratch;
+    double longest = 0; // step by length alone
+    int nodes = 0;
+
+    dvec3 at(double t) const { return dvec3(ray.origin) + t * dvec3(ray.direction); }
+};
+
+// Splits a stretch of one piece of fog until every part obeys the march's bounds; `along` is the light to be followed,
+// null for none.
+template<class Visit>
+void split(const RayMarch& on, size_t piece, double low, double high, const LightAlong* along, const Visit& visit) {
+    const MarchSettings& settings = on.march.settings;
+    const FogPieces& fog = on.scratch.fog;
+    constexpr double closest = 1e-3; // metres: nearer to a light parts shrink no further
+    const double length = high - low;
+    const double away = along ? std::max(along->distance_to(low, high), closest) : double(infinity);
+    if (length > away && length > settings.near_light * away) {
+        split(on, piece, low, 0.5 * (low + high), along, visit);
+        return split(on, piece, 0.5 * (low + high), high, along, visit);
+    }
+    const double depth = fog.depth_at(piece, high) - fog.depth_at(piece, low);
+    const double voxels = std::max(fog.pieces[piece].voxels, along ? along->veil_voxels(low, high) : 0.0);
+    const double wanted = std::max({depth / settings.step_depth, length * voxels / settings.step_voxels,
+                                    length / on.longest, length / (settings.near_light * away)});
+    const double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));
+    for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
+}
+
+// Share of the light scattered at a point of the ray that reaches the eye.
+double seen(const RayMarch& on, size_t piece, double t) {
+    const StyleSettings& style = on.march.style;
+    const double share = std::exp(-style.view_depth * on.scratch.fog.depth_at(piece, t));
+    if (style.range >= StyleSettings{}.range) return share;
+    return share * style_fade(style, eye_distance(on.march.camera, on.ray.at(static_cast<float>(t))));
+}
+
+// Calls body(piece, t, weight) at the nodes of all fog on the ray; the weights hold what of their light arrives.
+template<class Body> void at_nodes(RayMarch& on, const Body& body) {
+    const FogPieces& fog = on.scratch.fog;
+    for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
+        split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
+            for (const Node node : gauss) {
+                const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
+                body(piece, t, 0.5 * (high - low) * node.weight * seen(on, piece, t));
+                ++on.nodes;
+            }
+        });
+}
+
+// Emission and ambient light of all fog, lit or not.
+dvec3 glow(RayMarch& on) {
+    const FogPieces& fog = on.scratch.fog;
+    dvec3 sum(0);
+    at_nodes(on, [&](size_t piece, double t, double weight) {
+        for (size_t m = 0; m < fog.media; ++m) {
+            const Optics& optics = on.march.snapshot.media[m].optics;
+            const dvec3 per_density = double(optics.extinction) * dvec3(optics.albedo * on.march.snapshot.ambient);
+            sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
+        }
+    });
+    return sum;
+}
+
+// Light that has been scattered before, cell by cell of its grid.
+dvec3 scattered_before(RayMarch& on) {
+    const FogPieces& fog = on.scratch.fog;
+    const FluenceGrid& grid = *on.march.fluence;
+    const double longest = std::exchange(on.longest, std::min<double>(on.longest, grid.cell));
+    dvec3 sum(0);
+    at_nodes(on, [&](size_t piece, double t, double weight) {
+        const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
+        for (size_t m = 0; m < fog.media; ++m) {
+            const Optics& optics = on.march.snapshot.media[m].optics;
+            const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
+            sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
+        }
+    });
+    on.longest = longest;
+    return sum;
+}
+
+// Sixteen points at which a light is asked for at once.
+struct Pending {
+    alignas(64) float x[16] = {}, y[16] = {}, z[16] = {};
+    alignas(64) int32_t active[16] = {};
+    dvec3 position[16], light[16]; // what each adds if nothing dims the light on its way
+    int count = 0;
+};
+
+// Shadow rays to the light's point, through surfaces with alpha.
+void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& pending, float* share) {
+    Occluders::ShadowRays rays{};
+    for (int i = 0; i < 16; ++i) {
+        rays.active[i] = pending.active[i];
+        if (!rays.active[i]) continue;
+        const dvec3 towards = to.far ? to.at : to.at - pending.position[i];
+        const double distance = glm::length(towards);
+        const dvec3 direction = towards / distance;
+        double end = to.far ? double(infinity) : distance;
+        if (to.radius > 0) { // at the ball's surface
+            const dvec3 center = to.center - pending.position[i];
+            const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
+            end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
+        }
+        rays.ox[i] = pending.x[i], rays.oy[i] = pending.y[i], rays.oz[i] = pending.z[i];
+        rays.dx[i] = float(direction.x), rays.dy[i] = float(direction.y), rays.dz[i] = float(direction.z);
+        rays.t_min[i] = 0, rays.t_max[i] = static_cast<float>(end * 0.9999);
+    }
+    on.march.snapshot.occluders->transmission(rays, share);
+}
+
+// Adds the pending points to the sum, dimmed by the fog between them and the light.
+void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum) {
+    if (pending.count == 0) return;
+    alignas(64) float depth[16] = {}, share[16];
+    for (int i = 0; i < 16; ++i) pending.active[i] = i < pending.count ? -1 : 0, share[i] = 1;
+    const LightAlong& along = on.scratch.along;
+    const Occluders* occluders = on.march.snapshot.occluders.get();
+    if (along.light->shadows && occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
+    light_depths(on.march.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
+    for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
+    on.nodes += pending.count;
+    pending.count = 0;
+}
+
+// Light scattered towards the eye at a node of given weight, before what dims it on its way from the light.
+dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
+    const FogPieces& fog = on.scratch.fog;
+    const ArrivingAt light_at = arriving_at(on.scratch.along, t);
+    const double cosine = glm::dot(light_at.to_light, dvec3(on.ray.direction));
+    dvec3 scattering(0);
+    for (size_t m = 0; m < fog.media; ++m) {
+        const double density = fog.density(piece, m, t);
+        if (density == 0) continue;
+        const Optics& optics = on.march.snapshot.media[m].optics;
+        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
+    }
+    return scattering * (weight * light_at.amount * seen(on, piece, t));
+}
+
+// Nodes of one part: for the sun in t; for a local light in θ with t = nearest + scale·tan θ, so that
+// dt = (scale² + (t - nearest)²) / scale dθ.
+template<class Add> void visit_nodes(const LightAlong& along, double low, double high, const Add& add) {
+    if (!along.local()) {
+        for (const Node node : gauss)
+            add(0.5 * (low + high) + 0.5 * (high - low) * node.at, 0.5 * (high - low) * node.weight);
+        return;
+    }
+    const double scale = std::max({along.distance, double(along.light->radius), double(smallest_radius)});
+    const double from = std::atan((low - along.nearest) / scale), to = std::atan((high - along.nearest) / scale);
+    for (const Node node : gauss) {
+        const double x = std::tan(0.5 * (from + to) + 0.5 * (to - from) * node.at);
+        add(along.nearest + scale * x, 0.5 * (to - from) * node.weight * scale * (1 + x * x));
+    }
+}
+
+// Light of the scratch's light along the ray: the lit stretches, piece of fog by piece of fog.
+dvec3 light_along_ray(RayMarch& on, size_t light_index) {
+    const FogPieces& fog = on.scratch.fog;
+    const LightAlong& along = on.scratch.along;
+    Pending pending;
+    dvec3 sum(0);
+    const auto add = [&](size_t piece, double t, double weight) {
+        const dvec3 light = scattered_at(on, piece, t, weight);
+        // A million such nodes would not change the seventh digit.
+        if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
+        const dvec3 position = on.at(t);
+        const int i = pending.count++;
+        pending.x[i] = float(position.x), pending.y[i] = float(position.y), pending.z[i] = float(position.z);
+        pending.position[i] = position, pending.light[i] = light;
+        if (pending.count == 16) add_pending(on, light_index, pending, sum);
+    };
+
+    size_t piece = 0;
+    for (const auto& [lit, share] : on.scratch.lit) {
+        while (piece < fog.pieces.size() && fog.pieces[piece].high <= lit.low) ++piece;
+        for (; piece < fog.pieces.size() && fog.pieces[piece].low < lit.high; ++piece) {
+            const double low = std::max(fog.pieces[piece].low, lit.low);
+            const double high = std::min(fog.pieces[piece].high, lit.high);
+            split(on, piece, low, high, &along, [&](double from, double to) {
+                visit_nodes(along, from, to,
+                            [&, part = share](double t, double weight) { add(piece, t, part * weight); });
+            });
+            if (fog.pieces[piece].high >= lit.high) break;
+        }
+    }
+    add_pending(on, light_index, pending, sum);
+    return sum * dvec3(along.light->intensity * along.light->volume_scale);
+}
+
+// Light of one light along the ray: each point's lit stretches, taken together where shares of them can be. Shadow rays
+// through surfaces with alpha need a point each.
+dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
+    const March& march = on.march;
+    const Light& light = march.snapshot.lights[light_index];
+    const Occluders* occluders = march.snapshot.occluders.get();
+    const bool apart = light.shadows && occluders && occluders->has_alpha();
+    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(march.settings.light_points) : 1;
+    std::vector<LitPart>& lit = on.scratch.lit;
+    std::vector<LitEnd>& ends = on.scratch.ends;
+    dvec3 sum(0);
+    ends.clear();
+    for (uint32_t k = 0; k < count; ++k) {
+        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &march.slices,
+                   march.snapshot.media, on.scratch.along);
+        lit.clear();
+        for (const Stretch& stretch : on.scratch.along.lit) {
+            lit.push_back({stretch, 1.0 / count});
+            ends.push_back({stretch.low, 1}), ends.push_back({stretch.high, -1});
+        }
+        if (apart || count == 1) sum += light_along_ray(on, light_index);
+    }
+    if (apart || count == 1) return sum;
+
+    std::sort(ends.begin(), ends.end(), [](const LitEnd& a, const LitEnd& b) { return a.t < b.t; });
+    lit.clear();
+    int seen = 0;
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        seen += ends[i].change;
+        if (seen > 0 && ends[i].t < ends[i + 1].t)
+            lit.push_back({{ends[i].t, ends[i + 1].t}, static_cast<double>(seen) / count});
+    }
+    return light_along_ray(on, light_index);
+}
+
+void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scatter& result) {
+    static thread_local Scratch scratch;
+    const Ray& ray = batch.rays[ray_index];
+    RayMarch on{march, ray, scratch};
+    const FogPieces& fog = scratch.fog;
+    find_fog(ray, march.snapshot.media, march.settings.min_transmittance, scratch.fog);
+    result = {};
+    if (fog.pieces.empty()) return;
+
+    const double stretch = fog.pieces.back().high - fog.pieces.front().low;
+    on.longest = std::min<double>(march.settings.step_length, march.settings.step_share * stretch);
+    dvec3 sum = glow(on);
+    if (march.fluence) sum += scattered_before(on);
+    const std::vector<Light>& lights = march.snapshot.lights;
+    for (size_t l = 0; l < lights.size(); ++l) {
+        const dvec3 light = light_from(on, batch, ray_index, l);
+        sum += light;
+        if (!batch.per_light.empty()) batch.per_light[ray_index * lights.size() + l] += vec3(light);
+    }
+    result.radiance = vec3(sum);
+    result.transmittance = static_cast<float>(std::exp(-fog.depth));
+    result.steps = on.nodes;
+}
+}
+
+void march_exact(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+    for (size_t i = 0; i < batch.rays.size(); ++i) march_ray(march, batch, i, results[i]);
+}
+}

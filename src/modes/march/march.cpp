@@ -1,0 +1,113 @@
+// The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
+// the fog it crosses.
+#include "integrate/lit_fog.h"
+#include "integrate/style.h"
+#include "modes/limits.h"
+#include "modes/map_shadows.h"
+#include "modes/march/exact.h"
+#include "modes/march/kernel.h"
+#include "modes/promise.h"
+#include "modes/techniques.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
+// scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
+// once.
+constexpr uint64_t most_sliced = 200'000, most_with_volumes = 2'000'000;
+
+// How march.visibility=slices finds the shadows of a light that casts some.
+ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
+    const uint64_t most = is_soft(light) ? most_sliced : most_with_volumes;
+    if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
+    return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
+}
+}
+
+std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    const MarchSettings& march = settings.march;
+    std::vector<Limit> limits;
+    if (settings.fluence.orders < 2)
+        add_single_scattering_limits(view, snapshot, limits);
+    else
+        add_fluence_limits(view, snapshot, settings.fluence, limits);
+    if (march.light == LightTransmittance::grid) add_light_grid_limits(snapshot, march.light_resolution, limits);
+    for (const Medium& medium : snapshot.media)
+        if (!march.heterogeneity && medium.kind == DensityKind::bricks)
+            limits.push_back(
+                {Severity::wrong, "medium " + medium.name, "march.heterogeneity is off: drawn as even fog"});
+    for (const Light& light : snapshot.lights)
+        if (march.visibility == Visibility::off && light.shadows)
+            limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
+    const bool sliced = march.visibility == Visibility::slices || march.visibility == Visibility::exact;
+    const bool alpha = snapshot.occluders && snapshot.occluders->has_alpha();
+    if (sliced && alpha)
+        limits.push_back({Severity::info, "march.visibility",
+                          "shadows of MASK and BLEND surfaces are sampled by rays, not cut out exactly"});
+    for (const Light& light : snapshot.lights)
+        if (march.visibility == Visibility::slices && !alpha && casts(light, snapshot) &&
+            shadows_by(light, *snapshot.occluders) == ShadowsBy::rays)
+            limits.push_back({Severity::info, "light " + light.name,
+                              std::to_string(snapshot.occluders->triangle_count()) +
+                                  " triangles: its shadows are sampled by rays, not cut out exactly"});
+    if (march.visibility == Visibility::maps)
+        for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
+    if (!snapshot.media.empty() && march.light == LightTransmittance::off)
+        limits.push_back(
+            {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
+    if (!snapshot.media.empty() && march.light == LightTransmittance::average)
+        limits.push_back({Severity::degraded, "lights", "march.light is average: every point is dimmed the same"});
+    for (const Material& material : snapshot.scene ? snapshot.scene->materials : std::vector<Material>{})
+        if (max_component(material.emission) > 0) {
+            limits.push_back({Severity::info, "material " + material.name, "glows, but lights nothing else"});
+            break;
+        }
+    return limits;
+}
+
+namespace {
+// Steps inside lit stretches. Shadows are exact, of one point of each light for a ray; but sampled by rays at every
+// step where surfaces have alpha, or are too many.
+ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    auto fog = std::make_shared<LitFog>();
+    const MarchSettings& march = settings.march;
+    fog->snapshot = march_snapshot(snapshot, settings.march, settings.style), fog->style = settings.style;
+    fog->nodes = march.nodes, fog->light_points = march.light_points;
+    fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
+    const auto by = [&](const Light& light) { return shadows_by(light, *snapshot.occluders); };
+    add_lights(view, march.light, march.light_resolution, by, *fog);
+    std::vector<Light> sampled; // lights that the steps have to find the shadows of
+    for (size_t i = 0; i < fog->shadows.size(); ++i)
+        if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
+    fog->sampled = has_grid(fog->snapshot) || !sampled.empty();
+    if (fog->sampled) fog->rule = march_steps(march, std::move(sampled));
+    fog->fluence = kept_fluence(fog->snapshot, settings.fluence, view.seed);
+    return [fog](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*fog, batch, results); };
+}
+}
+
+ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    if (settings.march.visibility == Visibility::slices) return prepare_slices(view, snapshot, settings);
+    auto march = std::make_shared<March>();
+    march->snapshot = march_snapshot(snapshot, settings.march, settings.style);
+    march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
+    for (const Light& light : march->snapshot.lights) {
+        march->depths.push_back(
+            make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution, &view));
+        march->depths.back().scale = settings.style.light_depth;
+        march->cones.push_back(cone_falloff(light));
+    }
+    march->steps = march_steps(settings.march, march->snapshot.lights);
+    march->fluence = kept_fluence(march->snapshot, settings.fluence, view.seed);
+    if (settings.march.visibility == Visibility::maps)
+        march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
+    if (settings.march.visibility != Visibility::exact)
+        return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
+    if (snapshot.occluders) march->slices = snapshot.occluders->shadow_slices();
+    return [march](const RayBatch& batch, std::span<Scatter> results) { march_exact(*march, batch, results); };
+}
+}

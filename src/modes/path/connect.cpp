@@ -1,0 +1,80 @@
+// Shadow rays in packets, fog by ratio tracking.
+#include "modes/path/connect.h"
+
+#include "scene/light.h"
+#include "trace/light_ray.h"
+#include "trace/occlusion/scene.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+void connect_packet(const PathTracer& tracer, std::span<Connection> connections, const RayBatch& batch,
+                    std::span<Scatter> results) {
+    float visibility[16];
+    find_visibility(tracer, connections, visibility);
+    const size_t lights = batch.per_light.empty() ? 0 : tracer.snapshot.lights.size();
+    for (size_t i = 0; i < connections.size(); ++i) {
+        Connection& c = connections[i];
+        float passing = visibility[i];
+        const Ray way{c.point, c.to_light, c.fog_length};
+        for (const Medium& medium : tracer.snapshot.media)
+            if (passing > 0)
+                passing *= ratio_transmittance(medium, way, {0, c.fog_length}, c.random, results[c.lane].steps);
+        const vec3 arriving = c.light * passing;
+        (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;
+        if (lights && c.light_index >= 0) batch.per_light[c.lane * lights + c.light_index] += arriving;
+    }
+}
+}
+
+void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility) {
+    const Occluders* occluders = tracer.snapshot.occluders.get();
+    alignas(64) float shares[16];
+    Occluders::ShadowRays rays{};
+    bool any = false;
+    for (size_t i = 0; i < connections.size(); ++i) {
+        const Connection& c = connections[i];
+        shares[i] = 1;
+        rays.active[i] = c.shadows && max_component(c.light) > 0 ? -1 : 0;
+        any |= rays.active[i] != 0;
+        const float side = glm::dot(c.face_normal, c.shadow) < 0 ? -1.0f : 1.0f;
+        const vec3 origin = c.point + c.face_normal * (side * shadow_offset(c.point));
+        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
+        rays.dx[i] = c.shadow.x, rays.dy[i] = c.shadow.y, rays.dz[i] = c.shadow.z;
+        rays.t_max[i] = c.shadow_length;
+    }
+    if (any && occluders && !occluders->empty()) occluders->transmission(rays, shares);
+    std::copy_n(shares, connections.size(), visibility);
+}
+
+Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, vec3 to_light, vec2 u) {
+    const Light& light = tracer.snapshot.lights[index];
+    const Ray shadow = ray_to_light(light, point, is_soft(light) ? u : vec2(0));
+    Connection c;
+    c.point = point, c.to_light = to_light;
+    c.fog_length = infinity;
+    if (light.kind != LightKind::sun) c.fog_length = std::max(0.0f, glm::length(light.position - point) - light.radius);
+    c.shadow = shadow.direction, c.shadow_length = shadow.t_max;
+    c.shadows = light.shadows, c.light_index = index;
+    return c;
+}
+
+Connection connection_to_glow(vec3 point, const GlowPoint& target) {
+    const vec3 offset = target.position - point;
+    const float distance = glm::length(offset);
+    Connection c;
+    c.point = point;
+    c.to_light = c.shadow = offset / distance;
+    c.fog_length = distance, c.shadow_length = distance * 0.9999f;
+    return c;
+}
+
+void connect(const PathTracer& tracer, std::vector<Connection>& connections, const RayBatch& batch,
+             std::span<Scatter> results) {
+    for (size_t first = 0; first < connections.size(); first += 16) {
+        const size_t count = std::min<size_t>(16, connections.size() - first);
+        connect_packet(tracer, std::span(connections).subspan(first, count), batch, results);
+    }
+    connections.clear();
+}
+}

@@ -1,0 +1,191 @@
+// Light from fog on a stretch of a line.
+#include "modes/path/line.h"
+#include "scene/light.h"
+#include "volume/bricks/bricks.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
+    fog.position = position, fog.total = 0;
+    fog.extinction.resize(snapshot.media.size());
+    for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
+        fog.extinction[m] = snapshot.media[m].optics.extinction * density_at(snapshot.media[m], position);
+        fog.total += fog.extinction[m];
+    }
+}
+
+// A guess at the share of light that passes up to a distance. Weights may be built from any guess: they only have to
+// be the same from both sides. Grids count with their mean; a ray may find gaps in them, so that is not taken too far.
+float guessed_transmittance(const Snapshot& snapshot, const Line& line, float distance) {
+    Ray ray = line.rest;
+    ray.t_max = distance;
+    constexpr double most_in_grids = 3;
+    double depth = 0, in_grids = 0;
+    for (const Medium& medium : snapshot.media) {
+        if (medium.kind != DensityKind::bricks) {
+            depth += optical_depth(medium, ray);
+            continue;
+        }
+        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
+        in_grids += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
+    }
+    return static_cast<float>(std::exp(-depth - std::min(in_grids, most_in_grids)));
+}
+
+// How many distances a line is asked at. The eye's lines are many times worth their shadow rays: beams are narrow.
+int candidate_count(const Walk& walk) { return walk.order == 0 ? 16 : 1; }
+
+// A distance along the stretch where a light may arrive.
+struct Candidate {
+    float distance = 0, brightness = 0; // brightness: of `scattered`, with a guess at what dims it; 0 = rejected
+    vec3 scattered{0};                  // over its chance, weighted against collisions; without what is in the way
+};
+
+// Spreads the candidates over lights and distances and asks for all shadows at once.
+void find_candidates(const Walk& walk, const Line& line, std::span<Candidate> candidates,
+                     std::span<Connection> connections) {
+    const Snapshot& snapshot = walk.snapshot;
+    const std::vector<LineLight>& lights = walk.scratch.lights;
+    const vec2 u = line.numbers(use_distance), soft = line.numbers(use_soft);
+    const float count = static_cast<float>(candidates.size());
+    size_t light = 0;
+    float passed = 0; // chances of the lights before
+    for (size_t i = 0; i < candidates.size(); ++i) {
+        const float wanted = (static_cast<float>(i) + u.x) / count;
+        while (light + 1 < lights.size() && passed + lights[light].chance <= wanted) passed += lights[light++].chance;
+        if (!(lights[light].chance > 0)) continue;
+        const auto turned = [&](float x) { // by the golden ratio from candidate to candidate
+            const float sum = x + static_cast<float>(i) * 0.618034f;
+            return sum - std::floor(sum);
+        };
+        candidates[i].distance = lights[light].distance(turned(u.y));
+        const vec3 point = line.rest.at(candidates[i].distance);
+        const Arrival arriving = arrival(snapshot.lights[light], point);
+        connections[i] = connection_to_light(walk.tracer, point, static_cast<int>(light), arriving.to_light,
+                                             {turned(soft.x), soft.y});
+        connections[i].light = arriving.irradiance * snapshot.lights[light].volume_scale;
+    }
+    float visibility[16];
+    find_visibility(walk.tracer, connections, visibility);
+    for (size_t i = 0; i < candidates.size(); ++i)
+        connections[i].light *= visibility[i], connections[i].shadows = false;
+}
+
+void weigh(const Walk& walk, const Line& line, const Connection& connection, Candidate& candidate, int& lookups) {
+    if (!(max_component(connection.light) > 0)) return;
+    const Snapshot& snapshot = walk.snapshot;
+    FogPoint& fog = walk.scratch.fog;
+    look_at_fog(snapshot, connection.point, fog, lookups);
+    if (!(fog.total > 0)) return;
+    const LineLight& along = walk.scratch.lights[connection.light_index];
+    const float guess = guessed_transmittance(snapshot, line, candidate.distance);
+    const float chance = static_cast<float>(candidate_count(walk)) * along.chance * along.density(candidate.distance),
+                other = fog.total * guess * pick_chance(snapshot, fog.position, connection.light_index);
+    if (!(chance > 0)) return;
+    const float cosine = glm::dot(connection.to_light, line.rest.direction);
+    candidate.scattered = fog.scattered(snapshot, cosine) * (fog.total / (chance + other)) * connection.light;
+    candidate.brightness = luminance(candidate.scattered) * guess;
+}
+
+// Light scattered at a distance picked for the lights: of several candidates one goes on, in proportion to what it
+// would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
+float gather_on_the_way(const Walk& walk, Line& line) {
+    int& lookups = walk.results[line.walker.lane].steps;
+    const auto passing = [&](Interval range) {
+        float share = 1;
+        for (const Medium& medium : walk.snapshot.media)
+            if (share > 0) share *= ratio_transmittance(medium, line.rest, range, line.random, lookups);
+        return share;
+    };
+    Ray stretch = line.rest;
+    stretch.t_max = line.end;
+    walk.scratch.lights.clear();
+    if (walk.turns) lights_on_line(walk.snapshot, stretch, walk.scratch.lights);
+    if (walk.scratch.lights.empty() || !(line.through > 0)) return passing({0, line.end});
+
+    Candidate candidates[16];
+    Connection connections[16];
+    const size_t count = static_cast<size_t>(candidate_count(walk));
+    find_candidates(walk, line, {candidates, count}, {connections, count});
+    float total = 0;
+    for (size_t i = 0; i < count; ++i) {
+        weigh(walk, line, connections[i], candidates[i], lookups);
+        total += candidates[i].brightness;
+    }
+    if (!(total > 0)) return passing({0, line.end});
+    size_t picked = 0;
+    for (float left = line.random.next() * total; picked + 1 < count; ++picked)
+        if ((left -= candidates[picked].brightness) < 0) break;
+    while (!(candidates[picked].brightness > 0)) --picked;
+
+    const Candidate& candidate = candidates[picked];
+    const float before = passing({0, candidate.distance});
+    if (!(before > 0)) return 0;
+    queue(walk, line, connections[picked], candidate.scattered * (line.through * before * total / candidate.brightness),
+          walk.order == 0 || line.walker.in_fog);
+    return before * passing({candidate.distance, line.end});
+}
+
+// Light that reaches the point of a collision, straight from lights and glowing surfaces.
+void gather_at_collision(const Walk& walk, Line& line, float distance, const FogPoint& fog) {
+    const Snapshot& snapshot = walk.snapshot;
+    const bool in_fog = walk.order == 0 || line.walker.in_fog;
+    const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
+    if (pick.chance > 0) {
+        const LineLight& along = walk.scratch.lights[pick.light];
+        const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.chance,
+                    other = static_cast<float>(candidate_count(walk)) * along.chance * along.density(distance);
+        const vec3 scattered = fog.scattered(snapshot, glm::dot(pick.to_light, line.rest.direction)) * pick.irradiance;
+        const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
+        queue(walk, line,
+              connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft)),
+              scattered * (weight / pick.chance), in_fog);
+    }
+    if (walk.tracer.glow.empty()) return;
+    const GlowPoint target =
+        pick_glow_point(walk.tracer.glow, snapshot, line.numbers(use_light).y, line.numbers(use_glow));
+    const Connection connection = connection_to_glow(fog.position, target);
+    const float facing = std::abs(glm::dot(target.normal, connection.to_light));
+    const float chance = target.density * connection.fog_length * connection.fog_length / facing;
+    const float cosine = glm::dot(connection.to_light, line.rest.direction);
+    if (facing > 0 && chance > 0)
+        queue(walk, line, connection,
+              fog.scattered(snapshot, cosine) * target.emission / (chance + fog.density(snapshot, cosine)), in_fog);
+}
+
+// Where the path collides with fog on this stretch it gathers light and turns.
+void collide(const Walk& walk, Line& line) {
+    const Snapshot& snapshot = walk.snapshot;
+    float nearest = line.end;
+    int hit = -1;
+    for (size_t m = 0; m < snapshot.media.size(); ++m) {
+        const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
+        const float t = collision_distance(snapshot.media[m], line.rest, {0, nearest}, first, line.random,
+                                           walk.results[line.walker.lane].steps);
+        if (t < nearest) nearest = t, hit = static_cast<int>(m);
+    }
+    if (hit < 0) return;
+    line.walking = false;
+
+    const Optics& optics = snapshot.media[hit].optics;
+    const bool in_fog = walk.order == 0 || line.walker.in_fog;
+    add_light(walk, line, optics.emission / optics.extinction, in_fog);
+    if (!walk.turns) return;
+    FogPoint& fog = walk.scratch.fog;
+    look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);
+    if (!(fog.total > 0)) return;
+    gather_at_collision(walk, line, nearest, fog);
+    const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
+    const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
+    turn(walk, line, {fog.position, direction}, optics.albedo, density, in_fog);
+}
+}
+
+void follow_fog(const Walk& walk, Line& line) {
+    const float passing = gather_on_the_way(walk, line);
+    if (line.walking) collide(walk, line);
+    line.through *= passing;
+    if (walk.order == 0) walk.results[line.walker.lane].transmittance *= passing;
+}
+}

@@ -1,0 +1,132 @@
+// Chances of lights and of distances.
+#include "modes/path/lights.h"
+
+#include "scene/cone.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
+
+// From the first fog to the last; of fog without end what lies within 8 optical depths or in the scene.
+Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
+    Interval stretch{infinity, 0};
+    for (const Medium& medium : snapshot.media) {
+        Interval inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
+        if (inside.empty()) continue;
+        if (std::isinf(inside.high)) {
+            const Interval scene = clip(snapshot.bounds, line.origin, line.direction, inside);
+            inside.high = std::max(scene.empty() ? 0 : scene.high, inside.low + 8 / medium.majorant());
+        }
+        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
+    }
+    return stretch;
+}
+
+// The part inside the ball of a light's range.
+Interval within_range(const LineLight& along, float range, Interval stretch) {
+    if (std::isinf(range)) return stretch;
+    if (along.height >= range) return {};
+    const double half = std::sqrt((range - along.height) * (range + along.height));
+    return {static_cast<float>(std::max<double>(stretch.low, along.closest - half)),
+            static_cast<float>(std::min<double>(stretch.high, along.closest + half))};
+}
+
+Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
+    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi) return stretch;
+    const Stretch inside =
+        inside_cone(light.position, light.direction, light.outer_cone, dvec3(line.origin), dvec3(line.direction));
+    return {static_cast<float>(std::max<double>(stretch.low, inside.low)),
+            static_cast<float>(std::min<double>(stretch.high, inside.high))};
+}
+
+LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
+    LineLight along;
+    along.reach = stretch;
+    if (light.kind == LightKind::sun) {
+        along.chance = volume_brightness(light) * along.reach.length();
+        return along;
+    }
+    const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
+    along.closest = glm::dot(offset, direction);
+    const double nearest = std::max(light.radius, smallest_radius);
+    along.height = std::max(glm::length(offset - along.closest * direction), nearest);
+    along.reach = within_cone(light, line, within_range(along, light.range, stretch));
+    if (along.reach.empty()) return along;
+    along.low_angle = std::atan((along.reach.low - along.closest) / along.height);
+    along.high_angle = std::atan((along.reach.high - along.closest) / along.height);
+    if (!(along.high_angle > along.low_angle)) return along;
+    along.chance = static_cast<float>(volume_brightness(light) * (along.high_angle - along.low_angle) / along.height);
+    return along;
+}
+
+template<class Irradiance> LightPick pick(size_t count, float u, const Irradiance& irradiance) {
+    double total = 0;
+    for (size_t i = 0; i < count; ++i) total += luminance(irradiance(i).irradiance);
+    if (!(total > 0)) return {};
+    double left = u * total;
+    LightPick result;
+    for (size_t i = 0; i < count; ++i) {
+        const Arrival arriving = irradiance(i);
+        const double share = luminance(arriving.irradiance);
+        if (!(share > 0)) continue;
+        result = {static_cast<int>(i), static_cast<float>(share / total), arriving.irradiance, arriving.to_light};
+        if ((left -= share) < 0) break;
+    }
+    return result;
+}
+}
+
+float LineLight::distance(float u) const {
+    if (height == 0) return reach.low + u * reach.length();
+    const double t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
+    return std::clamp(static_cast<float>(t), reach.low, reach.high);
+}
+
+float LineLight::density(float t) const {
+    if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
+    if (height == 0) return 1 / reach.length();
+    const double off = t - closest;
+    return static_cast<float>(height / ((high_angle - low_angle) * (height * height + off * off)));
+}
+
+void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
+    lights.clear();
+    const Interval stretch = fog_stretch(snapshot, line);
+    double total = 0;
+    for (const Light& light : snapshot.lights) {
+        lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));
+        total += lights.back().chance;
+    }
+    if (total > 0)
+        for (LineLight& along : lights) along.chance = static_cast<float>(along.chance / total);
+}
+
+LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
+    return pick(snapshot.lights.size(), u, [&](size_t i) {
+        Arrival arriving = arrival(snapshot.lights[i], point);
+        arriving.irradiance *= snapshot.lights[i].volume_scale;
+        return arriving;
+    });
+}
+
+LightPick pick_light(const Snapshot& snapshot, vec3 point, vec3 normal, float u) {
+    return pick(snapshot.lights.size(), u, [&](size_t i) {
+        Arrival arriving = arrival(snapshot.lights[i], point);
+        arriving.irradiance *= snapshot.lights[i].surface_scale * std::max(0.0f, glm::dot(normal, arriving.to_light));
+        return arriving;
+    });
+}
+
+float pick_chance(const Snapshot& snapshot, vec3 point, int light) {
+    double total = 0, wanted = 0;
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const double share = luminance(arrival(snapshot.lights[i], point).irradiance) * snapshot.lights[i].volume_scale;
+        total += share;
+        if (static_cast<int>(i) == light) wanted = share;
+    }
+    return total > 0 ? static_cast<float>(wanted / total) : 0;
+}
+}

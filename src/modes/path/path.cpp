@@ -1,0 +1,49 @@
+// The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
+#include "modes/path/tracer.h"
+#include "modes/techniques.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+bool glimmers(const PathTracer& tracer) {
+    if (max_component(tracer.snapshot.ambient) > 0) return true;
+    for (const Medium& medium : tracer.snapshot.media)
+        if (max_component(medium.optics.emission) > 0) return true;
+    if (tracer.settings.emission && tracer.snapshot.scene)
+        for (const Material& material : tracer.snapshot.scene->materials)
+            if (max_component(material.emission) > 0) return true;
+    return false;
+}
+}
+
+std::vector<Limit> path_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits;
+    for (const Medium& medium : snapshot.media)
+        if (!is_finite(medium.world_bounds.size()) && max_component(medium.optics.albedo) > 0.995f)
+            limits.push_back(
+                {Severity::info, "medium " + medium.name,
+                 "has no bounds and takes hardly any light: paths are very long; bounds or --orders help"});
+    if (settings.path.orders < all_orders)
+        limits.push_back({Severity::info, "path.orders",
+                          "light that scatters more than " + std::to_string(settings.path.orders) +
+                              (settings.path.orders == 1 ? " time" : " times") + " is left out"});
+    return limits;
+}
+
+ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
+    auto tracer = std::make_shared<PathTracer>();
+    tracer->snapshot = snapshot;
+    tracer->settings = settings.path;
+    tracer->camera = view.camera, tracer->size = view.size;
+    if (!settings.path.ambient) tracer->snapshot.ambient = vec3(0);
+    if (!settings.path.emission)
+        for (Medium& medium : tracer->snapshot.media) medium.optics.emission = vec3(0);
+    if (settings.path.emission) tracer->glow = make_glow(tracer->snapshot);
+    tracer->glimmers = glimmers(*tracer);
+    return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
+}
+}

@@ -1,0 +1,88 @@
+// What the radial blur smears: the sky around lights, or highlights.
+#include "modes/radial_blur/glow.h"
+
+#include "base/parallel.h"
+#include "base/shrink.h"
+#include "trace/occlusion/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+namespace tyndall {
+namespace {
+constexpr int published_samples = 32;
+
+float squared_length(vec2 v) { return glm::dot(v, v); }
+
+float share_above(vec3 color, float threshold) {
+    const float bright = luminance(color);
+    return bright > threshold ? (bright - threshold) / bright : 0;
+}
+
+// A camera ray, to the light's planar depth.
+void set_ray(Occluders::ShadowRays& rays, int i, const Camera& camera, const Ray& ray, float depth) {
+    rays.ox[i] = ray.origin.x, rays.oy[i] = ray.origin.y, rays.oz[i] = ray.origin.z;
+    rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
+    const float along = std::max(glm::dot(ray.direction, camera.forward), 1e-6f);
+    rays.t_min[i] = camera.near / along, rays.t_max[i] = depth / along;
+    rays.active[i] = -1;
+}
+
+void see_through(const Snapshot& snapshot, const Occluders::ShadowRays& rays, float share[16]) {
+    const Occluders* occluders = snapshot.occluders.get();
+    if (occluders && !occluders->empty()) return occluders->transmission(rays, share);
+    std::fill_n(share, 16, 1.0f);
+}
+}
+
+BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
+    BlurGlow glow(size, 1);
+    const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
+    const vec2 center = light.position * vec2(size) / vec2(view.size);
+    parallel_for(size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x0 = 0; x0 < size.x; x0 += 16) {
+            Occluders::ShadowRays rays{};
+            alignas(64) float falloff[16] = {}, share[16];
+            bool any = false;
+            for (int i = 0; i < std::min(16, size.x - x0); ++i) {
+                const vec2 position = vec2(x0 + i, y) + 0.5f;
+                const float off = 1 - squared_length(position - center) / (radius * radius);
+                if (!(off > 0)) continue;
+                falloff[i] = off * off, any = true;
+                set_ray(rays, i, view.camera, camera_ray(view.camera, size, position), light.depth);
+            }
+            if (!any) continue;
+            see_through(snapshot, rays, share);
+            for (int i = 0; i < std::min(16, size.x - x0); ++i)
+                glow.row(0, y)[x0 + i] = rays.active[i] ? share[i] * falloff[i] : 0;
+        }
+    });
+    return glow;
+}
+
+BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size) {
+    const Image<vec3> bright = shrunk(color, size, [&](vec3 pixel) { return pixel * share_above(pixel, threshold); });
+    BlurGlow glow(size, 3);
+    for (int channel = 0; channel < 3; ++channel)
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) glow.row(static_cast<size_t>(channel), y)[x] = bright.at(x, y)[channel];
+    return glow;
+}
+
+// The published sum, Σ decay^i · weight · sample_i / 32 with i from 0 to 31 along `density` of the line. Other numbers
+// of samples have their decay stretched over the same line and the same sum of weights; each lies in the middle of its
+// part of the line, so that more of them change nothing but smoothness.
+BlurLine make_line(const RadialBlurSettings& settings) {
+    BlurLine line{settings.density, {}};
+    double published = 0, sum = 0;
+    for (int i = 0; i < published_samples; ++i) published += std::pow(double(settings.decay), i);
+    for (int i = 0; i < settings.samples; ++i) {
+        const double at = (i + 0.5) * published_samples / settings.samples;
+        line.weights.push_back(static_cast<float>(std::pow(double(settings.decay), at)));
+        sum += line.weights.back();
+    }
+    const double scale = settings.exposure * settings.weight * published / (published_samples * std::max(sum, 1e-30));
+    for (float& weight : line.weights) weight = static_cast<float>(weight * scale);
+    return line;
+}
+}

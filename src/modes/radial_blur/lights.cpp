@@ -1,0 +1,83 @@
+// Where the radial blur sees the lights, and how bright it takes them for.
+#include "modes/radial_blur/radial_blur.h"
+
+#include "integrate/style.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+constexpr float far_away = 1e6f; // metres: a sun's place in the picture is where this point of it would be
+
+float smooth(float x) {
+    const float t = std::clamp(x, 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+// What even fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth).
+vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards) {
+    vec3 sum(0);
+    for (const Medium& medium : even_media(snapshot.media)) {
+        const float depth = static_cast<float>(optical_depth(medium, towards));
+        sum += medium.optics.albedo * (phase_value(medium.optics.phase, 1) * -std::expm1(-depth));
+    }
+    return sum * light.intensity * light.volume_scale;
+}
+
+// Of a lamp: the mean over its disc. At h from it isotropic fog shows I σs / (4 h), on average twice as much as at the
+// disc's edge; a spot has its share of that. σs and what dims it are those of the way to the eye.
+vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float radius) {
+    vec3 sum(0);
+    float whole = 0;
+    for (const Medium& medium : even_media(snapshot.media)) {
+        const float depth = static_cast<float>(optical_depth(medium, towards));
+        sum += medium.optics.albedo * depth, whole += depth;
+    }
+    const float share = light.kind == LightKind::spot ? 0.5f * (1 - std::cos(light.outer_cone)) : 1.0f;
+    const float at_edge = std::exp(-whole) / (std::max(towards.t_max, 1e-3f) * 4 * radius);
+    return sum * light.intensity * (light.volume_scale * share * 2 * at_edge);
+}
+
+float pixels_per_metre(const View& view, float depth) {
+    const bool flat = view.camera.ortho_height > 0;
+    const float height = flat ? view.camera.ortho_height : 2 * depth * std::tan(0.5f * view.camera.vertical_fov);
+    return static_cast<float>(view.size.y) / height;
+}
+}
+
+float blur_fade(vec2 position, ivec2 size, float fade) {
+    const vec2 off = glm::abs(position / vec2(size) * 2.0f - 1.0f);
+    return 1 - smooth((std::max(off.x, off.y) - 1) / fade);
+}
+
+std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, const RadialBlurSettings& settings) {
+    std::vector<BlurLight> lights;
+    float total = 0;
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const Light& light = snapshot.lights[i];
+        const bool sun = light.kind == LightKind::sun;
+        if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the picture
+        const vec3 at = sun ? view.camera.position - far_away * light.direction : light.position;
+        const std::optional<vec2> position = pixel_of(view.camera, view.size, at);
+        const float depth = glm::dot(at - view.camera.position, view.camera.forward);
+        if (!position || !(depth > view.camera.near)) continue;
+        const float fade = blur_fade(*position, view.size, settings.fade);
+        if (!(fade > 0)) continue;
+        const vec3 towards = at - view.camera.position;
+        const float distance = glm::length(towards);
+        BlurLight blur{i, *position, sun ? infinity : depth, 0, fade, vec3(0), 0};
+        blur.radius = settings.size * static_cast<float>(view.size.y);
+        if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
+        const Ray ray{view.camera.position, towards / distance, sun ? far_away : distance};
+        blur.color =
+            sun ? sun_brightness(snapshot, light, ray) : lamp_brightness(snapshot, light, ray, settings.lamp_size);
+        blur.share = luminance(blur.color);
+        total += blur.share;
+        lights.push_back(blur);
+    }
+    for (BlurLight& light : lights) light.share = total > 0 ? light.share / total : 0;
+    return lights;
+}
+}

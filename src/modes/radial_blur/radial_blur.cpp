@@ -1,0 +1,83 @@
+// Radial blur: bright places smeared away from the light's place in the picture (Mitchell 2007, GPU Gems 3, chapter
+// 13).
+#include "modes/radial_blur/radial_blur.h"
+
+#include "integrate/even_fog.h"
+#include "integrate/style.h"
+#include "modes/fog_picture.h"
+#include "modes/promise.h"
+#include "modes/radial_blur/glow.h"
+#include "modes/techniques.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+struct RadialBlur {
+    View view;
+    Snapshot snapshot;
+    RadialBlurSettings settings;
+    std::vector<BlurLight> lights;
+    BlurLine line;
+};
+
+Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
+    const View& view = blur.view;
+    const ivec2 size = shared_size(view.size, blur.settings.picture);
+    Addition addition{Image<vec3>(view.size), Image<float>(view.size, 1.0f), {}};
+    if (view.per_light) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(view.size));
+    if (blur.lights.empty()) return addition;
+
+    const bool highlights = blur.settings.source == BlurSource::highlights;
+    const BlurGlow bright =
+        highlights ? highlights_glow(picture.color, blur.settings.threshold, size) : BlurGlow({}, 1);
+    for (const BlurLight& light : blur.lights) {
+        const vec2 center = light.position * vec2(size) / vec2(view.size);
+        const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
+        const BlurGlow smeared =
+            highlights ? blurred(bright, blur.line, center, infinity, view)
+                       : blurred(unoccluded_glow(view, blur.snapshot, light, size), blur.line, center, radius, view);
+        const vec3 color = (highlights ? vec3(light.share) : light.color) * light.fade;
+        add_glow(smeared, color, addition.radiance, view.per_light ? &addition.per_light[light.index] : nullptr);
+    }
+    for (size_t i = 0; i < addition.validity.pixels.size(); ++i)
+        if (max_component(addition.radiance.pixels[i]) > 0) addition.validity.pixels[i] = 0;
+    return addition;
+}
+}
+
+std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    std::vector<Limit> limits{
+        {Severity::degraded, "picture",
+         "rays are smeared brightness, not light: fog, distance and what is off screen play no part"}};
+    for (const Medium& medium : snapshot.media)
+        if (medium.kind == DensityKind::bricks && settings.radial_blur.fog)
+            limits.push_back({Severity::degraded, "medium " + medium.name,
+                              "dims what is behind it as even fog of its mean density in the grid's bounds "
+                              "(radial_blur.fog)"});
+    const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.radial_blur);
+    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
+        const auto found = std::ranges::find(seen, i, &BlurLight::index);
+        const std::string where = "light " + snapshot.lights[i].name;
+        if (found == seen.end())
+            limits.push_back({Severity::wrong, where, "behind the camera or far off screen: it makes no rays"});
+        else if (found->fade < 1)
+            limits.push_back({Severity::degraded, where, "off screen: its rays are fading out"});
+    }
+    return limits;
+}
+
+ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
+    return dimming_only(settings.radial_blur.fog ? even_media(snapshot.media) : std::vector<Medium>{});
+}
+
+PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    auto blur = std::make_shared<RadialBlur>();
+    blur->view = view, blur->settings = settings.radial_blur;
+    blur->snapshot = stylised(snapshot, settings.style);
+    blur->lights = blur_lights(view, blur->snapshot, settings.radial_blur);
+    blur->line = make_line(settings.radial_blur);
+    return [blur](const PlainPicture& picture) { return added_rays(*blur, picture); };
+}
+}

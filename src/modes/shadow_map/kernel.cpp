@@ -1,0 +1,126 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/shadow_map/kernel.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/shadow_map/kernel.h"
+
+#include "modes/shadow_map/local_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// The steps of the rays themselves: transmittance and glow.
+struct Totals {
+    Floats transmittance, taken;
+};
+Totals march_rays(const Packet& packet) {
+    Totals totals{1.0f, 0.0f};
+    Scratch& scratch = packet.scratch;
+    Sixteen* extinctions = scratch.extinction.data();
+    Floats depth = 0.0f;
+    store(depth, scratch.depth.data());
+    for (int k = 0; k < packet.steps; ++k, extinctions += packet.media()) {
+        const Floats low = packet.border(k), length = packet.border(k + 1) - low;
+        const Vec3s position = packet.at(fused(packet.jitter, length, low));
+        const Floats extinction = extinction_at(packet, position, extinctions), inside = extinction * length;
+        const Mask16 active = inside > 0.0f;
+        Floats weight = 0.0f;
+        if (any(active)) {
+            totals.taken = totals.taken + select(active, 1.0f, 0.0f);
+            const Floats mean = mean_transmittance(inside);
+            weight =
+                zero_unless(active, seen_share(packet, totals.transmittance, depth, inside, mean, position) * length);
+            for (size_t m = 0; m < packet.media(); ++m) add(load(extinctions[m].data()) * weight, scratch.glowing[m]);
+            depth = depth + inside;
+            totals.transmittance = totals.transmittance * (1.0f - inside * mean); // e^-D = 1 - D·mean(D)
+        }
+        store(weight, scratch.weight.data() + 16 * k), store(depth, scratch.depth.data() + 16 * (k + 1));
+    }
+    totals.transmittance = exp(-depth);
+    return totals;
+}
+
+// What a sun adds in the steps of the rays. Its phase is the same all along a ray.
+void march_sun(const Packet& packet, size_t index) {
+    const Scratch& scratch = packet.scratch;
+    const RaysInMap rays(packet, index);
+    const int lookups = rays.map.empty() ? 1 : packet.march.settings.lookups;
+    const float part = 1 / static_cast<float>(lookups);
+    Sixteen* scattered = packet.scratch.scattered.data() + index * packet.media();
+    const Lit* lit_steps = scratch.lit.data() + index * static_cast<size_t>(packet.steps);
+    for (int k = 0; k < packet.steps; ++k) {
+        const Lit is_lit = lit_steps[k];
+        const Floats weight = load(scratch.weight.data() + 16 * k);
+        if (is_lit == Lit::none || !any(weight > 0.0f)) continue;
+        const Floats low = packet.border(k), length = packet.border(k + 1) - low;
+        Floats share = is_lit == Lit::all ? static_cast<float>(lookups) : 0.0f;
+        for (int i = 0; i < lookups && is_lit == Lit::some; ++i)
+            share = share + rays.lit_share(fused((packet.jitter + static_cast<float>(i)) * part, length, low));
+        share = share * weight;
+        const Mask16 lit = share > 0.0f;
+        if (!any(lit)) continue;
+        const Vec3s position = packet.at(fused(packet.jitter, length, low));
+        const Floats dimmed = share * part * exp(-light_depth16(packet.march.depths[index], position, lit));
+        for (size_t m = 0; m < packet.media(); ++m)
+            add(load(scratch.extinction[static_cast<size_t>(k) * packet.media() + m].data()) * dimmed, scattered[m]);
+    }
+    const Floats cosine = dot(splat(-packet.march.snapshot.lights[index].direction), packet.direction);
+    for (size_t m = 0; m < packet.media(); ++m)
+        store(load(scattered[m].data()) * phase_value(packet.march.snapshot.media[m].optics.phase, cosine),
+              scattered[m].data());
+}
+
+// Gives what the media scattered its colour.
+void color_ray(const Packet& packet, size_t lane, Scatter& result) {
+    const Snapshot& snapshot = packet.march.snapshot;
+    result.radiance = vec3(0);
+    for (size_t m = 0; m < packet.media(); ++m) {
+        result.radiance +=
+            glow_per_extinction(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
+    }
+    for (size_t i = 0; i < packet.lights(); ++i) {
+        vec3 part(0);
+        for (size_t m = 0; m < packet.media(); ++m)
+            part += snapshot.media[m].optics.albedo * packet.scratch.scattered[i * packet.media() + m][lane];
+        part *= snapshot.lights[i].intensity * snapshot.lights[i].volume_scale;
+        result.radiance += part;
+        if (!packet.batch.per_light.empty()) packet.batch.per_light[lane * packet.lights() + i] += part;
+    }
+}
+
+// How far the steps of a ray can be trusted: the share of a step that the fog's finest detail takes up.
+float trust(const ShadowMapMarch& march, float first, float last) {
+    const float step = (last - first) / static_cast<float>(march.settings.steps);
+    return step > march.detail ? march.detail / step : 1.0f;
+}
+
+void march_shadow_maps_kernel(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local Scratch scratch;
+    const Packet packet = make_packet(march, batch, scratch);
+    find_lit(packet);
+    Totals totals = march_rays(packet);
+    for (size_t i = 0; i < packet.lights(); ++i)
+        march.snapshot.lights[i].kind == LightKind::sun ? march_sun(packet, i) : march_light(packet, i, totals.taken);
+
+    alignas(64) float transmittance[16], taken[16], first[16], last[16];
+    store(totals.transmittance, transmittance), store(totals.taken, taken);
+    store(packet.border(0), first), store(packet.border(packet.steps), last);
+    for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
+        color_ray(packet, lane, results[lane]);
+        results[lane].transmittance = transmittance[lane];
+        results[lane].validity = trust(march, first[lane], last[lane]);
+        results[lane].steps = static_cast<int>(taken[lane]);
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(march_shadow_maps_kernel);
+void march_shadow_maps(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(march_shadow_maps_kernel)(march, batch, results);
+}
+}
+#endif

@@ -1,0 +1,41 @@
+// The march with shadow maps of one packet, apart from its preparation.
+#pragma once
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "trace/shadows/kept_shadows.h"
+#include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
+
+#include <vector>
+
+namespace tyndall {
+// What the march needs, made once per frame.
+struct ShadowMapMarch {
+    Snapshot snapshot; // media and lights as the settings see them
+    ShadowMapSettings settings;
+    StyleSettings style;
+    Camera camera;                  // for style.range
+    std::vector<LightDepth> depths; // one per light
+    std::vector<ConeFalloff> cones; // one per light
+    ShadowMaps maps;                // one per light
+    float detail = infinity;        // metres: the finest detail of the fog
+};
+
+// Smallest detail of the brick media, metres: that of a noise's last octave is some voxels wide.
+float fog_detail(std::span<const Medium> media);
+
+inline constexpr int least_uneven_steps = 8; // fewer are even
+
+// The borders of `count` steps along a ray from first to last fog, t[0], t[stride], ...; the last is t[count·stride].
+// Of fog that goes on far beyond the scene the scene gets most steps, and what follows ever longer ones. All equal when
+// there is no fog.
+void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride);
+
+// The part of a stretch of the ray that a local light reaches: its cone, and the sphere of its range.
+Interval lit_interval(const Light& light, const Ray& ray, Interval stretch);
+
+// Fog along up to 16 rays, in steps of even fog whose integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015,
+// section 5.6.3). Suns are asked for at the steps of the ray; a local light has as many steps of its own on what it
+// reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).
+void march_shadow_maps(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results);
+}

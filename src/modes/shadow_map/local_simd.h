@@ -1,0 +1,154 @@
+// Local lights of the march with shadow maps: their own steps on what they reach of each ray (see base/simd/simd.h for
+// how such files are compiled).
+#if defined(TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
+#undef TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
+#else
+#define TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
+#endif
+
+#include "base/simd/angles_simd.h"
+#include "modes/shadow_map/packet_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// Optical depth from the eye to increasing t: linear between the borders of the rays' steps.
+struct DepthAlong {
+    const Packet& packet;
+    Ints lane;
+    Floats step = 0.0f; // the last one asked for, of each ray
+
+    explicit DepthAlong(const Packet& on) : packet(on) {
+        alignas(64) int32_t lanes[16];
+        for (int i = 0; i < 16; ++i) lanes[i] = i;
+        lane = load(lanes);
+    }
+    Floats at(const Floats& t) {
+        const float *border = packet.scratch.border.data(), *depth = packet.scratch.depth.data();
+        const float last = static_cast<float>(packet.steps - 1);
+        Ints here = truncate(step) * 16 + lane;
+        Floats next = gather(border + 16, here);
+        for (;;) {
+            const Mask16 beyond = (t > next) & (step < last);
+            if (!any(beyond)) break;
+            step = step + select(beyond, 1.0f, 0.0f);
+            here = truncate(step) * 16 + lane;
+            next = gather(border + 16, here);
+        }
+        const Floats before = gather(border, here), depth_before = gather(depth, here);
+        const Floats share = (t - before) / max(next - before, 1e-12f);
+        return fused(gather(depth + 16, here) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
+    }
+};
+
+// What each ray sees of a local light: its stretch, and where the ray passes it.
+struct Passing {
+    Floats low, high;     // empty where high <= low
+    Floats nearest, away; // t next to the light, and its distance there
+};
+
+Passing pass_light(const Packet& packet, const Light& light) {
+    alignas(64) float v[4][16] = {};
+    const float* border = packet.scratch.border.data();
+    for (size_t lane = 0; lane < packet.batch.rays.size(); ++lane) {
+        const Ray& ray = packet.batch.rays[lane];
+        const Interval stretch{border[lane], border[16 * static_cast<size_t>(packet.steps) + lane]};
+        const Interval lit = lit_interval(light, ray, stretch);
+        if (lit.empty()) continue;
+        const vec3 offset = light.position - ray.origin;
+        const float nearest = glm::dot(offset, ray.direction);
+        v[0][lane] = lit.low, v[1][lane] = lit.high, v[2][lane] = nearest;
+        v[3][lane] = glm::length(offset - nearest * ray.direction);
+    }
+    return {load(v[0]), load(v[1]), load(v[2]), load(v[3])};
+}
+
+// Borders of the steps on a passage, counted from the point next to the light: x = scale·tan θ with even θ, or even x.
+struct Spaced {
+    Floats low, high, scale, first, angle;
+    bool even;
+
+    Spaced(const Passing& passing, Spacing spacing, int steps) {
+        low = passing.low - passing.nearest, high = passing.high - passing.nearest;
+        even = spacing == Spacing::distance;
+        // Next to the light steps need not get shorter than what is far from it is long.
+        scale = max(max(passing.away, max(abs(low), abs(high)) * 0.03f), 1e-12f);
+        first = even ? low : atan(low / scale);
+        angle = (even ? high - low : atan(high / scale) - first) * (1 / static_cast<float>(steps));
+    }
+    Floats at(int k, int steps) const {
+        if (k == 0 || k == steps) return k ? high : low;
+        const Floats place = fused(angle, static_cast<float>(k), first);
+        return max(min(even ? place : scale * tan(place), high), low);
+    }
+};
+
+// Points inside a step, even in the angle around the light: there the light falls off as 1/r², and dt = r²/away dθ.
+struct Turning {
+    Floats low, high, scale, slope, angle;
+
+    Turning(const Floats& from, const Floats& to, const Floats& distance) : low(from), high(to), scale(distance) {
+        slope = low / scale;
+        angle = angle_between(slope, high / scale);
+    }
+    Floats at(const Floats& share) const { // tan(α + β) = (tan α + tan β) / (1 - tan α tan β)
+        const Floats further = tan(share * angle);
+        return max(min((slope + further) / max(1.0f - slope * further, 1e-20f) * scale, high), low);
+    }
+};
+
+// Share of a local light in one step that surfaces let through.
+HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, const Turning& turning,
+                               const Floats& nearest) {
+    const int lookups = rays.map.empty() ? 1 : packet.march.settings.lookups;
+    const float part = 1 / static_cast<float>(lookups);
+    Floats share = 0.0f;
+    for (int i = 0; i < lookups; ++i)
+        share = share + rays.lit_share(nearest + turning.at((packet.jitter + static_cast<float>(i)) * part));
+    return share * part;
+}
+
+// The steps of a local light, on the part of each ray that it reaches.
+void march_light(const Packet& packet, size_t index, Floats& taken) {
+    const ShadowMapMarch& march = packet.march;
+    const Light& light = march.snapshot.lights[index];
+    const Passing passing = pass_light(packet, light);
+    const Mask16 reached = passing.high > passing.low;
+    if (!any(reached)) return;
+    const RaysInMap rays(packet, index);
+    const Spaced spaced(passing, march.settings.spacing, packet.steps);
+    const Floats scale = max(passing.away, std::max(light.radius, smallest_radius));
+    DepthAlong along(packet);
+    Sixteen* extinctions = packet.scratch.extinction.data() + packet.media() * static_cast<size_t>(packet.steps);
+    Floats low = spaced.low;
+    for (int k = 0; k < packet.steps; ++k) {
+        const Floats high = spaced.at(k + 1, packet.steps), length = high - low;
+        const Turning turning(low, high, scale);
+        const Floats x = turning.at(packet.jitter), slope = x / scale;
+        const Vec3s position = fused(packet.direction, passing.nearest + x, packet.origin);
+        const Arriving light_at = arriving(light, march.cones[index], position);
+        Mask16 active = reached & (length > 0.0f) & (light_at.amount > 0.0f);
+        Floats share = 0.0f;
+        if (any(active)) share = lit_share_of(packet, rays, turning, passing.nearest);
+        active = active & (share > 0.0f);
+        if (any(active)) {
+            const Floats extinction = extinction_at(packet, position, extinctions), inside = extinction * length;
+            const Floats depth = along.at(passing.nearest + low);
+            const Floats seen = seen_share(packet, exp(-depth), depth, inside, mean_transmittance(inside), position);
+            const Floats dimmed = exp(-light_depth16(march.depths[index], position, active));
+            const Floats weight = zero_unless(active, seen * turning.angle * scale * fused(slope, slope, 1.0f) *
+                                                          light_at.amount * share * dimmed);
+            const Floats cosine = dot(light_at.to_light, packet.direction);
+            for (size_t m = 0; m < packet.media(); ++m)
+                add(load(extinctions[m].data()) * weight * phase_value(march.snapshot.media[m].optics.phase, cosine),
+                    packet.scratch.scattered[index * packet.media() + m]);
+            taken = taken + select(active, 1.0f, 0.0f);
+        }
+        low = high;
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

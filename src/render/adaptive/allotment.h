@@ -1,0 +1,29 @@
+// How many samples each part of a picture needs: the tiles that spread most take most. Found from the variances of a
+// picture that is then thrown away, so that what was found does not bias what counts.
+#pragma once
+#include "render/frame/frame.h"
+
+namespace tyndall {
+struct TileFactors;
+
+inline constexpr int most_tile_samples = 1 << 16; // of a pixel
+
+struct Allotment {
+    ivec2 low{0};             // the first tile's place
+    Image<float> samples;     // of each pixel of a tile
+    double rays = 0;          // of all pixels
+    double squared_error = 0; // to expect, as a share of the squared mean
+};
+
+// Fewest samples with no more error, or the best that so many rays give.
+struct Enough {
+    double squared_error = 0, rays = 0;
+};
+
+// Where variances of means fall with the number of samples to the `power`, samples go as variance^(1 / (1 + power))
+// (Neyman 1934 for power 1), `least` or more of each pixel. `layers` hold the variances of means of `taken` samples.
+Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
+
+// `scale` times as many samples as allotted, in multiples of `unit`, one at least.
+std::shared_ptr<const TileFactors> factors_of(const Allotment& allotment, double scale, int unit);
+}

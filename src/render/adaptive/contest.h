@@ -1,0 +1,36 @@
+// All modes against each other on one picture: which gets to an error soonest, or closest to the truth in a time.
+#pragma once
+#include "render/adaptive/goal.h"
+
+namespace tyndall {
+// A candidate of a mode, and the picture it would make.
+struct Contender {
+    const Mode* mode = nullptr;
+    Choice choice;
+    double samples = 0; // per pixel, to get to the error asked for; infinite where it cannot get there
+    double seconds = 0; // to prepare and render that picture
+    double error = 0;   // of it; where the error asked for is out of reach, what endless samples leave
+
+    bool gets_there() const { return samples < infinity; }
+    // What samples do not remove.
+    SquaredError integrator() const { return choice.has_integrator ? choice.measured.integrator : SquaredError{}; }
+};
+
+struct Contest {
+    std::vector<Contender> contenders; // all that were measured, of each mode from coarse to fine
+    size_t winner = 0;
+    double seconds = 0; // it took
+
+    const Contender& best() const { return contenders[winner]; }
+};
+
+// Whether a is the better way to a goal: it gets there, sooner, or comes closer.
+bool beats(const Contender& a, const Contender& b, const Goal& goal);
+
+// Measures candidates of modes from coarse to fine, until finer ones of a mode can only lose. Looks take no part. With
+// an error asked for, the winner is the quickest that gets there, else the most accurate one; with seconds only, the
+// most accurate in that time. Seconds are predicted from a few pixels. `view` is the picture's; candidates are made
+// from `settings`, and held against the truth of `wanted`.
+Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
+                     const Settings& wanted, const Goal& goal, const FrameOptions& options);
+}

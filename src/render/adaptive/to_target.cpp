@@ -1,0 +1,261 @@
+#include "render/adaptive/to_target.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "render/adaptive/allotment.h"
+#include "render/frame/layers_mean.h"
+#include "render/frame/noise.h"
+#include "trace/transmittance/light_depth.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace tyndall {
+namespace {
+// Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
+// which show by then.
+constexpr double most_first_samples = 64;
+
+// All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
+// fiftieth more, so that the bound is met at the first try more often than not.
+int samples_needed(const Noise& noise, int samples, double target, int batches) {
+    const double ratio = noise.bound / target, needed = 1.02 * samples * ratio * ratio;
+    if (!(needed < most_target_samples)) return most_target_samples;
+    const int whole = (static_cast<int>(std::ceil(needed)) + batches - 1) / batches * batches;
+    return std::max(whole, samples + batches);
+}
+
+double pixel_count(const View& view) {
+    const ivec2 size = view.crop_low == view.crop_high ? view.size : view.crop_high - view.crop_low;
+    return static_cast<double>(size.x) * size.y;
+}
+
+// The rounds of one picture. First all pixels take equally many samples; where that shows that some need many more than
+// others, it is begun anew with as many as each needs. Work is counted in samples of all pixels; then in allotments.
+struct Rounds {
+    const Mode& mode;
+    View view; // as asked for; what spreads most is measured, not guessed from lamps and edges
+    const Goal& goal;
+    double start = 0;             // of the goal's time
+    std::optional<Choice> choice; // where anything was measured beforehand
+    std::optional<Allotment> allotment{};
+    double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
+    double first_part = 1;   // of an allotment
+    double done = 0, expected = most_target_samples;
+    int freedom = 0; // differences between batches so far
+
+    double left() const { return goal.seconds - (goal.clock() - start); }
+    int most_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
+    int fewest() const { return view.batches > 1 ? 2 : 1; }
+    // Samples that are allotted at once.
+    int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
+    double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
+
+    // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than a tenth of it.
+    double noise_target() const {
+        const double bound = choice && choice->has_integrator ? choice->measured.integrator.bound : 0;
+        if (bound == 0) return goal.error;
+        const double squared = goal.error * goal.error;
+        if (bound < squared) return std::sqrt(squared - bound);
+        return std::max(goal.error * integrator_share, 0.1 * std::sqrt(bound));
+    }
+
+    // The view of so much work, and the work it is.
+    View round_view(double& work, int round) const {
+        View result = view;
+        if (round) result.seed = hash(view.seed, static_cast<uint32_t>(round));
+        result.batches = allotment ? unit() : std::min(most_batches(), static_cast<int>(work));
+        result.pixel_samples = allotment ? unit() : static_cast<int>(work) / result.batches * result.batches;
+        if (allotment)
+            result.allotted = factors_of(*allotment, work, unit());
+        else
+            work = result.pixel_samples;
+        return result;
+    }
+};
+
+Rounds rounds_of(const Mode& mode, const View& view, const Goal& goal) {
+    Rounds rounds{mode, view, goal, goal.clock(), {}};
+    rounds.view.lamp_samples = rounds.view.edge_samples = 1;
+    return rounds;
+}
+
+Choice choice_for(const Rounds& rounds, const Snapshot& snapshot, const Settings& settings,
+                  const FrameOptions& options) {
+    const Goal& goal = rounds.goal;
+    if (goal.choice) return *goal.choice;
+    Choice choice = choose(rounds.mode, rounds.view, snapshot, settings, goal, rounds.start, options);
+    const bool falls_short =
+        goal.error > 0 && choice.has_integrator && choice.measured.integrator.bound >= goal.error * goal.error;
+    if (!falls_short || !goal.wanted) return choice;
+    return choose(rounds.mode, rounds.view, snapshot, *goal.wanted, goal, rounds.start, options);
+}
+
+// Where nothing is known, the first round is as the view asks; otherwise a small part of what is likely to be needed:
+// it shows which pixels need it.
+int first_round(Rounds& rounds) {
+    if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), most_target_samples);
+    const Measured& measured = rounds.choice->measured;
+    int samples = most_target_samples;
+    if (rounds.goal.error > 0) {
+        const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
+        const double needed = std::pow(ratio, 1 / rounds.choice->power);
+        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, most_first_samples));
+        if (needed < 8) samples = std::max(static_cast<int>(std::ceil(needed / 2)), 2);
+        if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
+        rounds.expected = std::max<double>(samples, std::min<double>(needed, most_target_samples));
+    }
+    if (rounds.goal.seconds > 0) {
+        const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + most_target_samples));
+        samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
+        rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
+    }
+    const bool single_refused = measured.single.bound == infinity;
+    return std::max(samples, single_refused ? 2 : rounds.fewest());
+}
+
+// After the first round: whether samples are better spread by what it showed. Then they are, from nothing.
+bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
+    if (rounds.allotment || rounds.freedom == 0 || !(stats.noise->error > 0) || !std::isfinite(stats.noise->bound))
+        return false;
+    const double pixels = pixel_count(rounds.view);
+    const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
+    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
+    Enough enough{0, most_target_samples * pixels};
+    if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
+    if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
+    const Allotment allotment = allot(layers, rounds.done, enough, power, rounds.unit());
+
+    // As good with all pixels alike, without beginning anew.
+    const double alike = rounds.done * std::pow(squared / allotment.squared_error, 1 / power) - rounds.done;
+    if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
+    rounds.work_seconds = ray_seconds * allotment.rays;
+    // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
+    if (*std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done) rounds.first_part = 0.4;
+    rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
+    return true;
+}
+
+// Parts of an allotment: what noise asks for, and time leaves; 0 when time is up.
+double next_part(Rounds& rounds, const FrameStats& stats) {
+    double wanted = rounds.goal.error > 0 ? rounds.first_part : 1;
+    if (rounds.done > 0 && rounds.goal.error > 0) {
+        const double ratio = stats.noise->bound / rounds.noise_target();
+        rounds.expected = 1.02 * rounds.done * ratio * ratio;
+        wanted = std::clamp(rounds.expected - rounds.done, 0.125 * rounds.done, rounds.done);
+    }
+    if (rounds.goal.seconds > 0) {
+        wanted = std::min(wanted, rounds.left() / rounds.work_seconds);
+        if (wanted < 0.1 && rounds.done > 0) return 0;
+        if (rounds.goal.error == 0) rounds.expected = rounds.done + wanted;
+    }
+    return std::max(wanted, 0.05);
+}
+
+// Rounds stay large enough for a few to do, and no round wastes more than all before it; 0 when time is up.
+double next_round(Rounds& rounds, const FrameStats& stats) {
+    if (rounds.allotment) return next_part(rounds, stats);
+    const int samples = static_cast<int>(rounds.done), batches = std::min(rounds.most_batches(), samples);
+    int wanted = most_target_samples - samples;
+    if (rounds.goal.error > 0) {
+        rounds.expected = samples_needed(*stats.noise, samples, rounds.noise_target(), batches);
+        const int least = (samples / 8 + batches - 1) / batches * batches;
+        wanted = std::min(std::clamp(static_cast<int>(rounds.expected) - samples, least, samples), wanted);
+    }
+    if (rounds.goal.seconds > 0) {
+        const double time = std::floor(std::min<double>(rounds.left() / rounds.work_seconds, wanted));
+        if (time < std::max({2, batches / 8, samples / 16})) return 0;
+        wanted = static_cast<int>(time);
+        if (rounds.goal.error == 0) rounds.expected = samples + wanted;
+    }
+    return wanted;
+}
+
+// Of a picture of one sample per pixel, going by what was measured beforehand.
+Noise single_noise(const Choice& choice) {
+    const Measured& m = choice.measured;
+    const SquaredError integrator = choice.has_integrator ? m.integrator : SquaredError{};
+    return {std::sqrt(std::max(m.single.value - integrator.value, 0.0)),
+            std::sqrt(std::max(m.single.bound - integrator.bound, 0.0))};
+}
+
+// Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
+// become.
+bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
+    if (rounds.freedom > 0)
+        stats.noise = noise_of(result, rounds.freedom);
+    else
+        stats.noise = single_noise(*rounds.choice);
+    const double target = rounds.goal.error;
+    const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
+    return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
+}
+}
+
+int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_batches * noise_batches; }
+
+void check_target(const Mode& mode, std::string_view option) {
+    if (error_can_be_told(mode)) return;
+    fail(ExitCode::usage, std::string(option),
+         "mode '" + std::string(mode.name) +
+             "' is a look: its error is as large as it is; --mode auto picks one that fits");
+}
+
+Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                        Goal goal, const FrameOptions& options, FrameStats& stats) {
+    assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
+    if (!goal.clock) goal.clock = steady_seconds;
+    Rounds rounds = rounds_of(mode, view, goal);
+    FrameOptions round_options = options;
+    Settings chosen = settings;
+    stats = {};
+    if (has_integrator(mode) || goal.seconds > 0) {
+        rounds.choice = choice_for(rounds, snapshot, settings, options);
+        chosen = rounds.choice->candidate.settings;
+        rounds.work_seconds = rounds.choice->measured.sample_seconds;
+        round_options.prepared = rounds.choice->measured.prepared;
+        if (!round_options.prepared) // once for all rounds
+            round_options.prepared =
+                std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, chosen, options.history));
+        stats.prepare_seconds = goal.clock() - rounds.start;
+        stats.fog_seconds = round_options.prepared->mode_seconds;
+        const SquaredError& error = rounds.choice->measured.integrator;
+        if (rounds.choice->has_integrator)
+            stats.integrator = {
+                {std::sqrt(error.value), std::sqrt(error.bound)}, rounds.choice->candidate.name, chosen};
+    }
+
+    // Until the first round has shown how noisy the scene is, all samples there may be count as work.
+    Layers result;
+    const double pixels = pixel_count(view);
+    double begun = 0, work = first_round(rounds), rays = 0; // rays: that count
+    for (int round = 0; work > 0; ++round) {
+        const View round_view = rounds.round_view(work, round);
+        const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
+        if (options.progress)
+            round_options.progress = [&](double part) { options.progress(begun + part * (reached - begun)); };
+
+        FrameStats round_stats;
+        const double round_start = goal.clock();
+        Layers layers = render_frame(mode, round_view, snapshot, chosen, round_options, round_stats);
+        rounds.work_seconds = (goal.clock() - round_start) / work;
+        rounds.freedom += round_view.batches - 1, begun = reached;
+        if (rounds.done == 0)
+            result = std::move(layers);
+        else
+            blend_layers(result, layers, static_cast<float>(work / (rounds.done + work)));
+        rounds.done += work, rays += static_cast<double>(round_stats.camera_rays);
+        stats.add(round_stats);
+        stats.samples = static_cast<int>(std::lround(rays / pixels));
+
+        // A picture of one sample is the end: it has no variance to go on from.
+        if (judge(rounds, result, stats) || rays >= most_target_samples * pixels || rounds.freedom == 0) break;
+        if (begin_allotment(rounds, result, stats)) rays = 0;
+        work = next_round(rounds, stats);
+    }
+    stats.goal_seconds = goal.clock() - rounds.start;
+    if (options.progress) options.progress(1);
+    return result;
+}
+}

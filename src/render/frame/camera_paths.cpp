@@ -1,0 +1,113 @@
+// Paths from the eye: where they start, what they meet, how they go on.
+#include "render/frame/camera_paths.h"
+
+#include "base/random.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+namespace tyndall {
+namespace {
+// Steps off a surface: beyond the rounding error of the point, below anything visible.
+float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
+
+// Sample `sample` of a shifted van der Corput sequence: the samples of a batch are spread evenly over [0,1). Moved at
+// random within half its stratum, so that regular steps do not beat with regular shadows.
+float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
+
+Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
+    const auto [position, weight] = sample_point(view, pixel, sample);
+    const vec2 off = position - (vec2(pixel) + 0.5f);
+    result.off_center = glm::dot(off, off), result.weight = weight;
+
+    Path path;
+    path.ray = camera_ray(view.camera, view.size, position);
+    const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
+    path.skip = view.camera.near / along;
+    path.screen = position / vec2(view.size), path.position = position;
+    path.lane = lane;
+
+    // Each batch has random numbers of its own.
+    const uint32_t index =
+        static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
+    path.seed = hash(index, view.frame, view.seed);
+    path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
+    path.place = sample_place(view, pixel, sample);
+    path.samples = static_cast<uint32_t>(samples_of(view, pixel) / view.batches);
+    if (const uint32_t batch = static_cast<uint32_t>(sample) / path.samples) {
+        path.seed = hash(path.seed, batch);
+        path.shift += hash(path.seed, use_jitter);
+    }
+    return path;
+}
+}
+
+void start_paths(const View& view, std::span<const ivec2> pixels, int sample, Stretches& s,
+                 std::span<PixelSample> samples) {
+    s.count = static_cast<int>(pixels.size());
+    for (int i = 0; i < s.count; ++i) {
+        samples[i] = {};
+        s.path[i] = camera_path(view, pixels[i], sample, i, samples[i]);
+    }
+}
+
+void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s) {
+    for (int i = 0; i < s.count; ++i) {
+        const Path& path = s.path[i];
+        s.tested[i] = {path.ray.at(path.skip), path.ray.direction, std::max(path.ray.t_max - path.skip, 0.0f)};
+    }
+    s.hits.instance.fill(-1);
+    if (snapshot.occluders && !snapshot.occluders->empty())
+        snapshot.occluders->closest({s.tested, static_cast<size_t>(s.count)}, 0, s.hits, layer == 0);
+    for (int i = 0; i < s.count; ++i) s.length[i] = s.hit(i) ? s.path[i].skip + s.hits.t[i] : s.path[i].ray.t_max;
+}
+
+SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const Stretches& s) {
+    SurfacesMet met;
+    for (int i = 0; i < s.count; ++i) {
+        if (!s.hit(i)) continue;
+        SurfacePoint& point = met.points[met.count];
+        point = snapshot.occluders->surface(s.tested[i], s.hits, i);
+        if (s.hit_again(i)) point.alpha = 0;
+        if (layer + 1 == most_layers) point.alpha = 1;
+        met.which[met.count++] = i;
+    }
+    return met;
+}
+
+bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<PixelSample> samples) {
+    int left = 0;
+    for (size_t k = 0; k < met.count; ++k) {
+        const int i = met.which[k];
+        Path path = s.path[i];
+        const float t = s.length[i];
+        if (met.points[k].alpha >= 1) {
+            samples[path.lane].alpha = 1;
+            samples[path.lane].depth = planar_depth(view.camera, path.ray, t);
+            continue;
+        }
+        path.through *= 1 - met.points[k].alpha;
+        path.ray.origin = path.ray.at(t);
+        path.ray.t_max -= t;
+        path.skip = surface_skip(path.ray.origin, t);
+        path.instance = s.hits.instance[i], path.triangle = s.hits.triangle[i];
+        s.path[left++] = path;
+    }
+    s.count = left;
+    return left > 0;
+}
+
+RayNumbers ray_numbers(const View& view, int layer, const Stretches& s) {
+    RayNumbers numbers;
+    for (int i = 0; i < s.count; ++i) {
+        const Path& path = s.path[i];
+        const uint32_t id = hash(path.seed, path.place.index, layer, use_id);
+        const uint32_t within = hash(id, use_jitter) / (2 * path.samples);
+        numbers.ids[i] = id;
+        const uint32_t shift = path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within;
+        numbers.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);
+        numbers.positions[i] = path.position;
+        numbers.places[i] = path.place;
+    }
+    return numbers;
+}
+}

@@ -1,0 +1,73 @@
+// Up to sixteen camera rays on their way through BLEND surfaces to the first opaque one. For the files of this folder
+// and for what explains a ray.
+#pragma once
+#include "render/frame/samples.h"
+#include "trace/occlusion/occluders.h"
+
+namespace tyndall {
+inline constexpr int most_layers = 64;
+
+// Uses of random numbers.
+enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
+
+// A ray on its way: where its next stretch starts and how much of what follows reaches the eye.
+struct Path {
+    Ray ray;              // from the eye or the last BLEND surface
+    float skip = 0;       // surfaces nearer than this are behind: the near plane, or the surface just left
+    float through = 1;    // share of light that gets through fog and BLEND surfaces so far
+    uint32_t seed = 0;    // of the pixel and batch in this frame
+    uint32_t shift = 0;   // of its jitter
+    SamplePlace place;    // in the batch
+    uint32_t samples = 1; // of the batch
+    vec2 screen{0};       // position in the picture, 0..1
+    vec2 position{0};     // the same in pixels
+    int lane = 0;
+    int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
+};
+
+struct Stretches { // of the paths still on their way, packed
+    Path path[16];
+    int count = 0;
+    Hits hits;
+    float length[16]; // to the surface, or to the end of the ray
+    Ray tested[16];   // the rays as given to the occluders
+
+    bool hit(int i) const { return hits.instance[i] >= 0; }
+    bool hit_again(int i) const {
+        return hit(i) && hits.instance[i] == path[i].instance && hits.triangle[i] == path[i].triangle;
+    }
+};
+
+// The surfaces at the ends of stretches, packed.
+struct SurfacesMet {
+    SurfacePoint points[16];
+    int which[16]; // the stretch of each
+    size_t count = 0;
+};
+
+// What a mode is told besides the rays.
+struct RayNumbers {
+    uint32_t ids[16];
+    float jitter[16];
+    SamplePlace places[16];
+    vec2 positions[16];
+};
+
+// Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are and
+// how much they count.
+void start_paths(const View& view, std::span<const ivec2> pixels, int sample, Stretches& s,
+                 std::span<PixelSample> samples);
+
+// The first surface of each path. The 64th layer counts as opaque.
+void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s);
+SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const Stretches& s);
+
+// Ends the paths at opaque surfaces and moves the others to the far side of theirs; true while any is left.
+bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<PixelSample> samples);
+
+RayNumbers ray_numbers(const View& view, int layer, const Stretches& s);
+
+// Modes with Surfaces::own: one whole ray for each path.
+void follow_own_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples,
+                      std::span<vec3> per_light);
+}

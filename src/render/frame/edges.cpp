@@ -1,0 +1,86 @@
+#include "render/frame/edges.h"
+
+#include "base/parallel.h"
+#include "render/frame/frame.h"
+#include "render/frame/samples.h"
+#include "trace/view.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace tyndall {
+namespace {
+constexpr int tile_side = 4;
+constexpr int fewest_samples = 4; // of a pixel that probes pay for
+// Difference between brightest and darkest over their sum, at which a tile takes more samples, and all it may.
+constexpr float least_contrast = 0.15f, full_contrast = 0.6f;
+
+// What centres of pixels show: sums over colours of the picture and of its fog light.
+struct Probes {
+    ivec2 low;
+    Image<vec2> values;
+};
+
+Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
+    View centers = tracer.view;
+    centers.pixel_samples = centers.batches = 1, centers.lamps.clear(), centers.filter = PixelFilter::center;
+    const FrameTracer prober{centers,         tracer.snapshot,     tracer.scatter,
+                             tracer.surfaces, tracer.light_points, tracer.light_depths};
+    Probes probes{low, Image<vec2>(high - low)};
+    std::mutex counting;
+    parallel_for((high.y - low.y + tile_side - 1) / tile_side, [&](int64_t row) {
+        FrameStats counted;
+        const int top = low.y + static_cast<int>(row) * tile_side, bottom = std::min(top + tile_side, high.y);
+        for (int left = low.x; left < high.x; left += tile_side) {
+            ivec2 pixels[16];
+            size_t count = 0;
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < std::min(left + tile_side, high.x); ++x) pixels[count++] = {x, y};
+            PixelSample samples[16];
+            trace_samples(prober, {pixels, count}, 0, {samples, count}, {});
+            for (size_t i = 0; i < count; ++i) {
+                ++counted.camera_rays, counted.steps += static_cast<uint64_t>(samples[i].steps);
+                const vec3 a = samples[i].color, b = samples[i].inscatter;
+                if (samples[i].finite())
+                    probes.values.at(pixels[i].x - low.x, pixels[i].y - low.y) = {a.x + a.y + a.z, b.x + b.y + b.z};
+            }
+        }
+        const std::scoped_lock lock(counting);
+        stats.add(counted);
+    });
+    return probes;
+}
+
+// Over a tile and the pixels beside it.
+float contrast(const Probes& probes, ivec2 corner) {
+    const ivec2 size = probes.values.size;
+    const ivec2 low = glm::max(corner - 1 - probes.low, 0), high = glm::min(corner + tile_side + 1 - probes.low, size);
+    vec2 least(infinity), most(0);
+    for (int y = low.y; y < high.y; ++y)
+        for (int x = low.x; x < high.x; ++x)
+            least = glm::min(least, probes.values.at(x, y)), most = glm::max(most, probes.values.at(x, y));
+    const vec2 both = (most - least) / glm::max(most + least, 1e-30f);
+    return std::max(both.x, both.y);
+}
+}
+
+std::shared_ptr<const TileFactors> edge_factors(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
+    const View& view = tracer.view;
+    if (view.edge_samples <= 1 || view.allotted || view.filter == PixelFilter::center ||
+        view.pixel_samples < fewest_samples)
+        return nullptr;
+    const ivec2 first = low / tile_side, last = (high - 1) / tile_side;
+    const Probes probes =
+        probe(tracer, glm::max(first - 1, 0) * tile_side, glm::min((last + 2) * tile_side, view.size), stats);
+    auto factors = std::make_shared<TileFactors>(TileFactors{first, Image<uint16_t>(last - first + 1, uint16_t{1})});
+    for (int y = first.y; y <= last.y; ++y)
+        for (int x = first.x; x <= last.x; ++x) {
+            const float share =
+                (contrast(probes, ivec2(x, y) * tile_side) - least_contrast) / (full_contrast - least_contrast);
+            const float most = static_cast<float>(view.edge_samples);
+            factors->factors.at(x - first.x, y - first.y) =
+                static_cast<uint16_t>(std::clamp(1 + share * (most - 1), 1.0f, most));
+        }
+    return factors;
+}
+}

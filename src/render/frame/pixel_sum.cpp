@@ -1,0 +1,45 @@
+#include "render/frame/pixel_sum.h"
+
+namespace tyndall {
+void RunningMean::add(vec3 value) {
+    const dvec3 deviation = dvec3(value) - mean;
+    mean += deviation / static_cast<double>(++count);
+    squares += deviation * (dvec3(value) - mean);
+}
+
+vec3 RunningMean::variance() const {
+    return count < 2 ? vec3(0) : vec3(squares / (static_cast<double>(count) * (count - 1)));
+}
+
+void PixelSum::add(const PixelSample& sample) {
+    color += sample.color, inscatter += sample.inscatter;
+    const float w = sample.weight;
+    ++kept, weight += w, alpha += w * sample.alpha, transmittance += w * sample.transmittance,
+        validity += w * sample.validity;
+    if (sample.off_center < off_center) off_center = sample.off_center, depth = sample.depth;
+}
+
+void PixelSum::end_batch(int samples) {
+    const float count = static_cast<float>(samples);
+    half_means[color_mean.count % 2].add(color / count);
+    color_mean.add(color / count);
+    inscatter_mean.add(inscatter / count);
+    color = inscatter = vec3(0);
+}
+
+void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers) {
+    const float all = static_cast<float>(samples);
+    const float count = sum.kept ? sum.weight * all / static_cast<float>(sum.kept) : all;
+    layers.color.at(p.x, p.y) = vec3(sum.color_mean.mean);
+    layers.inscatter.at(p.x, p.y) = vec3(sum.inscatter_mean.mean);
+    layers.alpha.at(p.x, p.y) = sum.alpha / count;
+    layers.depth.at(p.x, p.y) = sum.depth;
+    layers.transmittance.at(p.x, p.y) = sum.transmittance / count;
+    layers.validity.at(p.x, p.y) = sum.validity / count;
+    if (!layers.variance.empty()) layers.variance.at(p.x, p.y) = sum.color_mean.variance();
+    if (!layers.inscatter_variance.empty()) layers.inscatter_variance.at(p.x, p.y) = sum.inscatter_mean.variance();
+    if (layers.half_a.empty()) return;
+    layers.half_a.at(p.x, p.y) = vec3(sum.half_means[0].mean);
+    layers.half_b.at(p.x, p.y) = vec3(sum.half_means[1].mean);
+}
+}

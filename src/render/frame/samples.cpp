@@ -1,0 +1,123 @@
+// Front-to-back compositing of fog stretches and surfaces for sixteen camera rays at once.
+#include "render/frame/samples.h"
+
+#include "base/random.h"
+#include "render/frame/camera_paths.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
+
+namespace tyndall {
+namespace {
+void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<PixelSample> samples,
+             std::span<vec3> per_light) {
+    const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
+    Ray rays[16];
+    Scatter scatter[16];
+    bool open[16];
+    for (int i = 0; i < s.count; ++i) {
+        const Ray& ray = s.path[i].ray;
+        open[i] = !s.hit(i);
+        rays[i] = {ray.origin, ray.direction, open[i] ? fog_reach(tracer.snapshot.media, ray) : s.length[i]};
+    }
+
+    const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
+    const size_t count = static_cast<size_t>(s.count);
+    std::vector<vec3> light_parts(lights * count, vec3(0));
+    tracer.scatter({{rays, count},
+                    {numbers.ids, count},
+                    light_parts,
+                    {numbers.jitter, count},
+                    {numbers.places, count},
+                    {},
+                    {numbers.positions, count},
+                    {open, count}},
+                   {scatter, count});
+
+    for (int i = 0; i < s.count; ++i) {
+        Path& path = s.path[i];
+        PixelSample& result = samples[path.lane];
+        result.color += path.through * scatter[i].radiance;
+        result.inscatter += path.through * scatter[i].radiance;
+        result.transmittance *= scatter[i].transmittance;
+        result.validity = std::min(result.validity, scatter[i].validity);
+        result.steps += scatter[i].steps;
+        for (size_t l = 0; l < lights; ++l)
+            per_light[path.lane * lights + l] += path.through * light_parts[i * lights + l];
+        path.through *= scatter[i].transmittance;
+    }
+}
+
+// Light of the surfaces met.
+void add_surfaces(const FrameTracer& tracer, int layer, const Stretches& s, const SurfacesMet& met,
+                  std::span<PixelSample> samples, std::span<vec3> per_light) {
+    const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
+    const size_t points = static_cast<size_t>(tracer.light_points);
+    std::vector<vec2> u(met.count * points);
+    vec3 radiance[16];
+    const bool soft = std::ranges::any_of(tracer.snapshot.lights, is_soft);
+    for (size_t k = 0; soft && k < met.count; ++k) {
+        const Path& path = s.path[met.which[k]];
+        for (size_t p = 0; p < points; ++p) {
+            const uint32_t index = path.place.index * static_cast<uint32_t>(points) + static_cast<uint32_t>(p);
+            const Sample2 random = sample2(index, hash(path.seed, layer, use_soft_light));
+            u[k * points + p] = {random.x, random.y};
+        }
+    }
+    std::vector<vec3> light_parts(lights * met.count, vec3(0));
+    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, u, {radiance, met.count},
+                   lights ? &light_parts : nullptr);
+
+    for (size_t k = 0; k < met.count; ++k) {
+        const Path& path = s.path[met.which[k]];
+        const float share = path.through * met.points[k].alpha;
+        samples[path.lane].color += share * radiance[k];
+        for (size_t l = 0; l < lights; ++l) per_light[path.lane * lights + l] += share * light_parts[k * lights + l];
+    }
+}
+
+void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
+    result.color += path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
+    result.alpha = 1 - path.through;
+}
+}
+
+bool PixelSample::finite() const {
+    return is_finite(color) && is_finite(inscatter) && std::isfinite(alpha + transmittance + validity);
+}
+
+namespace {
+void follow_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
+    for (int layer = 0; layer < most_layers; ++layer) {
+        find_surfaces(tracer.snapshot, layer, s);
+        add_fog(tracer, layer, s, samples, per_light);
+        for (int i = 0; i < s.count; ++i)
+            if (!s.hit(i)) add_background(tracer, s.path[i], samples[s.path[i].lane]);
+
+        const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
+        if (met.count == 0) return;
+        add_surfaces(tracer, layer, s, met, samples, per_light);
+        if (!advance(tracer.view, met, s, samples)) return;
+    }
+}
+}
+
+void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
+                   std::span<vec3> per_light) {
+    std::fill(per_light.begin(), per_light.end(), vec3(0));
+    Stretches s;
+    start_paths(tracer.view, pixels, sample, s, samples);
+    if (tracer.surfaces == Surfaces::own)
+        follow_own_paths(tracer, s, samples, per_light);
+    else
+        follow_paths(tracer, s, samples, per_light);
+
+    const size_t lights = per_light.size() / pixels.size();
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const float weight = samples[i].weight;
+        samples[i].color *= weight, samples[i].inscatter *= weight;
+        for (size_t l = 0; l < lights; ++l) per_light[i * lights + l] *= weight;
+    }
+}
+}

@@ -1,0 +1,36 @@
+// Camera rays of neighbouring pixels followed through transparent surfaces and the fog between them.
+#pragma once
+#include "modes/promise.h"
+#include "render/frame/frame.h"
+#include "trace/surface.h"
+
+#include <span>
+#include <vector>
+
+namespace tyndall {
+// What one camera ray sees.
+struct PixelSample {
+    vec3 color{0}, inscatter{0}; // times the weight
+    float weight = 1;            // of the sample in its pixel
+    float alpha = 0, transmittance = 1, validity = 1;
+    float depth = infinity; // planar z of the first opaque surface
+    float off_center = 0;   // squared distance of the ray from the pixel's centre, pixels
+    int steps = 0;
+
+    bool finite() const; // of everything but the depth
+};
+
+// All that the samples of a frame share.
+struct FrameTracer {
+    const View& view;
+    const Snapshot& snapshot;
+    ScatterFunction scatter;
+    Surfaces surfaces;                        // shared or own: who shades them
+    int light_points;                         // of a soft light, for shared surfaces
+    std::span<const LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+};
+
+// Traces sample `sample` of up to 16 pixels. `per_light` is empty or receives pixels × lights of the snapshot.
+void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
+                   std::span<vec3> per_light);
+}

@@ -1,0 +1,64 @@
+// OpenEXR pictures. The only user of OpenEXR. Encoded in memory, then written atomically.
+//
+// Channels: R G B A (premultiplied; RGB holds the background as far as it shows, A does not), Z, inscatter.R/G/B,
+// transmittance.T, validity.T, light_NAME.R/G/B, Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of
+// the even and odd batches). Half floats, clamped to ±65504 (tyndall:clamped counts them), or 32 bit on request; always
+// 32 bit are Z, 1e10 where there is no surface, Variance and the halves. Rec.709, ZIP, no date and no host: the same
+// input gives the same bytes.
+#pragma once
+#include "render/frame/layers.h"
+#include "scene/camera.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+// How a picture was made; becomes header attributes.
+struct Provenance {
+    Camera camera;
+    double frame_rate = 24;
+    int frame = 0;
+    std::map<std::string, std::string> attributes; // "tyndall:mode" -> "march", ...: text for each, names to 31 bytes
+};
+
+// Which layers go into the file besides RGBA.
+struct ExrOptions {
+    std::vector<std::string> layers{"Z", "inscatter", "transmittance"};
+    bool full_float = false; // colours as 32 bit instead of half
+};
+
+// Z, inscatter, transmittance, validity, lights, variance, halves: all a file can hold.
+const std::vector<std::string>& layer_names();
+
+// Throws Error (usage) naming a layer there is none of.
+void check_layer_names(const ExrOptions& options);
+
+// Names of the channels a picture gets, sorted: what write_exr will write for these lights.
+std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options);
+
+// Throws Error (usage, unwritable, internal).
+void write_exr(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,
+               const ExrOptions& options);
+
+// The colours as a file with these options holds them.
+Image<vec3> stored_color(const Layers& layers, const ExrOptions& options);
+
+inline constexpr float no_surface_z = 1e10f;
+
+struct ExrFile {
+    ivec2 display{0}, low{0}, size{0}; // display window's size; data window within it
+    std::vector<std::pair<std::string, Image<float>>> channels;
+    std::map<std::string, std::string> attributes; // text attributes; others as text
+    std::string compression;
+    const Image<float>* channel(std::string_view name) const;
+};
+
+// R, G and B; black where the file lacks them.
+Image<vec3> color_of(const ExrFile& exr);
+
+// Every pixel is decoded. Throws Error (unreadable, refused): flat, single part, NONE/RLE/ZIPS/ZIP only; limits apply.
+ExrFile read_exr(const std::filesystem::path& file);
+}

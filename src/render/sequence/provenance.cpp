@@ -1,0 +1,229 @@
+// Hashes and header texts of a frame.
+#include "render/sequence/provenance.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+#include "base/text.h"
+#include "integrate/style.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "render/frame/frame.h"
+#include "render/frame/layers.h"
+#include "render/sequence/job.h"
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+namespace tyndall {
+namespace {
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", value);
+    return text;
+}
+std::string numbers(vec3 v) { return number(v.x) + "," + number(v.y) + "," + number(v.z); }
+std::string pair_text(ivec2 v, const char* between) { return std::to_string(v.x) + between + std::to_string(v.y); }
+
+// Hash of the hashes of a file's pieces, so that volumes of any size need little memory.
+std::string hash_of_file(const std::filesystem::path& path) {
+    check_readable(path);
+    std::ifstream stream(path, std::ios::binary);
+    std::string piece(size_t{1} << 20, '\0'), hashes;
+    while (stream) {
+        stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+        hashes += content_hash(std::string_view(piece).substr(0, static_cast<size_t>(stream.gcount())));
+    }
+    if (stream.bad() || !stream.eof()) fail(ExitCode::unreadable, path.string(), "cannot be read to its end");
+    return content_hash(hashes);
+}
+
+const std::string& file_hash(const std::filesystem::path& path, FileHashes& files) {
+    std::string& hash = files.known[path];
+    if (hash.empty()) hash = hash_of_file(path);
+    return hash;
+}
+
+// The scene's own files; volumes count by frame.
+std::string scene_text(const Scene& scene, FileHashes& files) {
+    std::string text;
+    for (const std::filesystem::path& input : scene.inputs)
+        if (input.extension() != ".vdb") text += "input=" + file_hash(input, files) + "\n";
+    return text;
+}
+
+std::string fog_text(const Scene& scene, const RenderJob& job, int frame, FileHashes& files) {
+    std::string text;
+    for (const MediumSource& medium : scene.media) {
+        if (medium.kind != MediumKind::vdb) continue;
+        const auto file = sequence_file(medium.sequence, frame, job.missing);
+        text += "fog=" + (file ? file_hash(*file, files) : std::string("none")) + "\n";
+    }
+    return text;
+}
+
+// Lights as they were loaded: the unit they were read in is not in the files.
+std::string light_text(const Scene& scene, double seconds) {
+    std::string text;
+    for (const LightSource& light : scene.lights)
+        text += "light=" + light.name + " " + numbers(light.color.at(seconds) * light.intensity.at(seconds)) + "\n";
+    return text;
+}
+
+std::string camera_text(const Camera& camera) {
+    return numbers(camera.position) + " " + numbers(camera.right) + " " + numbers(camera.up) + " " +
+           number(camera.vertical_fov) + " " + number(camera.ortho_height) + " " + number(camera.near) + " " +
+           number(camera.far);
+}
+
+std::string settings_text(const Settings& settings) {
+    std::string text;
+    for (const SettingRow& row : setting_rows()) text += (text.empty() ? "" : " ") + row.name + "=" + row.get(settings);
+    return text;
+}
+
+std::string joined_layers(const ExrOptions& options) {
+    std::string text;
+    for (const std::string& layer : options.layers) text += (text.empty() ? "" : ",") + layer;
+    return text.empty() ? "none" : text;
+}
+
+// All that tyndall render is told but scene, output, frames and picture size.
+std::string option_text(const RenderJob& job) {
+    std::string text = " --seed " + std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
+    if (job.exr.full_float) text += " --float";
+    if (job.target_error > 0) text += " --target-error " + number(job.target_error);
+    if (job.time_budget > 0) text += " --time-budget " + number(job.time_budget);
+    if (job.history > 0) text += " --history " + std::to_string(job.history);
+    if (!job.isa.empty()) text += " --isa " + job.isa;
+    if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
+    if (job.crop_low != job.crop_high)
+        text += " --crop " + pair_text(job.crop_low, ",") + "," + pair_text(job.crop_high, ",");
+    constexpr const char* missing[] = {"error", "hold", "skip"};
+    if (job.missing != MissingFrame::error) text += std::string(" --missing ") + missing[static_cast<int>(job.missing)];
+    constexpr const char* units[] = {"spec", "unitless", "raw"};
+    if (job.light_units != LightUnits::spec)
+        text += std::string(" --light-units ") + units[static_cast<int>(job.light_units)];
+
+    const Settings usual = settings_for(job.quality);
+    // How many samples are usual depends on the mode: they are always said.
+    for (const SettingRow& row : setting_rows())
+        if (row.get(job.settings) != row.get(usual) || (row.name == "pixel.samples" && !has_goal(job)))
+            text += " --set " + row.name + "=" + row.get(job.settings);
+    return text;
+}
+
+std::string mode_text(const RenderJob& job) {
+    return " --mode " + job.mode + " --quality " + std::string(name_of(job.quality));
+}
+
+std::string command_text(const RenderJob& job, const View& view) {
+    return "tyndall render " + quoted_for_shell(job.scene_file.filename().string()) + " -o out.####.exr --frames " +
+           std::to_string(view.frame) + mode_text(job) + " --res " + pair_text(view.size, "x") + option_text(job);
+}
+}
+
+std::string command_line(const RenderJob& job) {
+    std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o " +
+                       quoted_for_shell(job.output) + " --frames " + format_frames(job.frames) + mode_text(job);
+    if (job.resolution.x > 0) text += " --res " + pair_text(job.resolution, "x");
+    text += option_text(job);
+    if (job.png) text += " --png";
+    if (job.png && job.exposure != 0) text += " --exposure " + number(job.exposure);
+    return text;
+}
+
+bool has_goal(const RenderJob& job) { return job.target_error > 0 || job.time_budget > 0; }
+
+bool measures_noise(const RenderJob& job) { return wants_layer(job, "variance") || wants_layer(job, "halves"); }
+
+bool wants_layer(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
+
+View view_of(const Scene& scene, const RenderJob& job, int frame) {
+    View view;
+    view.camera = camera_at(scene, find_camera(scene, job.camera), moment_of(scene, frame).seconds);
+    view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
+    view.crop_low = job.crop_low, view.crop_high = job.crop_high;
+    view.pixel_samples = job.settings.pixel.samples;
+    view.filter = job.settings.pixel.filter, view.filter_radius = job.settings.pixel.filter_radius;
+    view.lamp_samples = job.settings.pixel.lamp_samples, view.edge_samples = job.settings.pixel.edge_samples;
+    view.jitter = job.settings.pixel.jitter, view.per_light = wants_layer(job, "lights");
+    view.seed = job.seed, view.frame = frame;
+    if (measures_noise(job)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
+    return view;
+}
+
+std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files) {
+    const double seconds = moment_of(scene, view.frame).seconds;
+    std::string text = "version=" TYNDALL_VERSION "\n" + command_text(job, view) + "\n" + settings_text(job.settings);
+    text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
+    text += job.exr.full_float ? "float\n" : "half\n";
+    text += scene_text(scene, files) + fog_text(scene, job, view.frame, files) + light_text(scene, seconds);
+    if (!job.unsaved.empty()) text += "edits=" + job.unsaved + "\n";
+    return content_hash(text);
+}
+
+Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
+                         const FrameStats& stats) {
+    Provenance result{view.camera, scene.frame_rate, view.frame, {}};
+    auto& attributes = result.attributes;
+    attributes["tyndall:version"] = TYNDALL_VERSION;
+    attributes["tyndall:scene"] = job.scene_file.filename().string();
+    attributes["tyndall:camera"] = view.camera.name;
+    attributes["tyndall:mode"] = job.mode;
+    attributes["tyndall:quality"] = name_of(job.quality);
+    attributes["tyndall:settings"] = settings_text(stats.integrator ? stats.integrator->settings : job.settings);
+    attributes["tyndall:seed"] = std::to_string(job.seed);
+    attributes["tyndall:isa"] = job.isa;
+    attributes["tyndall:command"] = command_text(job, view);
+    attributes["tyndall:hash"] = hash;
+    attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
+    if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
+    if (is_stylised(job.settings.style) && honours_style(find_mode(job.mode))) attributes["stylised"] = "1";
+    if (stats.noise) {
+        attributes["tyndall:samples"] = std::to_string(stats.samples);
+        attributes["tyndall:achievedError"] = number(stats.error()->error);
+        attributes["tyndall:errorBound"] = number(stats.error()->bound);
+    }
+    if (stats.integrator) {
+        attributes["tyndall:candidate"] = stats.integrator->candidate;
+        attributes["tyndall:noiseError"] = number(stats.noise->error);
+        attributes["tyndall:noiseBound"] = number(stats.noise->bound);
+        attributes["tyndall:integratorError"] = number(stats.integrator->error.error);
+        attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
+    }
+    if (job.target_error > 0) attributes["tyndall:targetError"] = number(job.target_error);
+    if (job.time_budget > 0) {
+        attributes["tyndall:timeBudget"] = number(job.time_budget);
+        attributes["tyndall:timeUsed"] = number(stats.goal_seconds);
+    }
+    if (!job.unsaved.empty()) attributes["tyndall:unsavedEdits"] = job.unsaved;
+    if (!job.plan.empty()) attributes["tyndall:plan"] = job.plan;
+    std::string limits;
+    for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;
+    if (!limits.empty()) attributes["tyndall:limits"] = limits;
+    return result;
+}
+
+void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats) {
+    const auto value = [&](const char* name) {
+        const auto found = attributes.find(name);
+        return found == attributes.end() ? -1 : std::strtod(found->second.c_str(), nullptr);
+    };
+    stats.non_finite = static_cast<uint64_t>(std::clamp(value("tyndall:nonFinite"), 0.0, 1e18));
+    stats.goal_seconds = std::max(value("tyndall:timeUsed"), 0.0);
+    const Noise integrator{value("tyndall:integratorError"), value("tyndall:integratorBound")};
+    const bool parts = integrator.error >= 0 && integrator.bound >= 0 && attributes.contains("tyndall:candidate");
+    const Noise noise{value(parts ? "tyndall:noiseError" : "tyndall:achievedError"),
+                      value(parts ? "tyndall:noiseBound" : "tyndall:errorBound")};
+    if (noise.error < 0 || noise.bound < 0) return;
+    stats.noise = noise;
+    if (parts) stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
+    stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));
+}
+}

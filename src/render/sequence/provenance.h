@@ -1,0 +1,34 @@
+// What a frame is made from, as a view to render, a hash to compare and attributes to keep.
+#pragma once
+#include "render/sequence/job.h"
+
+#include <map>
+#include <string>
+
+namespace tyndall {
+struct Scene;
+struct View;
+
+View view_of(const Scene& scene, const RenderJob& job, int frame);
+
+// Content hashes of files already read, by path: a file counts as it was when first asked for.
+struct FileHashes {
+    std::map<std::filesystem::path, std::string> known;
+};
+
+// One hash over everything the pixels and header of a frame depend on: contents of the scene's files and of the frame's
+// fog, the lights as loaded, mode, settings, size, crop, camera, seed, layers, instruction set and program version.
+// Directories do not count. Throws Error (unreadable).
+std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files);
+
+// The command that makes all of a job's frames, ready for a shell. What stands in no file is not in it: unsaved edits,
+// a camera moved by hand.
+std::string command_line(const RenderJob& job);
+
+// How to make the frame again.
+Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
+                         const FrameStats& stats);
+
+// Takes samples, noise and what was not finite back from the attributes of a picture.
+void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats);
+}

@@ -1,0 +1,40 @@
+// Frames are judged by content alone: not by date, nor by a header's word.
+#include "render/sequence/resume.h"
+
+#include "base/error.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+std::vector<std::string> names_of(const ExrFile& exr) {
+    std::vector<std::string> names;
+    for (const auto& channel : exr.channels) names.push_back(channel.first);
+    std::ranges::sort(names);
+    return names;
+}
+
+std::string difference(const ExrFile& exr, const WantedFrame& wanted) {
+    const auto hash = exr.attributes.find("tyndall:hash");
+    if (hash == exr.attributes.end()) return "it does not say how it was made";
+    if (exr.display != wanted.display || exr.low != wanted.low || exr.size != wanted.size) return "its size differs";
+    if (names_of(exr) != wanted.channels) return "its layers differ";
+    if (hash->second != wanted.hash) return "scene, fog or settings have changed";
+    return {};
+}
+}
+
+std::optional<ExrFile> finished_frame(const std::filesystem::path& file, const WantedFrame& wanted, std::string& why) {
+    why.clear();
+    std::error_code error;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return {};
+    try {
+        ExrFile exr = read_exr(file);
+        why = difference(exr, wanted);
+        if (why.empty()) return exr;
+    } catch (const Error& problem) {
+        why = problem.what();
+    }
+    return {};
+}
+}

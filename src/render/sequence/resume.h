@@ -1,0 +1,18 @@
+// Whether a frame on disk is the one a job would render.
+#pragma once
+#include "render/image/exr.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct WantedFrame {
+    ivec2 display{0}, low{0}, size{0};
+    std::vector<std::string> channels; // sorted
+    std::string hash;
+};
+
+// The frame when every pixel decodes and all is as wanted; else nothing, and `why` says why (empty: there is no file).
+std::optional<ExrFile> finished_frame(const std::filesystem::path& file, const WantedFrame& wanted, std::string& why);
+}

@@ -1,0 +1,321 @@
+// The pipeline over frames: one is rendered while the one before is written and the one after is loaded.
+#include "render/sequence/sequence.h"
+
+#include "base/error.h"
+#include "base/io/frames.h"
+#include "base/parallel.h"
+#include "modes/history.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "render/image/png.h"
+#include "render/sequence/check_job.h"
+#include "render/sequence/loaded_frame.h"
+#include "render/sequence/provenance.h"
+#include "render/sequence/resume.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "volume/medium.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace tyndall {
+namespace {
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// A frame ready to render, and after that ready to write.
+struct Work {
+    size_t index = 0; // in the job's frames
+    FrameReport report;
+    std::string hash;
+    View view;
+    Snapshot snapshot;
+    Layers layers;
+};
+
+// What the stages share.
+struct Pipeline {
+    const Scene& scene;
+    const RenderJob& job;
+    const Mode& mode;
+    Progress& progress;
+    std::atomic<bool>& cancel;
+    std::vector<std::string> channels; // of every file
+    FileHashes files;
+    LoadedFrame first; // of the job, until it is taken
+    size_t next = 0;   // index of the first frame not yet looked at
+    RenderReport report;
+    std::mutex reporting;         // held to change the report
+    std::atomic<int> settled = 0; // frames rendered or kept
+};
+
+float png_exposure(const Pipeline& pipeline, int frame) {
+    return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
+}
+
+// The error again, with its frame before its place and the reason kept whole.
+[[noreturn]] void fail_in_frame(int frame, const Error& error) {
+    const std::string text = error.what(), name = "frame " + std::to_string(frame);
+    const size_t split = text.rfind(": ", 200);
+    if (split == text.npos) fail(error.code, name, text);
+    fail(error.code, name + ": " + text.substr(0, split), text.substr(split + 2));
+}
+
+void say(const Pipeline& pipeline, const Work& work, const std::string& what) {
+    pipeline.progress.line("frame " + std::to_string(work.report.frame) + " (" + std::to_string(work.index + 1) + "/" +
+                           std::to_string(pipeline.job.frames.size()) + ") " + what);
+}
+
+WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
+    const View& view = work.view;
+    const bool cropped = view.crop_low != view.crop_high;
+    return {view.size, cropped ? view.crop_low : ivec2(0), cropped ? view.crop_high - view.crop_low : view.size,
+            pipeline.channels, work.hash};
+}
+
+// Keeps a frame that is already there and right; its PNG is made anew, since that carries no hash.
+bool keep(Pipeline& pipeline, Work& work) {
+    std::string why;
+    const std::optional<ExrFile> exr = finished_frame(work.report.file, wanted_frame(pipeline, work), why);
+    if (!exr) {
+        if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
+        return false;
+    }
+    if (pipeline.job.png)
+        write_png(png_name(work.report.file), color_of(*exr), png_exposure(pipeline, work.report.frame));
+    work.report.kept = true;
+    read_noise(exr->attributes, work.report.stats);
+    say(pipeline, work, "kept " + work.report.file);
+    return true;
+}
+
+// The snapshot of a frame, sharing with the one before; of the job's first frame perhaps the one that is there.
+LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
+    LoadedFrame first = std::exchange(pipeline.first, {});
+    if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
+    const auto start = Clock::now();
+    if (!previous) previous = &first.snapshot;
+    Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.job.missing);
+    return {std::move(snapshot), seconds_since(start)};
+}
+
+void report_frame(Pipeline& pipeline, const Work& work) {
+    const std::scoped_lock lock(pipeline.reporting);
+    pipeline.report.non_finite += work.report.stats.non_finite;
+    pipeline.report.frames.push_back(work.report);
+}
+
+void report_notes(Pipeline& pipeline, const Snapshot& snapshot) {
+    const std::scoped_lock lock(pipeline.reporting);
+    for (const std::string& note : snapshot.notes)
+        if (!std::ranges::count(pipeline.report.notes, note)) pipeline.report.notes.push_back(note);
+}
+
+// The next frame that has to be rendered; kept ones on the way are reported.
+std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
+    while (pipeline.next < pipeline.job.frames.size() && !pipeline.cancel) {
+        const auto start = Clock::now();
+        Work work;
+        work.index = pipeline.next++;
+        const int frame = work.report.frame = pipeline.job.frames[work.index];
+        work.report.file = frame_name(pipeline.job.output, frame);
+        try {
+            work.view = view_of(pipeline.scene, pipeline.job, frame);
+            work.hash = frame_hash(pipeline.scene, pipeline.job, work.view, pipeline.files);
+            if (pipeline.job.resume && keep(pipeline, work)) {
+                work.report.load_seconds = seconds_since(start);
+                report_frame(pipeline, work);
+                pipeline.progress.set(++pipeline.settled);
+                continue;
+            }
+            work.report.load_seconds = seconds_since(start);
+            LoadedFrame frame_now = loaded(pipeline, frame, previous);
+            work.report.load_seconds += frame_now.seconds;
+            work.snapshot = std::move(frame_now.snapshot);
+        } catch (const Error& error) {
+            fail_in_frame(frame, error);
+        }
+        report_notes(pipeline, work.snapshot);
+        return work;
+    }
+    return {};
+}
+
+// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
+// the scene's first frame time stands still. Each shares with the last; the first with what the job's frame before
+// kept.
+void warm_up(const Pipeline& pipeline, Work& work, History& history) {
+    const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
+    Snapshot previous = work.snapshot;
+    previous.kept = work.snapshot.kept_before;
+    for (int back = pipeline.job.history; back > 0 && !pipeline.cancel; --back) {
+        const int earlier = std::max(frame - back, first);
+        Snapshot snapshot =
+            make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.job.missing);
+        View view = view_of(pipeline.scene, pipeline.job, earlier);
+        view.frame = frame - back;
+        pipeline.mode.prepare(view, snapshot, pipeline.job.settings, &history);
+        previous = std::move(snapshot);
+    }
+    work.snapshot.kept_before = previous.kept;
+}
+
+void render(Pipeline& pipeline, Work& work) {
+    const RenderJob& job = pipeline.job;
+    const auto start = Clock::now();
+    FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}, {}};
+    options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
+    FrameStats& stats = work.report.stats;
+    try {
+        History history;
+        if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
+        const Goal goal{job.target_error, job.time_budget, job.quality, {}, work.index == 0 ? job.choice : nullptr,
+                        job.wanted};
+        work.layers =
+            has_goal(job)
+                ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, goal, options, stats)
+                : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
+    } catch (const Error& error) {
+        fail_in_frame(work.report.frame, error);
+    }
+    ++pipeline.settled;
+    work.report.seconds = seconds_since(start);
+}
+
+std::string short_text(const char* format, double value) {
+    char text[80];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+// What is known of the error, its parts and what was asked for.
+std::string error_text(const FrameStats& stats, const RenderJob& job) {
+    if (!stats.noise) return {};
+    std::string text = stats.integrator ? ", error " : ", noise ";
+    text += short_text("%.3g", stats.error()->error) + short_text(", at most %.3g", stats.error()->bound);
+    if (job.target_error > 0) text += short_text(" (wanted %.3g)", job.target_error);
+    if (stats.integrator)
+        text += short_text(": noise %.3g", stats.noise->error) +
+                short_text(", integrator %.3g", stats.integrator->error.error) + " (" + stats.integrator->candidate +
+                ")";
+    text += short_text(stats.samples == 1 ? ", %.0f sample per pixel" : ", %.0f samples per pixel", stats.samples);
+    if (stats.integrator && job.settings.fluence.orders > 1)
+        text += ", of light scattered once: what the grid for the rest adds to it is not measured";
+    if (job.time_budget > 0)
+        text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", job.time_budget);
+    return text;
+}
+
+void write(Pipeline& pipeline, Work& work) {
+    const RenderJob& job = pipeline.job;
+    const auto start = Clock::now();
+    FrameReport& report = work.report;
+    try {
+        const Provenance provenance = provenance_of(pipeline.scene, job, work.view, work.hash, report.stats);
+        write_exr(report.file, work.layers, provenance, job.exr);
+        if (job.png)
+            write_png(png_name(report.file), stored_color(work.layers, job.exr), png_exposure(pipeline, report.frame));
+    } catch (const Error& error) {
+        fail_in_frame(report.frame, error);
+    }
+    report.write_seconds = seconds_since(start);
+    report_frame(pipeline, work);
+
+    char seconds[32];
+    std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
+    std::string text = std::string(seconds) + " -> " + report.file + error_text(report.stats, job);
+    if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
+    say(pipeline, work, text);
+}
+
+// Runs `body` and keeps what it throws for later, so that the stage beside it can end in peace.
+template<class Body> std::exception_ptr caught(const Body& body) {
+    try {
+        body();
+    } catch (const std::exception&) {
+        return std::current_exception();
+    }
+    return {};
+}
+
+void run(Pipeline& pipeline) {
+    std::optional<Work> current = load_next(pipeline, nullptr), rendered;
+    while (current) {
+        std::optional<Work> next;
+        std::exception_ptr render_error, write_error, load_error;
+        run_together({[&] { render_error = caught([&] { render(pipeline, *current); }); },
+                      [&] { load_error = caught([&] { next = load_next(pipeline, &current->snapshot); }); },
+                      [&] {
+                          if (rendered) write_error = caught([&] { write(pipeline, *rendered); });
+                      }});
+        if (write_error) std::rethrow_exception(write_error);
+        if (render_error && pipeline.cancel) return;
+        if (render_error) std::rethrow_exception(render_error);
+
+        // The fog and triangles of a finished frame are not needed any more, unless the next one shares them.
+        current->snapshot = {};
+        rendered = std::move(current);
+        current = std::move(next);
+        if (load_error) {
+            write(pipeline, *rendered);
+            std::rethrow_exception(load_error);
+        }
+    }
+    if (rendered) write(pipeline, *rendered);
+}
+
+uint64_t peak_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+}
+
+LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot* previous) {
+    const auto start = Clock::now();
+    flush_denormals();
+    Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), previous, job.missing);
+    return {std::move(snapshot), seconds_since(start)};
+}
+
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
+                             std::atomic<bool>& cancel, LoadedFrame* first) {
+    const auto start = Clock::now();
+    check_job(scene, job, mode);
+    flush_denormals();
+
+    std::vector<std::string> lights;
+    for (const LightSource& light : scene.lights) lights.push_back(light.name);
+    Pipeline pipeline{scene,  job,
+                      mode,   progress,
+                      cancel, channel_names(lights, job.exr),
+                      {},     first ? std::move(*first) : LoadedFrame{},
+                      0,      {},
+                      {}};
+    run(pipeline);
+
+    RenderReport& report = pipeline.report;
+    std::ranges::sort(report.frames, {}, [&](const FrameReport& frame) {
+        return std::ranges::find(job.frames, frame.frame) - job.frames.begin();
+    });
+    for (const FrameReport& frame : report.frames)
+        report.missed += job.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > job.target_error;
+    report.cancelled = cancel && report.frames.size() < job.frames.size();
+    report.seconds = seconds_since(start);
+    report.peak_memory_bytes = peak_memory();
+    return std::move(report);
+}
+
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
+                             LoadedFrame* first) {
+    return render_sequence(scene, job, find_mode(job.mode), progress, cancel, first);
+}
+}

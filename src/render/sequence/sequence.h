@@ -1,0 +1,48 @@
+// Frames of a scene to files: resumable, atomic, with progress and statistics.
+#pragma once
+#include "base/io/progress.h"
+#include "render/frame/layers.h"
+#include "render/sequence/job.h"
+
+#include <atomic>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct LoadedFrame;
+struct Mode;
+struct Scene;
+
+struct FrameReport {
+    int frame = 0;
+    std::string file;
+    bool kept = false; // by resume; nothing was rendered, noise and samples are those of the file
+    double load_seconds = 0, seconds = 0, write_seconds = 0;
+    FrameStats stats;
+};
+
+struct RenderReport {
+    std::vector<FrameReport> frames; // complete ones, in the order of the job
+    std::vector<std::string> notes;
+    int missed = 0;         // frames that are further off than the target error
+    bool cancelled = false; // stopped early: the frames above are complete, no file is partial
+    double seconds = 0;
+    uint64_t non_finite = 0, peak_memory_bytes = 0;
+};
+
+// Renders the job's frames; while one renders, the next is loaded and the last is written. `first` (may be null)
+// holds the first frame, which is taken out of it and not loaded again. Output names are tested and
+// leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
+// beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
+// channels and size, and its `tyndall:hash` equals that of the job. Throws Error; one of a frame names it, and frames
+// finished before it are written.
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
+                             LoadedFrame* first = nullptr);
+
+// As above with a mode that need not be in the table.
+RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
+                             std::atomic<bool>& cancel, LoadedFrame* first = nullptr);
+
+// JSON of a report, with a schema version.
+std::string stats_json(const RenderReport& report, const RenderJob& job);
+}

@@ -1,0 +1,145 @@
+// Lights of a scene file: new ones, and changes to those of the glTF.
+#include "scene/file/scene_file.h"
+
+namespace tyndall {
+namespace {
+LightKind kind_named(std::string_view name) {
+    if (name == "sun") return LightKind::sun;
+    return name == "spot" ? LightKind::spot : LightKind::point;
+}
+
+const char* kind_name(LightKind kind) {
+    return kind == LightKind::sun ? "sun" : kind == LightKind::spot ? "spot" : "point light";
+}
+
+// Fields that mean something only for some kinds of light.
+void check_fields(const Field& field, LightKind kind) {
+    const auto only = [&](const char* name, bool fits, const char* who) {
+        if (const Field given = field.member(name); given && !fits)
+            refuse(given, std::string("is for ") + who + " only; this light is a " + kind_name(kind));
+    };
+    only("inner_cone", kind == LightKind::spot, "spots");
+    only("outer_cone", kind == LightKind::spot, "spots");
+    only("direction", kind != LightKind::point, "spots and suns");
+    only("target", kind != LightKind::point, "spots and suns");
+    only("range", kind != LightKind::sun, "point lights and spots");
+    only("radius", kind != LightKind::sun, "point lights and spots");
+    only("angle", kind == LightKind::sun, "suns");
+    if (const Field target = field.member("target"); target && field.member("direction"))
+        refuse(target, "and direction exclude each other");
+}
+
+// Where the light is and shines: given here, or left with the node of the glTF.
+void read_placement(const Field& field, LightSource& light) {
+    const Field position = field.member("position"), target = field.member("target");
+    const Field direction = field.member("direction");
+    if (!position && !target && !direction) {
+        if (light.node < 0) refuse(field, "a new light needs a position, a direction or both");
+        return;
+    }
+    const bool aims = target || direction;
+    if (light.kind != LightKind::sun && !position) refuse(field, "a light that is placed here needs a position");
+    if (light.kind != LightKind::point && !aims)
+        refuse(field, "a light that is placed here needs a direction or a target");
+    if (light.kind == LightKind::sun && target && !position)
+        refuse(target, "needs a position to aim from; a sun can have a direction instead");
+    light.node = -1;
+    if (position) light.position = keyed_vector(position);
+    if (direction) light.direction = keyed_vector(direction);
+    light.target.reset();
+    if (target) light.target = keyed_vector(target);
+    if (target) light.direction = difference(*light.target, light.position, target);
+    for (const vec3 value : light.direction.values)
+        if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
+}
+
+void read_fields(const Field& field, LightSource& light) {
+    const auto number = [&](const char* name, Keyed<float>& value, Keyed<float> (*read)(const Field&)) {
+        if (const Field given = field.member(name)) value = read(given);
+    };
+    if (const Field color = field.member("color")) light.color = keyed_color(color);
+    number("intensity", light.intensity, keyed_number);
+    number("volume_scale", light.volume_scale, keyed_number);
+    number("surface_scale", light.surface_scale, keyed_number);
+    number("inner_cone", light.inner_cone, keyed_degrees);
+    number("outer_cone", light.outer_cone, keyed_degrees);
+    number("radius", light.radius, keyed_number);
+    number("angle", light.angle, keyed_degrees);
+    if (const Field range = field.member("range")) light.range = read_number(range);
+    light.shadows = field.json->boolean_or("shadows", light.shadows);
+    if (light.kind == LightKind::spot && !cones_fit(light))
+        refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
+               "outer_cone must not be less than inner_cone, at any moment");
+}
+
+LightSource* find(Scene& scene, const std::string& name) {
+    for (LightSource& light : scene.lights)
+        if (light.name == name) return &light;
+    return nullptr;
+}
+
+LightSource new_light(const Field& field, const Scene& scene) {
+    for (const char* needed : {"type", "intensity"})
+        if (!field.member(needed)) {
+            std::string hint;
+            if (field.member("name") && !scene.lights.empty())
+                hint = " (no light of the glTF has the name \"" + field.json->string_or("name", "") + "\")";
+            refuse(field, std::string("a new light needs \"") + needed + "\"" + hint);
+        }
+    LightSource light;
+    light.name = field.json->string_or("name", "light " + std::to_string(scene.lights.size() + 1));
+    light.kind = kind_named(field.member("type").json->string);
+    return light;
+}
+}
+
+bool cones_fit(const LightSource& light) {
+    const auto fits = [&](float seconds) { return !(light.inner_cone.at(seconds) > light.outer_cone.at(seconds)); };
+    return fits(0) && std::ranges::all_of(light.inner_cone.times, fits) &&
+           std::ranges::all_of(light.outer_cone.times, fits);
+}
+
+void read_lights(const Field& root, Scene& scene) {
+    const Field lights = root.member("lights");
+    if (!lights) return;
+    const size_t of_gltf = scene.lights.size();
+    for (size_t i = 0; i < lights.json->items.size(); ++i) {
+        const Field field = lights.item(i);
+        LightSource* known = field.member("name") ? find(scene, field.json->string_or("name", "")) : nullptr;
+        if (known && known >= scene.lights.data() + of_gltf)
+            refuse(field.member("name"), "another light has this name already");
+        if (known && field.member("type") && kind_named(field.member("type").json->string) != known->kind)
+            refuse(field.member("type"), std::string("the light of the glTF is a ") + kind_name(known->kind) +
+                                             "; its type cannot be changed");
+        LightSource light = known ? *known : new_light(field, scene);
+        if (!known && find(scene, light.name)) refuse(field, "the name \"" + light.name + "\" is taken");
+        check_fields(field, light.kind);
+        light.entry = field.pointer;
+        read_placement(field, light);
+        read_fields(field, light);
+        if (known)
+            *known = light;
+        else
+            scene.lights.push_back(light);
+    }
+}
+
+void read_billboards(const Field& root, Scene& scene) {
+    const Field billboards = root.member("billboards");
+    if (!billboards) return;
+    for (size_t i = 0; i < billboards.json->items.size(); ++i) {
+        const Field field = billboards.item(i);
+        Billboard card;
+        card.name = field.json->string_or("name", "billboard " + std::to_string(i + 1));
+        card.light = field.member("light").json->string;
+        if (!find(scene, card.light)) refuse(field.member("light"), "there is no light of this name");
+        card.from = read_vector(field.member("from")), card.to = read_vector(field.member("to"));
+        if (card.from == card.to) refuse(field.member("to"), "is the same point as from");
+        if (const Field width = field.member("width_from")) card.width_from = read_number(width);
+        if (const Field width = field.member("width_to")) card.width_to = read_number(width);
+        if (const Field tint = field.member("tint")) card.tint = read_color(tint);
+        if (const Field intensity = field.member("intensity")) card.intensity = read_number(intensity);
+        scene.billboards.push_back(card);
+    }
+}
+}

@@ -1,0 +1,153 @@
+// Fog of a scene file.
+#include "base/error.h"
+#include "scene/file/scene_file.h"
+#include "volume/vdb/vdb.h"
+
+#include <charconv>
+
+namespace tyndall {
+namespace {
+MediumKind kind_named(std::string_view name) {
+    if (name == "height") return MediumKind::height;
+    if (name == "noise") return MediumKind::noise;
+    return name == "vdb" ? MediumKind::vdb : MediumKind::homogeneous;
+}
+
+PhaseKind phase_named(std::string_view name) {
+    if (name == "schlick") return PhaseKind::schlick;
+    if (name == "rayleigh") return PhaseKind::rayleigh;
+    return name == "isotropic" ? PhaseKind::isotropic : PhaseKind::henyey_greenstein;
+}
+
+void read_transform(const Field& field, MediumSource& medium) {
+    if (const Field translate = field.member("translate")) medium.translation = keyed_vector(translate);
+    if (const Field rotate = field.member("rotate"))
+        medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
+    const Field scale = field.member("scale");
+    if (!scale) return;
+    medium.scale = keyed_color(scale); // one number or three, as a colour
+    for (const vec3 value : medium.scale.values)
+        if (value.x * value.y * value.z == 0) refuse(scale, "must not be 0: the fog would have no volume");
+}
+
+void read_bounds(const Field& field, MediumSource& medium) {
+    const Field bounds = field.member("bounds");
+    if (!bounds) return;
+    medium.bounds = {read_vector(bounds.member("low")), read_vector(bounds.member("high"))};
+    for (int axis = 0; axis < 3; ++axis)
+        if (medium.bounds.low[axis] >= medium.bounds.high[axis])
+            refuse(bounds.member("high").item(axis), "must be greater than low");
+}
+
+bool has_g(PhaseKind phase) { return phase == PhaseKind::henyey_greenstein || phase == PhaseKind::schlick; }
+
+void check_phase(const Field& field, const MediumSource& medium) {
+    const Field phase = field.member("phase"), g = field.member("g");
+    if (g && !has_g(medium.phase)) refuse(g, "has no meaning for the phase function \"" + phase.json->string + "\"");
+    if (medium.phase != PhaseKind::schlick) return;
+    for (const float value : medium.g.values)
+        if (std::abs(value) > largest_schlick_g)
+            refuse(g ? g : phase, "Schlick's form departs from Henyey-Greenstein's beyond |g| = 0.5" +
+                                      std::string(g ? "" : " (g comes from the fog's file)") +
+                                      "; use \"henyey_greenstein\"");
+}
+
+// What the file does not say stays what it was: the defaults of the recipe or the volume.
+void read_optics(const Field& field, MediumSource& medium) {
+    if (const Field extinction = field.member("extinction")) medium.extinction = keyed_number(extinction);
+    if (const Field albedo = field.member("albedo")) medium.albedo = keyed_color(albedo);
+    if (const Field g = field.member("g")) medium.g = keyed_number(g);
+    if (const Field emission = field.member("emission")) medium.emission = keyed_color(emission);
+    if (const Field phase = field.member("phase")) medium.phase = phase_named(phase.json->string);
+    check_phase(field, medium);
+    if (!has_g(medium.phase)) medium.g = 0.0f;
+}
+
+void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
+    const Field recipe = field.member("recipe");
+    const std::filesystem::path path = named_file(recipe, scene);
+    medium.recipe = read_recipe(path);
+    add_input(scene, path);
+    medium.extinction = medium.recipe->extinction;
+    medium.albedo = medium.recipe->albedo;
+    medium.g = medium.recipe->g;
+    if (const Field voxel_size = field.member("voxel_size")) medium.voxel_size = read_number(voxel_size);
+    if (const Field wind = field.member("wind")) medium.recipe->wind = read_vector(wind);
+}
+
+// One or three numbers of a metadata text such as "0.9" or "[0.9, 0.8, 0.7]"; empty when there are none.
+std::vector<float> numbers_in(std::string_view text) {
+    std::vector<float> numbers;
+    while (!text.empty() && numbers.size() < 4) {
+        float value;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool good = error == std::errc() && std::isfinite(value);
+        if (good) numbers.push_back(value);
+        text.remove_prefix(good ? end - text.data() : 1);
+    }
+    return numbers;
+}
+
+// Optics a bake wrote into the file's metadata. Values no scene could state are left out.
+bool read_metadata(const std::filesystem::path& path, MediumSource& medium) {
+    bool extinction = false;
+    for (const auto& [name, text] : vdb_metadata(path)) {
+        const std::vector<float> numbers = numbers_in(text);
+        if (numbers.empty()) continue;
+        const vec3 color = numbers.size() == 3 ? vec3(numbers[0], numbers[1], numbers[2]) : vec3(numbers[0]);
+        if (name == "tyndall_extinction_per_m" && numbers[0] >= 0) medium.extinction = numbers[0], extinction = true;
+        if (name == "tyndall_albedo" && glm::all(glm::lessThanEqual(color, vec3(1))) &&
+            glm::all(glm::greaterThanEqual(color, vec3(0))))
+            medium.albedo = color;
+        if (name == "tyndall_g" && std::abs(numbers[0]) <= largest_g) medium.g = numbers[0];
+    }
+    return extinction;
+}
+
+SequenceMode mode_named(std::string_view name) {
+    if (name == "loop") return SequenceMode::loop;
+    if (name == "ping_pong") return SequenceMode::ping_pong;
+    return name == "clip" ? SequenceMode::clip : SequenceMode::hold;
+}
+
+void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
+    const Field file = field.member("file");
+    with_place(file, [&] { medium.sequence = find_sequence(file.json->string, scene.file.parent_path()); });
+    medium.sequence.grid = field.json->string_or("grid", "");
+    if (const Field sequence = field.member("sequence")) {
+        medium.sequence.mode = mode_named(sequence.json->string_or("mode", "hold"));
+        medium.sequence.offset = static_cast<int>(sequence.json->number_or("offset", 0));
+    }
+
+    // The first file speaks for all.
+    if (field.member("extinction") && field.member("albedo") && field.member("g")) return;
+    const int first = medium.sequence.files.empty() ? 0 : medium.sequence.files.front() - medium.sequence.offset;
+    const auto path = sequence_file(medium.sequence, first, MissingFrame::hold);
+    bool known = false;
+    if (path) with_place(file, [&] { known = read_metadata(*path, medium); });
+    if (!known && !field.member("extinction"))
+        warn(scene, file.place() + ": neither the scene nor the file states an extinction; 0.1 per metre is used");
+}
+
+MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
+    MediumSource medium;
+    medium.entry = field.pointer;
+    medium.kind = kind_named(field.member("type").json->string);
+    medium.name = field.json->string_or("name", "medium " + std::to_string(index + 1));
+    if (medium.kind == MediumKind::noise) read_noise(field, medium, scene);
+    if (medium.kind == MediumKind::vdb) read_vdb_source(field, medium, scene);
+    read_optics(field, medium);
+    read_bounds(field, medium);
+    read_transform(field, medium);
+    if (const Field base = field.member("base")) medium.height_base = keyed_number(base);
+    if (const Field falloff = field.member("falloff")) medium.height_falloff = keyed_number(falloff);
+    return medium;
+}
+}
+
+void read_media(const Field& root, Scene& scene) {
+    const Field media = root.member("media");
+    if (!media) return;
+    for (size_t i = 0; i < media.json->items.size(); ++i) scene.media.push_back(medium_source(media.item(i), i, scene));
+}
+}

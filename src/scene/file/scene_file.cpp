@@ -1,0 +1,138 @@
+// Scene files and bare glTF files into a Scene.
+#include "scene/file/scene_file.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "scene/gltf/gltf.h"
+#include "scene/scene_bounds.h"
+#include "scene_schema.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include <charconv>
+
+namespace tyndall {
+namespace {
+std::string lower_extension(const std::filesystem::path& file) {
+    std::string extension = file.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+// "5" or "1-48": the schema has checked the form; negative frames keep their sign.
+void read_frames(const Field& field, Scene& scene) {
+    const std::string& text = field.json->string;
+    const char* end = text.data() + text.size();
+    const char* behind = std::from_chars(text.data(), end, scene.first_frame).ptr;
+    scene.last_frame = scene.first_frame;
+    if (behind != end) std::from_chars(behind + 1, end, scene.last_frame);
+    if (scene.last_frame < scene.first_frame) refuse(field, "the last frame comes before the first");
+}
+
+void read_general(const Field& root, Scene& scene) {
+    scene.frame_rate = root.json->number_or("frame_rate", scene.frame_rate);
+    if (const Field frames = root.member("frames")) read_frames(frames, scene);
+    if (const Field resolution = root.member("resolution"))
+        scene.resolution = {static_cast<int>(resolution.json->items[0].number),
+                            static_cast<int>(resolution.json->items[1].number)};
+    if (const Field exposure = root.member("exposure")) scene.exposure = keyed_number(exposure);
+    if (const Field ambient = root.member("ambient")) scene.ambient = keyed_color(ambient);
+}
+
+// Nothing shines and nothing glows, at any time.
+bool is_dark(const Scene& scene) {
+    const auto black = [](const Keyed<vec3>& color) {
+        return std::ranges::all_of(color.values, [](vec3 value) { return value == vec3(0); });
+    };
+    const Background& back = scene.background;
+    return scene.lights.empty() && black(scene.ambient) && !back.image && black(back.color) && black(back.zenith) &&
+           black(back.ground) &&
+           std::ranges::all_of(scene.media, [&](const auto& fog) { return black(fog.emission); }) &&
+           std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
+}
+
+void read_scene_document(const Json& document, Scene& scene, const LoadOptions& options) {
+    const Field root{&document, scene.file.string(), ""};
+    read_general(root, scene);
+    if (const Field gltf = root.member("gltf")) {
+        load_gltf(named_file(gltf, scene), options, scene);
+        if (!document.boolean_or("gltf_lights", true)) scene.lights.clear();
+    } else if (const Field lights = root.member("gltf_lights")) {
+        refuse(lights, "says nothing without a glTF");
+    }
+    read_cameras(root, scene);
+    read_lights(root, scene);
+    read_media(root, scene);
+    read_background(root, scene);
+    read_billboards(root, scene);
+    if (is_dark(scene)) warn(scene, root.file + ": there is no light: everything will be black");
+}
+}
+
+std::filesystem::path named_file(const Field& field, const Scene& scene) {
+    const std::filesystem::path path = scene.file.parent_path() / field.json->string;
+    with_place(field, [&] { check_readable(path); });
+    return path;
+}
+
+void with_place(const Field& field, const std::function<void()>& read) {
+    try {
+        read();
+    } catch (const Error& error) {
+        fail(error.code, field.place(), error.what());
+    }
+}
+
+void warn(Scene& scene, std::string_view text) {
+    const std::string line = printable(text, 400);
+    if (std::find(scene.warnings.begin(), scene.warnings.end(), line) == scene.warnings.end())
+        scene.warnings.push_back(line);
+}
+
+void add_input(Scene& scene, const std::filesystem::path& path) {
+    if (std::find(scene.inputs.begin(), scene.inputs.end(), path) == scene.inputs.end()) scene.inputs.push_back(path);
+}
+
+Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
+    Scene scene;
+    scene.file = file;
+    const std::string extension = lower_extension(file);
+    if (extension == ".vdb")
+        refuse(file.string(), "is a volume, not a scene; name it in the \"media\" of a scene file");
+    if (extension == ".gltf" || extension == ".glb") {
+        load_gltf(file, options, scene);
+        add_missing_light_and_fog(scene);
+    } else {
+        const Json document = read_json(scene.file, scene_schema);
+        add_input(scene, scene.file);
+        read_scene_document(document, scene, options);
+    }
+    add_missing_camera(scene);
+    return scene;
+}
+
+Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options) {
+    Scene scene;
+    scene.file = file;
+    const Json document = parse_json(text, file.string());
+    check_schema(document, scene_schema, file.string());
+    read_scene_document(document, scene, options);
+    add_missing_camera(scene);
+    return scene;
+}
+
+mat4 node_matrix(const Scene& scene, int node, double seconds) {
+    mat4 world(1);
+    for (; node >= 0; node = scene.nodes[node].parent) {
+        const Node& here = scene.nodes[node];
+        world = (here.matrix
+                     ? *here.matrix
+                     : glm::translate(mat4(1), here.translation.at(seconds)) *
+                           glm::mat4_cast(here.rotation.at(seconds)) * glm::scale(mat4(1), here.scale.at(seconds))) *
+                world;
+    }
+    return world;
+}
+}

@@ -1,0 +1,27 @@
+// The parts of a scene file, read one by one into a Scene. Each throws Error (refused, unreadable) naming file and
+// field.
+#pragma once
+#include "scene/file/values.h"
+#include "scene/scene.h"
+
+#include <functional>
+
+namespace tyndall {
+void read_cameras(const Field& root, Scene& scene);
+void read_lights(const Field& root, Scene& scene); // after the glTF: entries may change its lights
+void read_media(const Field& root, Scene& scene);
+void read_background(const Field& root, Scene& scene);
+void read_billboards(const Field& root, Scene& scene); // after the lights: each names one
+
+// Whether the inner cone never exceeds the outer one, at their keys.
+bool cones_fit(const LightSource& light);
+
+// The path a field gives, relative to the scene file. Throws Error (unreadable) when there is no such regular file.
+std::filesystem::path named_file(const Field& field, const Scene& scene);
+
+// Runs `read` on a file that `field` names; its errors then name the field as well.
+void with_place(const Field& field, const std::function<void()>& read);
+
+void warn(Scene& scene, std::string_view text); // one line, said once
+void add_input(Scene& scene, const std::filesystem::path& path);
+}

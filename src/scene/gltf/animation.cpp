@@ -1,0 +1,85 @@
+// Animations into keys of nodes. All of them play together; where two move the same thing, the first one does.
+#include "base/error.h"
+#include "scene/gltf/document.h"
+
+namespace tyndall {
+namespace {
+Interpolation interpolation_named(std::string_view name) {
+    if (name == "STEP") return Interpolation::step;
+    return name == "CUBICSPLINE" ? Interpolation::cubic : Interpolation::linear;
+}
+
+vec3 element(const float* values, const vec3&) { return {values[0], values[1], values[2]}; }
+quat element(const float* values, const quat&) { return {values[3], values[0], values[1], values[2]}; }
+
+// Keys of a sampler. Keys that do not go forward in time are left out.
+template<class T>
+Keyed<T> keys_of(GltfDocument& document, const tinygltf::AnimationSampler& sampler, int components,
+                 const std::string& pointer) {
+    Keyed<T> keys;
+    keys.interpolation = interpolation_named(sampler.interpolation);
+    const size_t stride = keys.interpolation == Interpolation::cubic ? 3 : 1;
+    const std::vector<float> times = gltf_floats(document, sampler.input, 1, pointer + "/input");
+    const std::vector<float> values = gltf_floats(document, sampler.output, components, pointer + "/output");
+    if (values.size() != times.size() * stride * components)
+        refuse(document.place(pointer + "/output"), "has " + std::to_string(values.size() / components) +
+                                                        " elements, where " + std::to_string(times.size() * stride) +
+                                                        " are needed");
+    for (const float value : values)
+        if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "holds a value that is not a number");
+
+    keys.values.clear();
+    for (size_t i = 0; i < times.size(); ++i) {
+        if (!std::isfinite(times[i])) refuse(document.place(pointer + "/input"), "holds a time that is not a number");
+        if (!keys.times.empty() && times[i] <= keys.times.back()) {
+            document.count("keys that do not go forward in time are left out");
+            continue;
+        }
+        keys.times.push_back(times[i]);
+        for (size_t part = 0; part < stride; ++part)
+            keys.values.push_back(element(&values[(i * stride + part) * components], T()));
+    }
+    return keys;
+}
+
+// Only values are unit quaternions; the tangents of a spline are not.
+void make_unit(Keyed<quat>& keys) {
+    const size_t stride = keys.interpolation == Interpolation::cubic ? 3 : 1;
+    for (size_t i = stride / 2; i < keys.values.size(); i += stride) keys.values[i] = glm::normalize(keys.values[i]);
+}
+
+template<class T> void play(GltfDocument& document, const Keyed<T>& keys, Keyed<T>& target) {
+    if (!target.times.empty()) return document.count("animations of things that already move are left out");
+    target = keys;
+}
+
+void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& channel,
+                 const tinygltf::AnimationSampler& sampler, const std::string& pointer) {
+    if (channel.target_path == "weights") return document.count("animations of morph targets are left out");
+    const int index = channel.target_node < 0 ? -1 : document.nodes[channel.target_node];
+    if (index < 0) return;
+    Node& node = document.scene->nodes[index];
+    if (node.matrix) return document.count("animations of nodes with a matrix are left out");
+    if (channel.target_path == "translation")
+        play(document, keys_of<vec3>(document, sampler, 3, pointer), node.translation);
+    else if (channel.target_path == "scale")
+        play(document, keys_of<vec3>(document, sampler, 3, pointer), node.scale);
+    else if (channel.target_path == "rotation") {
+        Keyed<quat> keys = keys_of<quat>(document, sampler, 4, pointer);
+        make_unit(keys);
+        play(document, keys, node.rotation);
+    } else {
+        document.count("animations of things that are not known are left out");
+    }
+}
+}
+
+void add_gltf_animations(GltfDocument& document) {
+    for (size_t a = 0; a < document.model.animations.size(); ++a) {
+        const tinygltf::Animation& animation = document.model.animations[a];
+        for (const tinygltf::AnimationChannel& channel : animation.channels)
+            add_channel(document, channel, animation.samplers[channel.sampler],
+                        gltf_pointer("animations", a, "samplers/") + std::to_string(channel.sampler));
+    }
+}
+}

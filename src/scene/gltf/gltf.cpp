@@ -1,0 +1,45 @@
+#include "scene/gltf/gltf.h"
+
+#include "base/error.h"
+#include "base/io/json_pointer.h"
+#include "scene/file/scene_file.h"
+#include "scene/gltf/document.h"
+#include "scene/gltf/shape.h"
+
+namespace tyndall {
+std::string gltf_pointer(std::string_view collection, size_t index, std::string_view member) {
+    std::string pointer = "/" + std::string(collection) + "/" + std::to_string(index);
+    return member.empty() ? pointer : pointer + "/" + std::string(member);
+}
+
+std::string GltfDocument::place(std::string_view pointer) const { return json_place(file, pointer); }
+
+void GltfDocument::warn(std::string_view pointer, std::string_view what) {
+    tyndall::warn(*scene, place(pointer) + ": " + std::string(what));
+}
+
+void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Scene& scene) {
+    GltfDocument document;
+    document.path = file, document.file = file.string();
+    document.directory = file.has_parent_path() ? file.parent_path() : ".";
+    document.scene = &scene, document.options = options;
+    add_input(scene, file);
+    {
+        // The text and its tree are gone before the meshes are made.
+        const GltfContainer container = read_gltf_container(file);
+        for (const std::string& warning : container.warnings) document.warn("", warning);
+        const Json json = parse_json(container.json, document.file);
+        check_gltf_shape(json, document.file);
+        check_gltf_extensions(document, json);
+        check_gltf_needs(json, document.file);
+        parse_gltf(document, json);
+        load_gltf_buffers(document, json, container);
+        list_gltf_images(document, json);
+    }
+    check_gltf_ranges(document);
+    add_gltf_nodes(document);
+    add_gltf_cameras_and_lights(document);
+    add_gltf_animations(document);
+    for (const auto& [what, times] : document.counts) document.warn("", what + " (" + std::to_string(times) + ")");
+}
+}

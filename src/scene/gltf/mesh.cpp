@@ -1,0 +1,190 @@
+// Primitives into meshes: lists, strips and fans of triangles, only the vertices they use, nothing that is not a
+// number.
+#include "base/error.h"
+#include "scene/gltf/document.h"
+
+namespace tyndall {
+namespace {
+constexpr size_t most_triangles = size_t{1} << 29;
+
+// The attributes of a primitive as they stand in the file.
+struct Vertices {
+    std::vector<float> positions, normals, uvs, colors;
+    size_t color_parts = 3;
+    size_t count() const { return positions.size() / 3; }
+};
+
+vec3 triple(const std::vector<float>& values, size_t i) {
+    return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+}
+
+std::vector<float> attribute(GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& name,
+                             int components, size_t count, const std::string& pointer,
+                             Scaling scaling = Scaling::as_declared) {
+    const auto found = primitive.attributes.find(name);
+    if (found == primitive.attributes.end()) return {};
+    const std::string place = pointer + "/attributes/" + name;
+    if (const size_t has = document.model.accessors[found->second].count; count && has != count)
+        refuse(document.place(place),
+               "has " + std::to_string(has) + " elements, POSITION has " + std::to_string(count));
+    return gltf_floats(document, found->second, components, place, scaling);
+}
+
+Vertices read_vertices(GltfDocument& document, const tinygltf::Primitive& primitive, int uv_set,
+                       const std::string& pointer) {
+    Vertices vertices;
+    vertices.positions = attribute(document, primitive, "POSITION", 3, 0, pointer);
+    const size_t count = vertices.count();
+    vertices.normals = attribute(document, primitive, "NORMAL", 3, count, pointer);
+    vertices.uvs = attribute(document, primitive, "TEXCOORD_" + std::to_string(uv_set), 2, count, pointer);
+    const auto color = primitive.attributes.find("COLOR_0");
+    if (color == primitive.attributes.end()) return vertices;
+    vertices.color_parts = document.model.accessors[color->second].type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
+    vertices.colors = attribute(document, primitive, "COLOR_0", static_cast<int>(vertices.color_parts), count, pointer,
+                                Scaling::normalized);
+    return vertices;
+}
+
+std::vector<uint32_t> read_indices(GltfDocument& document, const tinygltf::Primitive& primitive, size_t vertices,
+                                   const std::string& pointer) {
+    std::vector<uint32_t> indices;
+    if (primitive.indices >= 0) {
+        indices = gltf_integers(document, primitive.indices, pointer + "/indices");
+        for (size_t i = 0; i < indices.size(); ++i)
+            if (indices[i] >= vertices)
+                refuse(document.place(pointer + "/indices"), "index " + std::to_string(i) + " is " +
+                                                                 std::to_string(indices[i]) + "; there are only " +
+                                                                 std::to_string(vertices) + " vertices");
+        return indices;
+    }
+    if (vertices > most_triangles) refuse(document.place(pointer), "has too many vertices");
+    indices.resize(vertices);
+    for (size_t i = 0; i < vertices; ++i) indices[i] = static_cast<uint32_t>(i);
+    return indices;
+}
+
+std::vector<glm::uvec3> triangles_of(const std::vector<uint32_t>& indices, int mode) {
+    std::vector<glm::uvec3> triangles;
+    const auto add = [&](uint32_t a, uint32_t b, uint32_t c) {
+        if (a != b && b != c && a != c) triangles.push_back({a, b, c});
+    };
+    if (mode == TINYGLTF_MODE_TRIANGLES)
+        for (size_t i = 0; i + 2 < indices.size(); i += 3) add(indices[i], indices[i + 1], indices[i + 2]);
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+        for (size_t i = 0; i + 2 < indices.size(); ++i) add(indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]);
+    if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+        for (size_t i = 1; i + 1 < indices.size(); ++i) add(indices[i], indices[i + 1], indices[0]);
+    return triangles;
+}
+
+// Leaves out triangles with a corner that is not a number; returns how many.
+size_t drop_non_finite(std::vector<glm::uvec3>& triangles, const std::vector<float>& positions) {
+    return std::erase_if(triangles, [&](const glm::uvec3& triangle) {
+        return !is_finite(triple(positions, triangle.x)) || !is_finite(triple(positions, triangle.y)) ||
+               !is_finite(triple(positions, triangle.z));
+    });
+}
+
+// Unit normals; one that is no direction is taken from a triangle it belongs to.
+void mend_normals(Mesh& mesh) {
+    std::vector<bool> bad(mesh.normals.size());
+    for (size_t i = 0; i < mesh.normals.size(); ++i) {
+        const float length = glm::length(mesh.normals[i]);
+        bad[i] = !(length > 0) || !std::isfinite(length);
+        mesh.normals[i] = bad[i] ? vec3(0, 1, 0) : mesh.normals[i] / length;
+    }
+    for (const glm::uvec3& triangle : mesh.triangles) {
+        const vec3 a = mesh.positions[triangle.x];
+        const vec3 face = glm::cross(mesh.positions[triangle.y] - a, mesh.positions[triangle.z] - a);
+        const float length = glm::length(face);
+        for (int corner = 0; corner < 3; ++corner)
+            if (bad[triangle[corner]] && length > 0 && std::isfinite(length))
+                mesh.normals[triangle[corner]] = face / length;
+    }
+}
+
+// Copies the vertices the triangles use, in the order they are first used, and renumbers.
+void compact(const Vertices& vertices, Mesh& mesh) {
+    constexpr uint32_t unused = ~0u;
+    std::vector<uint32_t> place(vertices.count(), unused);
+    const auto finite_or = [](float value, float otherwise) { return std::isfinite(value) ? value : otherwise; };
+    for (glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) {
+            const uint32_t from = triangle[corner];
+            if (place[from] == unused) {
+                place[from] = static_cast<uint32_t>(mesh.positions.size());
+                mesh.positions.push_back(triple(vertices.positions, from));
+                if (!vertices.normals.empty()) mesh.normals.push_back(triple(vertices.normals, from));
+                if (!vertices.uvs.empty())
+                    mesh.uvs.push_back(
+                        {finite_or(vertices.uvs[2 * from], 0), finite_or(vertices.uvs[2 * from + 1], 0)});
+                if (!vertices.colors.empty()) {
+                    const float* color = &vertices.colors[from * vertices.color_parts];
+                    mesh.colors.push_back({finite_or(color[0], 1), finite_or(color[1], 1), finite_or(color[2], 1)});
+                    mesh.colors.back() = glm::clamp(mesh.colors.back(), vec3(0), vec3(1e6f));
+                }
+            }
+            triangle[corner] = place[from];
+        }
+    if (!mesh.normals.empty()) mend_normals(mesh);
+}
+
+// Whether everything a primitive refers to came with the file: a buffer may be a mere placeholder.
+bool has_data(const GltfDocument& document, const tinygltf::Primitive& primitive) {
+    const auto filled = [&](int accessor) {
+        const int view = document.model.accessors[accessor].bufferView;
+        return view < 0 || document.lacking[document.model.bufferViews[view].buffer].empty();
+    };
+    for (const auto& [name, accessor] : primitive.attributes)
+        if (!filled(accessor)) return false;
+    return primitive.indices < 0 || filled(primitive.indices);
+}
+
+// Index of the scene's mesh; -1 when the primitive draws no triangle.
+int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& name,
+               const std::string& pointer) {
+    if (primitive.mode < TINYGLTF_MODE_TRIANGLES)
+        return document.count("primitives of points or lines are left out"), -1;
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) return document.count("primitives without positions are left out"), -1;
+    for (const char* compression : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
+        if (primitive.extensions.count(compression) && document.model.accessors[position->second].bufferView < 0)
+            refuse(document.place(pointer), std::string("the mesh is compressed with ") + compression +
+                                                ", which cannot be read; export without it");
+    if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are left out"), -1;
+    if (!primitive.targets.empty()) document.count("meshes with morph targets are shown in their base shape");
+
+    int uv_set = 0;
+    Mesh mesh;
+    mesh.name = name;
+    if (primitive.material >= 0) mesh.material = gltf_material(document, primitive.material, uv_set);
+    const Vertices vertices = read_vertices(document, primitive, uv_set, pointer);
+    const std::vector<uint32_t> indices = read_indices(document, primitive, vertices.count(), pointer);
+    if (indices.size() / 3 + document.triangles > most_triangles)
+        refuse(document.place(pointer), "the file has more than " + std::to_string(most_triangles) + " triangles");
+    mesh.triangles = triangles_of(indices, primitive.mode);
+    if (const size_t dropped = drop_non_finite(mesh.triangles, vertices.positions))
+        document.count("triangles with corners that are not numbers are left out", static_cast<int>(dropped));
+    if (mesh.triangles.empty()) return -1;
+
+    document.triangles += mesh.triangles.size();
+    compact(vertices, mesh);
+    document.scene->meshes.push_back(std::move(mesh));
+    return static_cast<int>(document.scene->meshes.size()) - 1;
+}
+}
+
+const std::vector<int>& gltf_mesh(GltfDocument& document, int index) {
+    const auto [known, added] = document.meshes.try_emplace(index);
+    if (!added) return known->second;
+    const tinygltf::Mesh& mesh = document.model.meshes[index];
+    const std::string name = mesh.name.empty() ? "mesh " + std::to_string(index) : mesh.name;
+    for (size_t i = 0; i < mesh.primitives.size(); ++i) {
+        const std::string own_name = mesh.primitives.size() > 1 ? name + " " + std::to_string(i) : name;
+        const int drawn = scene_mesh(document, mesh.primitives[i], own_name,
+                                     gltf_pointer("meshes", index, "primitives/") + std::to_string(i));
+        if (drawn >= 0) known->second.push_back(drawn);
+    }
+    return known->second;
+}
+}

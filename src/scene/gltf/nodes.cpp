@@ -1,0 +1,240 @@
+// The hierarchy of the default scene: places, instances of meshes, cameras and lights.
+#include "base/error.h"
+#include "scene/gltf/document.h"
+
+#include <set>
+
+namespace tyndall {
+namespace {
+constexpr size_t most_instances = 1000000;
+
+vec3 triple(const std::vector<double>& values, vec3 otherwise) {
+    return values.size() == 3 ? vec3(values[0], values[1], values[2]) : otherwise;
+}
+
+quat turned(GltfDocument& document, float x, float y, float z, float w) {
+    const float length = std::sqrt(x * x + y * y + z * z + w * w);
+    if (length > 0 && std::isfinite(length)) return {w / length, x / length, y / length, z / length};
+    document.count("rotations of length 0 are taken for none");
+    return {1, 0, 0, 0};
+}
+
+void read_place(GltfDocument& document, const tinygltf::Node& source, Node& node) {
+    if (source.matrix.size() == 16) {
+        mat4 matrix;
+        for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = static_cast<float>(source.matrix[i]);
+        if (matrix[0].w != 0 || matrix[1].w != 0 || matrix[2].w != 0 || matrix[3].w != 1)
+            document.count("matrices with perspective are used without it");
+        matrix[0].w = matrix[1].w = matrix[2].w = 0, matrix[3].w = 1;
+        if (std::abs(glm::determinant(glm::dmat3(matrix))) < 1e-30) document.count("nodes are scaled to nothing");
+        node.matrix = matrix;
+        return;
+    }
+    node.translation = triple(source.translation, vec3(0));
+    const vec3 scale = triple(source.scale, vec3(1));
+    if (scale.x * scale.y * scale.z == 0) document.count("nodes are scaled to nothing");
+    node.scale = scale;
+    if (source.rotation.size() == 4)
+        node.rotation = turned(document, static_cast<float>(source.rotation[0]), static_cast<float>(source.rotation[1]),
+                               static_cast<float>(source.rotation[2]), static_cast<float>(source.rotation[3]));
+}
+
+int add_node(GltfDocument& document, int index, int parent) {
+    const tinygltf::Node& source = document.model.nodes[index];
+    Node node;
+    node.name = source.name.empty() ? "node " + std::to_string(index) : source.name;
+    node.parent = parent;
+    read_place(document, source, node);
+    document.scene->nodes.push_back(std::move(node));
+    return document.nodes[index] = static_cast<int>(document.scene->nodes.size()) - 1;
+}
+
+std::vector<int> root_nodes(const tinygltf::Model& model) {
+    if (!model.scenes.empty()) return model.scenes[std::max(model.defaultScene, 0)].nodes;
+    std::vector<bool> is_child(model.nodes.size());
+    for (const tinygltf::Node& node : model.nodes)
+        for (const int child : node.children) is_child[child] = true;
+    std::vector<int> roots;
+    for (size_t i = 0; i < model.nodes.size(); ++i)
+        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
+void add_instances(GltfDocument& document, int mesh, int node, const std::string& pointer) {
+    for (const int drawn : gltf_mesh(document, mesh)) {
+        if (document.scene->instances.size() >= most_instances)
+            refuse(document.place(pointer), "the scene has more than " + std::to_string(most_instances) + " instances");
+        document.scene->instances.push_back({node, drawn});
+    }
+}
+
+// EXT_mesh_gpu_instancing: a child node for every instance.
+void add_gpu_instances(GltfDocument& document, int index, const tinygltf::Value& attributes) {
+    const std::string pointer = gltf_pointer("nodes", index, "extensions/EXT_mesh_gpu_instancing/attributes");
+    size_t count = 0;
+    const auto values = [&](const char* name, int components) {
+        std::vector<float> result;
+        if (!attributes.Has(name)) return result;
+        result = gltf_floats(document, attributes.Get(name).GetNumberAsInt(), components, pointer + "/" + name);
+        const size_t here = result.size() / components;
+        if (count && here != count)
+            refuse(document.place(pointer), "the attributes differ in their number of elements");
+        count = here;
+        return result;
+    };
+    const std::vector<float> moves = values("TRANSLATION", 3), turns = values("ROTATION", 4),
+                             sizes = values("SCALE", 3);
+    if (count > most_instances) refuse(document.place(pointer), "has too many instances");
+    for (size_t i = 0; i < count; ++i) {
+        Node node;
+        node.name = document.scene->nodes[document.nodes[index]].name + " " + std::to_string(i);
+        node.parent = document.nodes[index];
+        if (!moves.empty()) node.translation = vec3(moves[3 * i], moves[3 * i + 1], moves[3 * i + 2]);
+        if (!turns.empty())
+            node.rotation = turned(document, turns[4 * i], turns[4 * i + 1], turns[4 * i + 2], turns[4 * i + 3]);
+        if (!sizes.empty()) node.scale = vec3(sizes[3 * i], sizes[3 * i + 1], sizes[3 * i + 2]);
+        if (!is_finite(node.translation.values[0]) || !is_finite(node.scale.values[0])) {
+            document.count("instances at places that are not numbers are left out");
+            continue;
+        }
+        document.scene->nodes.push_back(std::move(node));
+        add_instances(document, document.model.nodes[index].mesh, static_cast<int>(document.scene->nodes.size()) - 1,
+                      pointer);
+    }
+}
+
+// A skinned mesh stands where its skeleton holds it at the start: by its first joint, which is right for the bind pose.
+int skin_node(GltfDocument& document, int index) {
+    const tinygltf::Skin& skin = document.model.skins[document.model.nodes[index].skin];
+    document.count("skinned meshes are shown in their bind pose");
+    if (skin.joints.empty() || document.nodes[skin.joints[0]] < 0) return document.nodes[index];
+    mat4 inverse_bind(1);
+    if (skin.inverseBindMatrices >= 0) {
+        const std::vector<float> values =
+            gltf_floats(document, skin.inverseBindMatrices, 16, gltf_pointer("nodes", index, "skin"));
+        for (int i = 0; i < 16; ++i) inverse_bind[i / 4][i % 4] = values[i];
+    }
+    Node node;
+    node.name = document.scene->nodes[document.nodes[index]].name + " skin";
+    node.matrix = node_matrix(*document.scene, document.nodes[skin.joints[0]], 0) * inverse_bind;
+    for (int i = 0; i < 16; ++i)
+        if (!std::isfinite((*node.matrix)[i / 4][i % 4])) return document.nodes[index];
+    document.scene->nodes.push_back(std::move(node));
+    return static_cast<int>(document.scene->nodes.size()) - 1;
+}
+
+std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
+    std::string name = wanted;
+    for (int number = 2; !taken.insert(name).second; ++number) name = wanted + "." + std::to_string(number);
+    return name;
+}
+
+// What people call the thing: its node, without the helper node that Blender's exporter puts in between.
+std::string object_name(const tinygltf::Node& node, const std::string& own, const std::string& otherwise) {
+    constexpr std::string_view helper = "_Orientation";
+    if (node.name.ends_with(helper) && node.name.size() > helper.size())
+        return node.name.substr(0, node.name.size() - helper.size());
+    return !node.name.empty() ? node.name : !own.empty() ? own : otherwise;
+}
+
+CameraSource camera_source(GltfDocument& document, const tinygltf::Camera& source) {
+    CameraSource camera;
+    if (source.type == "orthographic") {
+        camera.ortho_height = static_cast<float>(2 * std::abs(source.orthographic.ymag));
+        camera.near = static_cast<float>(source.orthographic.znear);
+        camera.far = static_cast<float>(source.orthographic.zfar);
+        return camera;
+    }
+    const float widest = glm::radians(170.0f);
+    if (source.perspective.yfov > widest) document.count("cameras that see more than 170 degrees see 170");
+    camera.vertical_fov = std::min(static_cast<float>(source.perspective.yfov), widest);
+    camera.near = static_cast<float>(source.perspective.znear);
+    if (source.perspective.zfar > 0) camera.far = static_cast<float>(source.perspective.zfar);
+    return camera;
+}
+
+// Blender writes candela and lux, or leaves out 683 lm/W, or writes watts, which points and spots spread all around.
+float unit_factor(LightUnits units, LightKind kind) {
+    if (units == LightUnits::spec) return 1;
+    return units == LightUnits::raw && kind != LightKind::sun ? 683 / (4 * pi) : 683.0f;
+}
+
+bool known_light(std::string_view type) { return type == "point" || type == "spot" || type == "directional"; }
+
+LightSource light_source(const GltfDocument& document, int index) {
+    const tinygltf::Light& source = document.model.lights[index];
+    LightSource light;
+    if (source.type == "spot") light.kind = LightKind::spot;
+    if (source.type == "directional") light.kind = LightKind::sun;
+    if (source.color.size() == 3) light.color = vec3(source.color[0], source.color[1], source.color[2]);
+    light.intensity = static_cast<float>(source.intensity) * unit_factor(document.options.light_units, light.kind);
+    if (source.range > 0 && light.kind != LightKind::sun) light.range = static_cast<float>(source.range);
+    if (light.kind != LightKind::spot) return light;
+    if (source.spot.innerConeAngle > source.spot.outerConeAngle)
+        refuse(document.place("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
+               "innerConeAngle is greater than outerConeAngle");
+    light.inner_cone = std::min(static_cast<float>(source.spot.innerConeAngle), pi / 2);
+    light.outer_cone = std::min(static_cast<float>(source.spot.outerConeAngle), pi / 2);
+    return light;
+}
+
+int light_index(const tinygltf::Node& node) {
+    const auto extension = node.extensions.find("KHR_lights_punctual");
+    if (extension == node.extensions.end() || !extension->second.Has("light")) return -1;
+    return extension->second.Get("light").GetNumberAsInt();
+}
+}
+
+void add_gltf_nodes(GltfDocument& document) {
+    const tinygltf::Model& model = document.model;
+    document.nodes.assign(model.nodes.size(), -1);
+    std::vector<std::pair<int, int>> open; // node, parent in the scene
+    for (const int root : root_nodes(model)) open.push_back({root, -1});
+    std::reverse(open.begin(), open.end());
+    while (!open.empty()) {
+        const auto [index, parent] = open.back();
+        open.pop_back();
+        if (document.nodes[index] >= 0) continue; // a scene may name a node twice
+        const int node = add_node(document, index, parent);
+        const std::vector<int>& children = model.nodes[index].children;
+        for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, node});
+    }
+
+    for (size_t i = 0; i < model.nodes.size(); ++i) {
+        if (document.nodes[i] < 0 || model.nodes[i].mesh < 0) continue;
+        const int index = static_cast<int>(i);
+        const auto instancing = model.nodes[i].extensions.find("EXT_mesh_gpu_instancing");
+        if (instancing != model.nodes[i].extensions.end())
+            add_gpu_instances(document, index, instancing->second.Get("attributes"));
+        else
+            add_instances(document, model.nodes[i].mesh,
+                          model.nodes[i].skin >= 0 ? skin_node(document, index) : document.nodes[i],
+                          gltf_pointer("nodes", i));
+    }
+}
+
+void add_gltf_cameras_and_lights(GltfDocument& document) {
+    const tinygltf::Model& model = document.model;
+    std::set<std::string> camera_names, light_names;
+    for (size_t i = 0; i < model.nodes.size(); ++i) {
+        if (document.nodes[i] < 0) continue;
+        const tinygltf::Node& node = model.nodes[i];
+        if (node.camera >= 0) {
+            CameraSource camera = camera_source(document, model.cameras[node.camera]);
+            camera.name = unique_name(object_name(node, model.cameras[node.camera].name, "camera"), camera_names);
+            camera.node = document.nodes[i];
+            document.scene->cameras.push_back(camera);
+        }
+        if (const int index = light_index(node); index >= 0) {
+            if (!known_light(model.lights[index].type)) {
+                document.count("lights of unknown types are left out");
+                continue;
+            }
+            LightSource light = light_source(document, index);
+            light.name = unique_name(object_name(node, model.lights[index].name, "light"), light_names);
+            light.node = document.nodes[i];
+            document.scene->lights.push_back(light);
+        }
+    }
+}
+}

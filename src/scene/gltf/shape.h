@@ -1,0 +1,15 @@
+// The shape of a glTF document: every member that is used has the right type, lies in its range, and every index points
+// to something. Checked on the raw JSON, before any library reads it.
+#pragma once
+#include "base/io/json.h"
+
+namespace tyndall {
+// Throws Error (refused) naming file and JSON pointer.
+void check_gltf_shape(const Json& document, std::string_view file);
+
+// What one member says may need another beside it. After the shape has been checked. Throws Error (refused).
+void check_gltf_needs(const Json& document, std::string_view file);
+
+// The array of a collection ("nodes"; "lights" of KHR_lights_punctual), or null.
+const Json* gltf_collection(const Json& document, std::string_view name);
+}

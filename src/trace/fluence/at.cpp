@@ -1,0 +1,81 @@
+// Fluence between the cells of its grid, and what fog scatters of it.
+#include "trace/fluence/fluence.h"
+
+#include <algorithm>
+
+namespace tyndall {
+float mean_cosine(Phase phase) {
+    const bool even = phase.kind == PhaseKind::isotropic || phase.kind == PhaseKind::rayleigh;
+    return even ? 0 : std::clamp(phase.g, -largest_g, largest_g);
+}
+
+namespace {
+// Whether light gets from a cell to another one at a corner next to it, along x, then y, then z.
+bool is_open(const FluenceGrid& grid, ivec3 from, ivec3 to) {
+    for (int axis = 0; axis < 3; ++axis) {
+        ivec3 before = from;
+        before[axis] = std::min(from[axis], to[axis]);
+        if (from[axis] != to[axis] && grid.walls[cell_index(grid, before)] >> axis & 1) return false;
+        from[axis] = to[axis];
+    }
+    return true;
+}
+
+// The cells between whose centres a point lies: how much each counts.
+struct Corners {
+    ivec3 cells[8];
+    float shares[8];
+};
+
+// Leaves those that the point does not see.
+void leave_seen(const FluenceGrid& grid, vec3 place, ivec3 home, Corners& corners) {
+    const vec4 cut = grid.cuts[cell_index(grid, home)];
+    const auto before = [&](vec3 at) { return glm::dot(vec3(cut), at) + cut.w; };
+    const bool behind = before(place) < 0;
+    float sum = 0;
+    for (int i = 0; i < 8; ++i) {
+        const ivec3 cell = corners.cells[i];
+        const bool seen = behind ? cell != home && before(vec3(cell) + 0.5f) < 0 : is_open(grid, home, cell);
+        if (!seen) corners.shares[i] = 0;
+        sum += corners.shares[i];
+    }
+    for (int i = 0; i < 8; ++i)
+        corners.shares[i] = sum > 0 ? corners.shares[i] / sum : corners.cells[i] == home ? 1.0f : 0.0f;
+}
+}
+
+FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
+    FluenceAt at;
+    if (clip(grid.bounds, point, vec3(0), {0, 1}).empty()) return at;
+    const vec3 from_low = (point - grid.bounds.low) / grid.cell;
+    const vec3 place = glm::clamp(from_low - 0.5f, vec3(0), vec3(grid.size - 1));
+    const ivec3 low(place), high = glm::min(low + 1, grid.size - 1);
+    const vec3 weight = place - vec3(low);
+    Corners corners;
+    for (int i = 0; i < 8; ++i) {
+        corners.cells[i] = {i & 4 ? high.x : low.x, i & 2 ? high.y : low.y, i & 1 ? high.z : low.z};
+        corners.shares[i] =
+            (i & 4 ? weight.x : 1 - weight.x) * (i & 2 ? weight.y : 1 - weight.y) * (i & 1 ? weight.z : 1 - weight.z);
+    }
+    if (!grid.walls.empty()) leave_seen(grid, from_low, ivec3(place + 0.5f), corners);
+    for (int i = 0; i < 8; ++i) {
+        const float* values = grid.values.data() + 12 * cell_index(grid, corners.cells[i]);
+        for (int c = 0; c < 3; ++c) at.fluence[c] += corners.shares[i] * values[c];
+        for (int axis = 0; axis < 3; ++axis)
+            for (int c = 0; c < 3; ++c) at.flux[c][axis] += corners.shares[i] * values[3 + 3 * axis + c];
+    }
+    return at;
+}
+
+vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase) {
+    vec3 result;
+    const float g = mean_cosine(phase);
+    for (int c = 0; c < 3; ++c) {
+        const vec3 lobe = at.flux[c] * (g / std::max(at.fluence[c], 1e-30f));
+        const float squared = std::min(glm::dot(lobe, lobe), largest_g * largest_g);
+        const float q = std::max(1 + squared + 2 * glm::dot(lobe, direction), 1e-4f);
+        result[c] = at.fluence[c] * (1 - squared) / (4 * pi * q * std::sqrt(q));
+    }
+    return result;
+}
+}

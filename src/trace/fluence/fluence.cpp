@@ -1,0 +1,202 @@
+#include "trace/fluence/fluence.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "scene/light.h"
+#include "trace/fluence/light_paths.h"
+#include "trace/fluence/settings.h"
+#include "trace/fluence/walls.h"
+#include "trace/kept.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int64_t block_paths = 512; // traced by one thread at a time
+constexpr int64_t round_blocks = 64; // traced before their flights are put into the grid
+constexpr int slab_cells = 4;        // along x, filled by one thread at a time
+constexpr int64_t pilot_share = 8;   // one path of so many finds out where light is worth following
+constexpr int64_t fewest_hits = 8;   // of the pilot in a stratum, on average
+constexpr int most_side = 32;        // strata
+constexpr double evenly = 0.2;       // share of the paths that the pilot has no say in
+
+// Cells of one size, at multiples of it in the world: the grid stands still while the fog's bounds change a little.
+FluenceGrid grid_over(const Box& fog, int resolution) {
+    FluenceGrid grid;
+    const float longest = max_component(fog.size());
+    if (!(longest > 0) || !std::isfinite(longest)) return grid;
+    grid.cell = longest / static_cast<float>(resolution);
+    const vec3 low = glm::floor(fog.low / grid.cell + 1e-3f), high = glm::ceil(fog.high / grid.cell - 1e-3f);
+    grid.size = glm::max(ivec3(high - low), ivec3(1));
+    grid.bounds = {grid.cell * low, grid.cell * (low + vec3(grid.size))};
+    grid.values.resize(12 * static_cast<size_t>(grid.size.x) * static_cast<size_t>(grid.size.y) *
+                       static_cast<size_t>(grid.size.z));
+    return grid;
+}
+
+// Adds the lengths of a flight in the cells of a slab (Amanatides & Woo 1987).
+void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, FluenceOctants& octants) {
+    const float scale = 1 / grid.cell;
+    const float start = (flight.from.x - grid.bounds.low.x) * scale,
+                end_x = start + flight.length * flight.direction.x * scale;
+    if (std::max(start, end_x) < static_cast<float>(first) || std::min(start, end_x) > static_cast<float>(last)) return;
+    const vec3 from = (flight.from - grid.bounds.low) * scale, step = flight.direction * scale;
+    const Box slab{vec3(first, 0, 0), vec3(last, grid.size.y, grid.size.z)};
+    const Interval inside = clip(slab, from, step, {0, flight.length});
+    if (inside.empty()) return;
+
+    const float brightness = luminance(flight.light);
+    float values[12];
+    for (int c = 0; c < 3; ++c) values[c] = flight.light[c];
+    for (int axis = 0; axis < 3; ++axis)
+        for (int c = 0; c < 3; ++c) values[3 + 3 * axis + c] = flight.light[c] * flight.direction[axis];
+
+    const ivec3 lowest(first, 0, 0), highest(last - 1, grid.size.y - 1, grid.size.z - 1);
+    ivec3 cell = glm::clamp(ivec3(glm::floor(from + inside.low * step)), lowest, highest);
+    vec3 next, across;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float border = static_cast<float>(cell[axis] + (step[axis] > 0 ? 1 : 0));
+        next[axis] = step[axis] == 0 ? infinity : (border - from[axis]) / step[axis];
+        across[axis] = step[axis] == 0 ? infinity : 1 / std::abs(step[axis]);
+    }
+    for (float t = inside.low;;) {
+        const int axis = next.x < next.y ? (next.x < next.z ? 0 : 2) : (next.y < next.z ? 1 : 2);
+        const float end = std::min(next[axis], inside.high), length = std::max(end - t, 0.0f);
+        const size_t index = cell_index(grid, cell);
+        float* to = grid.values.data() + 12 * index;
+        for (int i = 0; i < 12; ++i) to[i] += length * values[i];
+        if (!octants.empty()) {
+            const vec3 place = from + (t + 0.5f * length) * step, within = place - vec3(cell);
+            const int octant = (within.x > 0.5f ? 4 : 0) + (within.y > 0.5f ? 2 : 0) + (within.z > 0.5f ? 1 : 0);
+            octants[8 * index + static_cast<size_t>(octant)] += length * brightness * vec4(place, 1);
+        }
+        if (!(next[axis] < inside.high)) return;
+        t = end, next[axis] += across[axis];
+        cell[axis] += step[axis] > 0 ? 1 : -1;
+        if (cell[axis] < lowest[axis] || cell[axis] > highest[axis]) return;
+    }
+}
+
+// Every slab takes the flights in the same order. No octants: nobody asks for them.
+void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, FluenceOctants& octants) {
+    parallel_for((grid.size.x + slab_cells - 1) / slab_cells, [&](int64_t slab) {
+        const int first = static_cast<int>(slab) * slab_cells, last = std::min(first + slab_cells, grid.size.x);
+        for (const LightPathResult& block : blocks)
+            for (const Flight& flight : block.flights) add_flight(flight, first, last, grid, octants);
+    });
+}
+
+// What a pilot's paths brought, by stratum.
+struct Pilot {
+    int side = 0;
+    std::vector<double> squares; // Σ (power · length)²
+    int64_t hits = 0;            // paths that brought anything
+
+    // Four strata become one.
+    void coarsen() {
+        const size_t lights = squares.size() / static_cast<size_t>(side * side);
+        const int half = side / 2;
+        std::vector<double> merged(lights * static_cast<size_t>(half * half));
+        for (size_t i = 0; i < squares.size(); ++i) {
+            const int stratum = static_cast<int>(i % static_cast<size_t>(side * side));
+            const size_t light = i / static_cast<size_t>(side * side);
+            merged[light * static_cast<size_t>(half * half) +
+                   static_cast<size_t>(stratum / side / 2 * half + stratum % side / 2)] += squares[i];
+        }
+        squares = std::move(merged), side = half;
+    }
+};
+
+Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
+    const Emission emission = even_emission(snapshot, rules.reach, most_side);
+    Pilot pilot{most_side, std::vector<double>(emission.cumulative.size(), 0.0)};
+    std::vector<LightPathResult> results(static_cast<size_t>((paths + block_paths - 1) / block_paths));
+    rules.seed = hash(rules.seed, 1u);
+    parallel_for(static_cast<int64_t>(results.size()), [&](int64_t b) {
+        LightPathResult& result = results[static_cast<size_t>(b)];
+        result.of_stratum.resize(pilot.squares.size());
+        trace_light_paths(snapshot, emission, rules, b * block_paths, std::min(block_paths, paths - b * block_paths),
+                          paths, result);
+        result.flights = {};
+    });
+    for (const LightPathResult& result : results) {
+        pilot.hits += result.hits;
+        for (size_t i = 0; i < pilot.squares.size(); ++i) pilot.squares[i] += result.of_stratum[i];
+    }
+    return pilot;
+}
+
+// Chances of strata in proportion to the root of the mean square of what paths from them bring (Neyman 1934), in
+// strata large enough to be known.
+Emission emission_by_pilot(const Snapshot& snapshot, const LightPathRules& rules, int64_t paths) {
+    Pilot pilot = fly_pilot(snapshot, rules, std::max<int64_t>(paths / pilot_share, 1));
+    while (pilot.side > 1 && pilot.hits < fewest_hits * static_cast<int64_t>(pilot.squares.size())) pilot.coarsen();
+    Emission emission = even_emission(snapshot, rules.reach, pilot.side);
+    const std::vector<double> even = emission.cumulative;
+    const auto chance = [&](size_t i) { return even[i] - (i > 0 ? even[i - 1] : 0.0); };
+    double sum = 0, together = 0;
+    for (size_t i = 0; i < even.size(); ++i) sum += std::sqrt(chance(i) * pilot.squares[i]);
+    if (!(sum > 0)) return emission;
+    for (size_t i = 0; i < even.size(); ++i) {
+        const double wanted = std::sqrt(chance(i) * pilot.squares[i]) / sum;
+        emission.cumulative[i] = together += evenly * chance(i) + (1 - evenly) * wanted;
+    }
+    return emission;
+}
+
+KeptKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
+    KeptKey key;
+    key.add(seed);
+    key.add(snapshot.occluders).add(snapshot.bounds);
+    key.add(settings.orders).add(settings.resolution).add(settings.paths);
+    for (const Light& light : snapshot.lights)
+        key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale);
+    for (const Medium& medium : snapshot.media) {
+        const Optics& optics = medium.optics;
+        key.add(medium.kind).add(optics.extinction).add(optics.albedo).add(optics.phase.kind).add(optics.phase.g);
+        key.add(medium.bounds).add(medium.world_bounds).add(medium.height_base).add(medium.height_falloff);
+        for (int column = 0; column < 4; ++column) key.add(medium.world_to_local[column]);
+        key.add(medium.bricks);
+    }
+    return key;
+}
+}
+
+FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
+    LightPathRules rules;
+    rules.reach = light_reach(snapshot);
+    FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
+    if (grid.empty() || snapshot.lights.empty()) return {};
+    rules.reach.grow(grid.bounds); // cells at the rim are filled as others are
+    rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
+    const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
+    FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
+    const int64_t paths = settings.paths;
+    const Emission emission = emission_by_pilot(snapshot, rules, paths);
+    std::vector<LightPathResult> blocks(static_cast<size_t>(round_blocks));
+    for (int64_t round = 0; round < paths; round += round_blocks * block_paths) {
+        parallel_for(round_blocks, [&](int64_t b) {
+            LightPathResult& result = blocks[static_cast<size_t>(b)];
+            result.flights.clear();
+            const int64_t first = round + b * block_paths, count = std::min(block_paths, paths - first);
+            if (count > 0) trace_light_paths(snapshot, emission, rules, first, count, paths, result);
+        });
+        add_flights(blocks, grid, octants);
+    }
+    const float volume = grid.cell * grid.cell * grid.cell;
+    for (float& value : grid.values) value /= volume;
+    if (surfaces) find_walls(*snapshot.occluders, octants, grid);
+    smooth(grid);
+    return grid;
+}
+
+std::shared_ptr<const FluenceGrid> kept_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
+                                                uint32_t seed) {
+    if (settings.orders < 2 || snapshot.media.empty() || snapshot.lights.empty()) return nullptr;
+    const std::shared_ptr<const FluenceGrid> grid =
+        kept(snapshot, fluence_key(snapshot, settings, seed), [&] { return make_fluence(snapshot, settings, seed); });
+    return grid->empty() ? nullptr : grid;
+}
+}

@@ -1,0 +1,76 @@
+#include "trace/fluence/light_emission.h"
+#include "scene/light.h"
+
+namespace tyndall {
+namespace {
+vec2 on_disc(vec2 u) {
+    const float radius = std::sqrt(u.x), angle = 2 * pi * u.y;
+    return radius * vec2(std::cos(angle), std::sin(angle));
+}
+
+vec3 corner(const Box& box, int i) {
+    return {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
+}
+
+void fit_sun(const Box& reach, LightSquare& square) {
+    square.low = vec2(infinity), square.high = vec2(-infinity), square.start = infinity;
+    float end = -infinity;
+    for (int i = 0; i < 8; ++i) {
+        const vec3 point = corner(reach, i);
+        const vec2 at(glm::dot(point, square.across), glm::dot(point, square.up));
+        square.low = glm::min(square.low, at), square.high = glm::max(square.high, at);
+        square.start = std::min(square.start, glm::dot(point, square.axis));
+        end = std::max(end, glm::dot(point, square.axis));
+    }
+    // Slanted rays of a soft sun pass beside the box's outline.
+    const float slant = std::tan(std::min(square.light->angle, 1.5f)) * (end - square.start);
+    square.low -= slant, square.high += slant;
+    const vec2 size = square.high - square.low;
+    square.power = square.light->intensity * (size.x * size.y);
+}
+
+// Directions of a local light: those of a spot's cone, or those in which the box lies.
+void fit_directions(const Box& reach, LightSquare& square) {
+    const Light& light = *square.light;
+    vec3 axis = light.direction;
+    float cosine = std::cos(std::min(light.outer_cone, pi));
+    if (light.kind == LightKind::point) {
+        const vec3 towards = reach.center() - light.position;
+        const float distance = glm::length(towards), radius = 0.5f * glm::length(reach.size()) + light.radius;
+        cosine = distance > radius ? std::sqrt(1 - radius * radius / (distance * distance)) : -1;
+        axis = distance > radius ? towards / distance : vec3(0, 1, 0);
+    }
+    square.axis = axis, square.lowest_cosine = cosine;
+    make_frame(axis, square.across, square.up);
+    square.power = light.intensity * (2 * pi * (1 - cosine));
+}
+}
+
+LightSquare square_of(const Light& light, const Box& reach) {
+    LightSquare square;
+    square.light = &light;
+    square.axis = light.direction;
+    make_frame(square.axis, square.across, square.up);
+    light.kind == LightKind::sun ? fit_sun(reach, square) : fit_directions(reach, square);
+    return square;
+}
+
+Ray LightSquare::ray(vec2 place, vec2 soft) const {
+    if (light->kind == LightKind::sun) {
+        const vec2 at = low + place * (high - low), disc = on_disc(soft) * std::tan(light->angle);
+        const vec3 direction = light->angle > 0 ? glm::normalize(axis + disc.x * across + disc.y * up) : axis;
+        return {at.x * across + at.y * up + start * axis, direction};
+    }
+    const float cosine = 1 - place.x * (1 - lowest_cosine), sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    const float angle = 2 * pi * place.y;
+    const vec3 direction = glm::normalize(sine * (std::cos(angle) * across + std::sin(angle) * up) + cosine * axis);
+    vec3 x, y;
+    make_frame(direction, x, y);
+    const vec2 disc = on_disc(soft);
+    return {light->position + light->radius * (direction + disc.x * x + disc.y * y), direction};
+}
+
+float LightSquare::share(vec3 direction) const {
+    return light->kind == LightKind::spot ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f;
+}
+}

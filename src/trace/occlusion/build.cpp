@@ -1,0 +1,107 @@
+// Triangles of instances, moved to world space, checked, and built into an Embree scene.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "scene/scene.h"
+#include "trace/occlusion/scene.h"
+
+namespace tyndall {
+namespace {
+const Texture* usable_texture(const Scene& scene, int index) {
+    if (index < 0 || index >= static_cast<int>(scene.textures.size())) return nullptr;
+    return scene.textures[index].texels.empty() ? nullptr : &scene.textures[index];
+}
+
+bool in_range(vec3 p) { return is_finite(p) && max_component(glm::abs(p)) <= largest_coordinate; }
+
+bool traceable(const std::vector<vec3>& positions, size_t count, glm::uvec3 corners) {
+    if (corners.x >= count || corners.y >= count || corners.z >= count) return false;
+    const vec3 a = positions[corners.x], b = positions[corners.y], c = positions[corners.z];
+    if (!in_range(a) || !in_range(b) || !in_range(c)) return false;
+    const dvec3 area = glm::cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a));
+    return glm::dot(area, area) > 0;
+}
+
+// Leaves out what cannot be traced and returns how many; the index list is copied only then.
+uint64_t leave_out_bad_triangles(OccluderGeometry& geometry) {
+    const std::vector<glm::uvec3>& triangles = geometry.mesh->triangles;
+    const size_t corners = geometry.mesh->positions.size();
+    std::vector<uint32_t> good;
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        if (traceable(geometry.positions, corners, triangles[i])) good.push_back(i);
+    if (good.size() == triangles.size()) return 0;
+    for (const uint32_t i : good) geometry.kept.push_back(triangles[i]);
+    geometry.originals = std::move(good);
+    return geometry.left_out = triangles.size() - geometry.kept.size();
+}
+
+OccluderGeometry placed_geometry(const Scene& scene, int index, const mat4& matrix) {
+    const Mesh& mesh = scene.meshes[scene.instances[index].mesh];
+    OccluderGeometry geometry;
+    geometry.mesh = &mesh;
+    geometry.instance = index;
+    geometry.normal_to_world = glm::transpose(glm::inverse(mat3(matrix)));
+    if (mesh.material >= 0 && mesh.material < static_cast<int>(scene.materials.size())) {
+        geometry.material = &scene.materials[mesh.material];
+        geometry.base_texture = usable_texture(scene, geometry.material->base_texture);
+        geometry.emission_texture = usable_texture(scene, geometry.material->emission_texture);
+    }
+    geometry.positions.reserve(mesh.positions.size() + 1);
+    for (const vec3 position : mesh.positions) geometry.positions.push_back(vec3(matrix * vec4(position, 1)));
+    geometry.positions.push_back(vec3(0));
+    return geometry;
+}
+
+// What casts shadows by its alpha needs a callback; everything else is traced at full speed.
+void set_callbacks(RTCGeometry handle, const OccluderGeometry& geometry) {
+    if (geometry.masks()) rtcSetGeometryIntersectFilterFunction(handle, pass_mask_holes);
+    if (geometry.passes_light()) rtcSetGeometryOccludedFilterFunction(handle, pass_light);
+}
+
+void attach(RTCDevice device, OccluderSet& set, const OccluderGeometry& geometry, uint32_t id) {
+    const std::vector<glm::uvec3>& triangles = geometry.traced();
+    const RTCGeometry handle = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, geometry.positions.data(), 0,
+                               sizeof(vec3), geometry.positions.size() - 1);
+    rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles.data(), 0,
+                               sizeof(glm::uvec3), triangles.size());
+    rtcSetGeometryUserData(handle, const_cast<OccluderGeometry*>(&geometry));
+    set_callbacks(handle, geometry);
+    rtcCommitGeometry(handle);
+    rtcAttachGeometryByID(set.scene, handle, id);
+    rtcReleaseGeometry(handle);
+
+    set.triangles += triangles.size();
+    set.has_alpha |= geometry.masks() || geometry.blends();
+    for (const glm::uvec3 corners : triangles)
+        for (int k = 0; k < 3; ++k) set.bounds.grow(geometry.positions[corners[k]]);
+}
+}
+
+OccluderSet::~OccluderSet() {
+    if (scene) rtcReleaseScene(scene);
+}
+
+std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
+                                                     std::vector<mat4> matrices) {
+    auto set = std::make_shared<OccluderSet>();
+    set->geometries.resize(instances.size());
+    std::vector<uint64_t> dropped(instances.size(), 0);
+    parallel_for(static_cast<int64_t>(instances.size()), [&](int64_t i) {
+        set->geometries[i] = placed_geometry(scene, instances[i], matrices[i]);
+        dropped[i] = leave_out_bad_triangles(set->geometries[i]);
+    });
+    for (const uint64_t count : dropped) set->dropped += count;
+
+    const RTCDevice device = embree_device();
+    set->scene = rtcNewScene(device);
+    check_embree();
+    rtcSetSceneFlags(set->scene, RTC_SCENE_FLAG_ROBUST);
+    for (uint32_t i = 0; i < set->geometries.size(); ++i)
+        if (!set->geometries[i].traced().empty()) attach(device, *set, set->geometries[i], i);
+    if (set->triangles > 0) rtcCommitScene(set->scene);
+    check_embree();
+    set->instances = std::move(instances);
+    set->matrices = std::move(matrices);
+    return set;
+}
+}

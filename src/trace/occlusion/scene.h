@@ -1,0 +1,99 @@
+// Inside the occluders: Embree's device, and one set of triangles with its acceleration structure.
+#pragma once
+#include "scene/mesh.h"
+#include "trace/occlusion/embree.h"
+#include "trace/occlusion/occluders.h"
+
+#include <mutex>
+
+namespace tyndall {
+// Embree's limit for ray and vertex coordinates is 1.844e18; beyond it the packaged library aborts.
+inline constexpr float largest_coordinate = 1e18f;
+
+// The one device of the process, made on first use. Throws Error.
+RTCDevice embree_device();
+
+// Whether the device takes packets of 16 rays as they are; else packets of 8 are its widest.
+bool traces_sixteen();
+
+// Throws what Embree reported since the last call on this device, if anything.
+void check_embree();
+
+// One instance's triangles in world space.
+struct OccluderGeometry {
+    const Mesh* mesh = nullptr;
+    const Material* material = nullptr;    // null = white Lambert
+    const Texture* base_texture = nullptr; // usable ones only
+    const Texture* emission_texture = nullptr;
+    int instance = 0;
+    mat3 normal_to_world{1};
+    std::vector<vec3> positions;     // one more than the mesh has: Embree loads 16 bytes at a time
+    std::vector<glm::uvec3> kept;    // triangles when some were left out; else the mesh's own are used
+    std::vector<uint32_t> originals; // their indices in the mesh; empty when all were kept
+    uint64_t left_out = 0;
+
+    uint32_t triangle_in_mesh(uint32_t primitive) const { return originals.empty() ? primitive : originals[primitive]; }
+    bool masks() const { return material && material->alpha_mode == AlphaMode::mask; }
+    bool blends() const { return material && material->alpha_mode == AlphaMode::blend; }
+    // Whether light may get through: masks, and sheets that are not opaque all over.
+    bool passes_light() const { return masks() || (blends() && (base_texture || material->alpha < 1)); }
+    // What Embree has: all triangles of the mesh, or those that were kept.
+    const std::vector<glm::uvec3>& traced() const { return left_out ? kept : mesh->triangles; }
+    // Opacity at a point of a triangle of the mesh: 1 for opaque materials, 0 or 1 for masks.
+    float opacity(uint32_t triangle, float u, float v) const;
+};
+
+// Vertex attributes at barycentrics u (2nd corner) and v (3rd corner).
+template<class T> T interpolated(const std::vector<T>& values, glm::uvec3 corners, float u, float v) {
+    return (1 - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
+}
+
+struct OccluderSet {
+    RTCScene scene = nullptr;                 // null = no triangles
+    std::vector<OccluderGeometry> geometries; // Embree's geometry ids
+    std::vector<int> instances;               // what it was made of ...
+    std::vector<mat4> matrices;               // ... and where each stood
+    Box bounds;
+    uint64_t triangles = 0, dropped = 0;
+    bool has_alpha = false;
+
+    OccluderSet() = default;
+    OccluderSet(const OccluderSet&) = delete;
+    OccluderSet& operator=(const OccluderSet&) = delete;
+    ~OccluderSet();
+};
+
+// What never moves, and what does: two sets, so that the first is built once.
+struct Occluders::Impl {
+    const Scene* scene = nullptr;
+    std::shared_ptr<const OccluderSet> still, moving;
+    std::vector<const OccluderGeometry*> by_instance; // null = no triangles
+
+    // Made when first asked for.
+    std::once_flag sliced, meshed;
+    std::shared_ptr<const ShadowSlices> slices;
+    std::shared_ptr<const ShadowMesh> mesh;
+};
+
+// Triangles of some instances at their places, ready to trace. Throws Error.
+std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
+                                                     std::vector<mat4> matrices);
+
+// What shadow rays gather on their way: Embree's context with the light each lane has left.
+struct ShadowContext {
+    static constexpr int remembered = 4;
+    QueryContext embree;
+    double left[16];
+    struct Passed {
+        uint32_t geometry;
+        float t;
+    } passed[16][remembered]; // the last sheets each lane went through
+    int count[16];
+
+    void forget(); // all light left, no sheet passed; needed before Embree meets geometries with alpha
+};
+
+// Embree's callbacks for geometries with alpha.
+void pass_mask_holes(const RTCFilterFunctionNArguments* call);
+void pass_light(const RTCFilterFunctionNArguments* call);
+}

@@ -1,0 +1,164 @@
+// From a ray and a light to lit stretches. All geometry in double; vertices are the floats Embree has.
+#include "trace/shadows/intervals/shadow_slice.h"
+
+namespace tyndall {
+namespace {
+constexpr double reach = 0.9999; // of the way to a local light: where shadow rays end
+
+using Point = ShadowSlice::Point;
+using Slice = ShadowSlice;
+
+// Appends the stretch that a segment shadows: the point (x, y) lies on the way from t to the light when
+// t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 else, and 0 < y < ly.
+void append_shadow(const Slice& slice, Point a, Point b, std::vector<Stretch>& shadows) {
+    if (a.y > b.y) std::swap(a, b);
+    const double top = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
+    if (!(b.y > 0) || !(a.y < top)) return;
+    const Point low = a, high = b;
+    if (a.y < 0) a = {between(low, high, -low.y / (high.y - low.y)).x, 0};
+    if (b.y > top) b = {between(low, high, (top - low.y) / (high.y - low.y)).x, top};
+    const auto on_ray = [&](Point p) {
+        return (p.x * slice.light_y - p.y * slice.light_x) / (slice.light_y - (slice.far ? 0 : p.y));
+    };
+    const double s = on_ray(a), t = on_ray(b);
+    const Stretch shadow{std::max(std::min(s, t), 0.0), std::min(std::max(s, t), slice.x_max)};
+    if (!shadow.empty()) shadows.push_back({shadow.low / slice.per_metre, shadow.high / slice.per_metre});
+}
+
+// The stretch of a line start + t·along that a ball covers; empty when it misses.
+Stretch in_ball(Point start, Point along, Point center, double squared_radius) {
+    const double dx = start.x - center.x, dy = start.y - center.y;
+    const double a = along.x * along.x + along.y * along.y, b = along.x * dx + along.y * dy;
+    const double inside = b * b - a * (dx * dx + dy * dy - squared_radius);
+    if (!(a > 0) || !(inside > 0)) return {};
+    return {(-b - std::sqrt(inside)) / a, (-b + std::sqrt(inside)) / a};
+}
+
+// The glowing ball in the slice's coordinates.
+struct Ball {
+    Point center{0, 0};
+    double squared_radius = 0; // of the disc in which the plane cuts it
+};
+
+Ball ball_in(const Slice& slice, const LightPoint& light) {
+    if (slice.far || !(light.radius > 0)) return {};
+    const dvec3 center = light.center - slice.origin;
+    const double off = glm::dot(slice.normal, center);
+    return {{glm::dot(slice.x, center), glm::dot(slice.y, center)}, light.radius * light.radius - off * off};
+}
+
+void append_outside(const Slice& slice, const Ball& ball, Point a, Point b, std::vector<Stretch>& shadows) {
+    const Stretch inside = in_ball(a, {b.x - a.x, b.y - a.y}, ball.center, ball.squared_radius);
+    if (inside.empty() || inside.low >= 1 || inside.high <= 0) return append_shadow(slice, a, b, shadows);
+    if (inside.low > 0) append_shadow(slice, a, between(a, b, inside.low), shadows);
+    if (inside.high < 1) append_shadow(slice, between(a, b, inside.high), b, shadows);
+}
+
+// What of 0..t_max no shadow covers. Gaps below rounding are none.
+void append_gaps(std::vector<Stretch>& shadows, double t_max, std::vector<Stretch>& lit) {
+    std::sort(shadows.begin(), shadows.end(), [](Stretch a, Stretch b) { return a.low < b.low; });
+    const double smallest = 1e-12 * (1 + t_max);
+    double from = 0;
+    for (const Stretch& shadow : shadows) {
+        if (shadow.low > from + smallest) lit.push_back({from, shadow.low});
+        from = std::max(from, shadow.high);
+    }
+    if (t_max > from + smallest) lit.push_back({from, t_max});
+}
+
+// Inside the ball all is lit.
+void add_stretch(Stretch added, std::vector<Stretch>& lit) {
+    if (added.empty()) return;
+    std::vector<Stretch> joined;
+    for (const Stretch& stretch : lit) {
+        if (stretch.high < added.low || stretch.low > added.high)
+            joined.push_back(stretch);
+        else
+            added = {std::min(added.low, stretch.low), std::max(added.high, stretch.high)};
+    }
+    joined.push_back(added);
+    std::sort(joined.begin(), joined.end(), [](Stretch a, Stretch b) { return a.low < b.low; });
+    lit = std::move(joined);
+}
+}
+
+void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Stretch>& lit) {
+    static thread_local std::vector<Stretch> shadows;
+    static thread_local std::vector<ShadowSlice::Segment> segments;
+    lit.clear();
+    if (!(ray.t_max > 0) || !is_finite(ray.origin) || !is_finite(ray.direction)) return;
+    const Slice slice = make_slice(ray, light);
+    const double t_max = slice.x_max / slice.per_metre;
+    if (slices.nodes.empty()) return lit.push_back({0, t_max});
+    const Ball ball = ball_in(slice, light);
+    shadows.clear(), segments.clear();
+    append_segments(slices, slice, segments);
+    for (const auto& [a, b] : segments)
+        if (ball.squared_radius > 0)
+            append_outside(slice, ball, a, b, shadows);
+        else
+            append_shadow(slice, a, b, shadows);
+    append_gaps(shadows, t_max, lit);
+    if (ball.squared_radius > 0) {
+        const Stretch inside = in_ball({0, 0}, {slice.per_metre, 0}, ball.center, ball.squared_radius);
+        add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit);
+    }
+}
+
+namespace {
+void set_lane(ShadowPacket& packet, size_t i, const Slice& slice) {
+    for (int axis = 0; axis < 3; ++axis) {
+        packet.origin[axis][i] = slice.origin[axis], packet.normal[axis][i] = slice.normal[axis];
+        packet.x[axis][i] = slice.x[axis], packet.y[axis][i] = slice.y[axis];
+    }
+    packet.light_x[i] = slice.light_x, packet.light_y[i] = slice.light_y, packet.near[i] = slice.far ? 0 : 1;
+    packet.top[i] = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
+    packet.end[i] = slice.x_max, packet.metres[i] = 1 / slice.per_metre;
+    packet.active |= 1u << i;
+}
+
+// Whether a light's ball may reach into a box.
+bool meets_ball(const LightPoint& light, const ShadowSlices::Node& box) {
+    if (light.far || !(light.radius > 0)) return false;
+    const dvec3 nearest = glm::clamp(light.center, dvec3(box.low), dvec3(box.high));
+    return glm::distance(nearest, light.center) <= light.radius;
+}
+}
+
+void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
+              std::vector<Stretch> (&lit)[16]) {
+    static thread_local std::vector<Stretch> shadows[16];
+    static thread_local std::vector<ShadowSlice::Segment> segments;
+    ShadowPacket packet;
+    Slice planes[16];
+    for (size_t i = 0; i < rays.size(); ++i) {
+        lit[i].clear(), shadows[i].clear();
+        if (!(rays[i].t_max > 0) || !is_finite(rays[i].origin) || !is_finite(rays[i].direction)) continue;
+        planes[i] = make_slice(rays[i], points[i]);
+        set_lane(packet, i, planes[i]);
+    }
+
+    ShadowSlices around; // leaves in a light's ball, whose triangles are cut at its surface
+    around.corners = slices.corners;
+    for (size_t at = 0; at < slices.nodes.size(); ++at) {
+        const ShadowSlices::Node& node = slices.nodes[at];
+        if (node.count == 0) continue;
+        if (std::ranges::any_of(points, [&](const LightPoint& point) { return meets_ball(point, node); }))
+            around.nodes.push_back(node);
+        else
+            append_shadows(slices, node, packet, shadows);
+    }
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (!(packet.active >> i & 1)) continue;
+        const Ball ball = ball_in(planes[i], points[i]);
+        segments.clear();
+        if (!around.nodes.empty()) append_segments(around, planes[i], segments);
+        for (const auto& [a, b] : segments) append_outside(planes[i], ball, a, b, shadows[i]);
+        const double t_max = planes[i].x_max / planes[i].per_metre;
+        append_gaps(shadows[i], t_max, lit[i]);
+        if (!(ball.squared_radius > 0)) continue;
+        const Stretch inside = in_ball({0, 0}, {planes[i].per_metre, 0}, ball.center, ball.squared_radius);
+        add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit[i]);
+    }
+}
+}

@@ -1,0 +1,47 @@
+// Exact shadows along a camera ray, without a sample: the plane through ray and light cuts the triangles into
+// segments, each segment shadows one stretch of the ray, and what no segment shadows is lit (after Max 1986). A union
+// of stretches needs no closed meshes: holes let light through, duplicated and coplanar faces change nothing.
+#pragma once
+#include "trace/light_ray.h"
+#include "trace/occlusion/occluders.h"
+#include "volume/bricks/brick_walk.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace tyndall {
+// Opaque triangles in a hierarchy of boxes, to be cut by planes.
+struct ShadowSlices {
+    struct Node {
+        vec3 low, high;
+        uint32_t first = 0; // of its triangles; of an inner node the node to go on with where its box is missed
+        uint32_t count = 0; // 0 = inner node; its first child follows it
+    };
+    struct Corners {
+        std::vector<float> values[9]; // [3 · corner + axis][triangle], and `most` more
+        vec3 of(uint32_t triangle, size_t i) const {
+            return {values[3 * i][triangle], values[3 * i + 1][triangle], values[3 * i + 2][triangle]};
+        }
+    };
+    static constexpr uint32_t most = 8; // triangles of a leaf
+    std::vector<Node> nodes;            // depth first; empty when nothing casts shadows
+    std::shared_ptr<const Corners> corners;
+
+    size_t triangles() const { return corners ? corners->values[0].size() - most : 0; }
+};
+ShadowSlices make_shadow_slices(const std::vector<ShadowTriangle>& triangles); // those with alpha are left out
+
+// The triangles that may cast shadows on some of the rays, each with its own point of the light: for rays of one origin
+// close to each other a quicker start for find_lit(), with the same answers. At least one ray.
+ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points);
+
+// Replaces `lit` by the stretches of the ray 0..t_max, ascending, from which the point of the light is seen. Like
+// shadow rays, the slices look 0.9999 of the way to the point, and nothing inside the light's ball casts shadows.
+void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Stretch>& lit);
+
+// The same for up to 16 rays, each with its own point of one light; quick for rays close to each other after
+// near_rays().
+void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
+              std::vector<Stretch> (&lit)[16]);
+}

@@ -1,0 +1,140 @@
+// Where the orthographic pictures of a sun lie.
+#include "trace/occlusion/scene.h"
+#include "trace/seen_space.h"
+#include "trace/shadows/maps/shadow_map.h"
+#include "trace/snapshot.h"
+#include "volume/bricks/brick_walk.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+constexpr double steps_per_octave = 4; // of texel sizes
+constexpr double worth_it = 0.7;       // a cascade's texels are at most this part of the next one's
+constexpr int spare = 5; // texels around what is asked for: filters up to its edge, and what snapping takes
+constexpr double endless = std::numeric_limits<double>::infinity();
+
+// A rectangle across the light, metres.
+struct Across {
+    double low[2] = {endless, endless}, high[2] = {-endless, -endless};
+
+    bool empty() const { return !(low[0] < high[0] && low[1] < high[1]); }
+    void grow(const double* at) {
+        for (int i = 0; i < 2; ++i) low[i] = std::min(low[i], at[i]), high[i] = std::max(high[i], at[i]);
+    }
+    void cut(const Across& other) {
+        for (int i = 0; i < 2; ++i) low[i] = std::max(low[i], other.low[i]), high[i] = std::min(high[i], other.high[i]);
+    }
+};
+Across all_across() {
+    Across all;
+    for (int i = 0; i < 2; ++i) all.low[i] = -endless, all.high[i] = endless;
+    return all;
+}
+
+dvec3 row(const ShadowMap& map, int axis) {
+    return {map.world_to_map[0][axis], map.world_to_map[1][axis], map.world_to_map[2][axis]};
+}
+
+vec3 corner_of(const Box& box, int i) {
+    return {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
+}
+
+Across across(const ShadowMap& map, const Box& box) {
+    if (!is_finite(box.low) || !is_finite(box.high)) return all_across();
+    Across result;
+    for (int i = 0; i < 8; ++i) {
+        const dvec3 offset = dvec3(corner_of(box, i)) - dvec3(map.position);
+        const double at[2] = {glm::dot(row(map, 0), offset), glm::dot(row(map, 1), offset)};
+        result.grow(at);
+    }
+    return result;
+}
+
+// What the camera sees between two planar depths, the second one perhaps infinite.
+Across across(const ShadowMap& map, const View& view, double near, double far) {
+    const Camera& camera = view.camera;
+    const vec2 low(-past_edge(view)), high = vec2(view.size) - low;
+    Across result;
+    for (int i = 0; i < 4; ++i) {
+        const Ray ray = camera_ray(camera, view.size, {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y});
+        const dvec3 d = dvec3(ray.direction) / double(glm::dot(ray.direction, camera.forward));
+        const dvec3 start = dvec3(ray.origin) - dvec3(map.position);
+        for (const double depth : {near, far}) {
+            double at[2];
+            for (int axis = 0; axis < 2; ++axis) {
+                const double along = glm::dot(row(map, axis), d);
+                at[axis] = glm::dot(row(map, axis), start) + (along == 0 ? 0 : along * depth);
+            }
+            result.grow(at);
+        }
+    }
+    return result;
+}
+
+// Planar depths that corners of a box have.
+Stretch depths(const Camera& camera, const Box& box) {
+    Stretch range{endless, -endless};
+    for (int i = 0; i < 8; ++i) {
+        const double depth = glm::dot(dvec3(corner_of(box, i)) - dvec3(camera.position), dvec3(camera.forward));
+        range.low = std::min(range.low, depth), range.high = std::max(range.high, depth);
+    }
+    return range;
+}
+
+// A picture whose texels have sizes of a fixed series and lie on a fixed lattice of the world, so that edges of shadows
+// do not swim when the camera moves.
+ShadowPicture picture_of(const ShadowMap& map, const Across& region, int resolution) {
+    ShadowPicture picture;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double length = std::max(region.high[axis] - region.low[axis], 1e-6);
+        const double texels = resolution - 2 * spare;
+        const double texel = std::exp2(std::ceil(steps_per_octave * std::log2(length / texels)) / steps_per_octave);
+        const double origin = glm::dot(row(map, axis), dvec3(map.position));
+        const double low = std::floor((origin + region.low[axis]) / texel) - spare + 1;
+        const double wanted = std::ceil((origin + region.high[axis]) / texel) - low + spare - 1;
+        picture.size[axis] = static_cast<int>(std::clamp<double>(wanted, 2 * spare, resolution));
+        picture.scale[axis] = static_cast<float>(1 / texel);
+        picture.offset[axis] = static_cast<float>(origin / texel - low);
+    }
+    return picture;
+}
+}
+
+void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOptions& options, ShadowMap& map) {
+    // Beside what casts shadows all is lit, and only fog in front of the camera is asked for.
+    Box fog;
+    for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
+    if (fog.empty()) return;
+    map.position = snapshot.occluders->bounds().center();
+    Across region = across(map, snapshot.occluders->bounds());
+    region.cut(across(map, fog));
+    const bool bounded = is_finite(fog.low) && is_finite(fog.high);
+    Stretch range = bounded ? depths(view.camera, fog) : Stretch{0, endless};
+    range.low = std::max(range.low, 0.0);
+    if (range.empty()) return;
+
+    // Ranges half logarithmic, half even; fog without end is divided where the scene is.
+    Box scene = snapshot.occluders->bounds();
+    scene.grow(snapshot.bounds);
+    const double end = std::min(range.high, std::max(depths(view.camera, scene).high, range.low + 1));
+    const double start = std::max(range.low, 0.01 * end);
+    std::vector<ShadowPicture> pictures;
+    for (int i = options.cascades; i >= 1; --i) {
+        const double share = static_cast<double>(i) / options.cascades;
+        const double split = 0.5 * start * std::pow(end / start, share) + 0.5 * (start + (end - start) * share);
+        Across seen = across(map, view, range.low, i == options.cascades ? range.high : split);
+        seen.cut(region);
+        if (seen.empty()) continue;
+        const ShadowPicture picture = picture_of(map, seen, options.resolution);
+        const auto density = [](const ShadowPicture& p) { return std::sqrt(double(p.scale.x) * p.scale.y); };
+        if (!pictures.empty() && density(pictures.back()) > worth_it * density(picture)) continue;
+        pictures.push_back(picture);
+    }
+    size_t first = 0;
+    for (size_t i = pictures.size(); i-- > 0;) {
+        pictures[i].first = first;
+        first += static_cast<size_t>(pictures[i].size.x) * static_cast<size_t>(pictures[i].size.y);
+        map.pictures.push_back(pictures[i]);
+    }
+}
+}

@@ -1,0 +1,106 @@
+#include "trace/shadows/maps/shadow_blocks.h"
+
+#include "base/parallel.h"
+
+#include <bit>
+
+namespace tyndall {
+namespace {
+constexpr float rounding = 2e-6f; // more than look-ups round, and than what they move surfaces away
+constexpr float most_across = 2;  // widths of a block across a box
+
+ivec2 blocks_of(ivec2 texels) { return (texels + block_side - 1) / block_side; }
+size_t area(ivec2 size) { return static_cast<size_t>(size.x) * static_cast<size_t>(size.y); }
+
+void grow(DepthRange& range, float nearest, float farthest) {
+    range.nearest = std::min(range.nearest, nearest), range.farthest = std::max(range.farthest, farthest);
+}
+
+void fill_smallest(const ShadowPicture& picture, const float* depth, DepthRange* blocks) {
+    const ivec2 count = blocks_of(picture.size);
+    parallel_for(count.y, [&](int64_t row) {
+        DepthRange* of_row = blocks + row * count.x;
+        std::fill_n(of_row, count.x, DepthRange{});
+        const int first = static_cast<int>(row) * block_side, last = std::min(first + block_side, picture.size.y);
+        for (int y = first; y < last; ++y)
+            for (int x = 0; x < picture.size.x; ++x) {
+                const float at = depth[static_cast<size_t>(y) * static_cast<size_t>(picture.size.x) + x];
+                grow(of_row[x / block_side], at == unseen_depth ? infinity : at, at);
+            }
+    });
+}
+
+// The next level: blocks of two by two.
+void fill_larger(const DepthRange* fine, ivec2 fine_count, DepthRange* coarse) {
+    const ivec2 count = (fine_count + 1) / 2;
+    std::fill_n(coarse, area(count), DepthRange{});
+    for (int y = 0; y < fine_count.y; ++y)
+        for (int x = 0; x < fine_count.x; ++x, ++fine)
+            grow(coarse[y / 2 * count.x + x / 2], fine->nearest, fine->farthest);
+}
+
+// Range of all texels that reach into a rectangle of texel numbers, which lies in the picture.
+DepthRange range_in(const ShadowMap& map, const ShadowPicture& picture, vec2 low, vec2 high) {
+    // Of the level whose blocks are at least half as wide as the rectangle, three by three hold it.
+    const float share = std::max(high.x - low.x, high.y - low.y) / (most_across * block_side);
+    const int exponent = static_cast<int>(std::bit_cast<uint32_t>(share) >> 23) - 126; // share <= 2^exponent
+    const int level = std::clamp(exponent, 0, picture.levels - 1);
+    const DepthRange* blocks = map.blocks.data() + picture.first_block[static_cast<size_t>(level)];
+    const int side = block_side << level;
+    const ivec2 count = (picture.size + side - 1) / side, first = ivec2(low) / side;
+    const ivec2 last = glm::min(ivec2(high) / side, count - 1);
+    DepthRange range;
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x) {
+            const ivec2 at = glm::min(first + ivec2(x, y), last);
+            const DepthRange& block = blocks[at.y * count.x + at.x];
+            grow(range, block.nearest, block.farthest);
+        }
+    return range;
+}
+}
+
+void make_blocks(ShadowMap& map) {
+    size_t total = 0;
+    for (ShadowPicture& picture : map.pictures) {
+        ivec2 count = blocks_of(picture.size);
+        for (picture.levels = 0;; count = (count + 1) / 2) {
+            picture.first_block[static_cast<size_t>(picture.levels++)] = total;
+            total += area(count);
+            if (area(count) <= 1 || picture.levels == most_levels) break;
+        }
+    }
+    map.blocks.resize(total);
+    for (const ShadowPicture& picture : map.pictures) {
+        DepthRange* blocks = map.blocks.data() + picture.first_block[0];
+        fill_smallest(picture, map.depth.data() + picture.first, blocks);
+        ivec2 count = blocks_of(picture.size);
+        for (int level = 1; level < picture.levels; ++level, count = (count + 1) / 2) {
+            fill_larger(blocks, count, blocks + area(count));
+            blocks += area(count);
+        }
+    }
+}
+
+Lit lit_in_box(const ShadowMap& map, vec3 low, vec3 high) {
+    if (map.empty()) return Lit::all;
+    if (map.kind != LightKind::sun || map.blocks.empty()) return Lit::some;
+    const float depth = low.z - std::abs(low.z) * rounding;
+    const float filter = map.pcf == 0 ? 0.0f : map.pcf == 1 ? 0.5f : 1.5f;
+    for (const ShadowPicture& picture : map.pictures) {
+        // In texels, and as look-ups know it inside, outside, or partly so.
+        const vec2 slack_texels = (glm::abs(picture.offset) + vec2(picture.size)) * rounding;
+        const vec2 from = vec2(low) * picture.scale + picture.offset - slack_texels;
+        const vec2 to = vec2(high) * picture.scale + picture.offset + slack_texels;
+        const vec2 begin(shadow_guard), end = vec2(picture.size) - shadow_guard;
+        if (to.x < begin.x || to.y < begin.y || from.x > end.x || from.y > end.y) continue;
+        const bool inside = from.x >= begin.x && from.y >= begin.y && to.x <= end.x && to.y <= end.y;
+        if (!inside) return Lit::some;
+        const DepthRange range = range_in(map, picture, from - filter, to + filter);
+        const float texel = 1 / std::min(picture.scale.x, picture.scale.y);
+        if (depth - map.bias * texel > range.farthest) return Lit::none;
+        return high.z <= range.nearest ? Lit::all : Lit::some;
+    }
+    return Lit::all;
+}
+}

@@ -1,0 +1,138 @@
+// Shadow maps looked up for kernels (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_TRACE_SHADOW_MAP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_TRACE_SHADOW_MAP_SIMD_H
+#undef TYNDALL_TRACE_SHADOW_MAP_SIMD_H
+#else
+#define TYNDALL_TRACE_SHADOW_MAP_SIMD_H
+#endif
+
+#include "base/simd/gather_simd.h"
+#include "base/simd/simd.h"
+#include "trace/shadows/maps/shadow_map.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
+    Ints r;
+    for (size_t i = 0; i < parts; ++i)
+        r.part[i] = hn::IfThenElse(hn::RebindMask(IntTag(), where.part[i]), a.part[i], b.part[i]);
+    return r;
+}
+
+// Where points lie in the pictures.
+struct TexelPlaces {
+    Floats u, v, w;  // texel numbers; along the light
+    Floats texel;    // its side, metres
+    Ints first, row; // of their picture: first texel, texels from row to row
+    Mask16 mapped;   // lanes that lie in a picture
+};
+
+HWY_INLINE Mask16 in_picture(const Floats& u, const Floats& v, ivec2 size) {
+    return (u >= shadow_guard) & (u <= static_cast<float>(size.x) - shadow_guard) & (v >= shadow_guard) &
+           (v <= static_cast<float>(size.y) - shadow_guard);
+}
+
+// The finest cascade that holds the point. Neighbouring points mostly share one.
+HWY_INLINE void place_in_cascades(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
+    places.w = q.z, places.mapped = q.x < q.x;
+    for (const ShadowPicture& picture : map.pictures) {
+        const Floats u = fused(q.x, picture.scale.x, picture.offset.x);
+        const Floats v = fused(q.y, picture.scale.y, picture.offset.y);
+        const Mask16 inside = in_picture(u, v, picture.size);
+        const float texel = 1 / std::min(picture.scale.x, picture.scale.y);
+        const Ints first = static_cast<int32_t>(picture.first), row = picture.size.x;
+        if (&picture == map.pictures.data()) {
+            places.u = u, places.v = v, places.texel = texel, places.first = first, places.row = row;
+        } else {
+            const Mask16 here = inside & !places.mapped;
+            places.u = select(here, u, places.u), places.v = select(here, v, places.v);
+            places.texel = select(here, texel, places.texel);
+            places.first = chosen(here, first, places.first), places.row = chosen(here, row, places.row);
+        }
+        places.mapped = places.mapped | inside;
+        if (!any(!places.mapped)) break;
+    }
+}
+
+// The face of a cube, or the one picture of a spot. Faces look along their axes; u and v are the next two in turn.
+HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
+    const ShadowPicture& picture = map.pictures[0];
+    Floats a = q.x, b = q.y, depth = q.z, face = 0.0f;
+    if (map.kind == LightKind::point) {
+        const Floats x = abs(q.x), y = abs(q.y), z = abs(q.z);
+        const Mask16 along_x = (x >= y) & (x >= z), along_y = y >= z;
+        a = select(along_x, q.y, select(along_y, q.z, q.x)), b = select(along_x, q.z, select(along_y, q.x, q.y));
+        depth = select(along_x, q.x, select(along_y, q.y, q.z));
+        face = select(along_x, 0.0f, select(along_y, 2.0f, 4.0f)) + select(depth < 0.0f, 1.0f, 0.0f);
+        depth = abs(depth);
+    }
+    const Floats inverse = 1.0f / max(depth, 1e-20f);
+    places.u = fused(a * inverse, picture.scale.x, picture.offset.x);
+    places.v = fused(b * inverse, picture.scale.y, picture.offset.y);
+    places.w = sqrt(dot(q, q));
+    places.texel = depth * (1 / picture.scale.x);
+    places.row = picture.size.x;
+    places.first = truncate(face) * (picture.size.x * picture.size.y);
+    places.mapped = (depth > 0.0f) & in_picture(places.u, places.v, picture.size);
+}
+
+// Points in the map's own coordinates: the light, or the sun's anchor, is the origin. Linear along rays.
+HWY_INLINE Vec3s turned_to_map(const ShadowMap& map, const Vec3s& p) {
+    const mat3& m = map.world_to_map;
+    return {dot(p, {m[0].x, m[1].x, m[2].x}), dot(p, {m[0].y, m[1].y, m[2].y}), dot(p, {m[0].z, m[1].z, m[2].z})};
+}
+HWY_INLINE Vec3s map_coordinates(const ShadowMap& map, const Vec3s& point) {
+    return turned_to_map(map, point - splat(map.position));
+}
+
+HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
+    TexelPlaces places;
+    map.kind == LightKind::sun ? place_in_cascades(map, q, places) : place_in_tangents(map, q, places);
+    places.u = select(places.mapped, places.u, shadow_guard), places.v = select(places.mapped, places.v, shadow_guard);
+    return places;
+}
+
+// Share of the light that reaches 16 points given in map coordinates, by percentage-closer filtering (Reeves et al.
+// 1987): depths are compared first, then averaged.
+HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
+    if (map.empty()) return 1.0f;
+    const TexelPlaces places = texel_places(map, q);
+    const Floats outside = map.kind == LightKind::sun ? 1.0f : 0.0f;
+    if (!any(places.mapped)) return outside;
+
+    // Surfaces lie a millionth further than stored: what floats round.
+    const Floats depth = fused(places.texel, -map.bias, places.w - abs(places.w) * 1e-6f);
+    const float* stored = map.depth.data();
+    const auto lit = [&](const Ints& texel) HWY_ATTR { return select(gather(stored, texel) >= depth, 1.0f, 0.0f); };
+    if (map.pcf == 0)
+        return select(places.mapped, lit(places.first + truncate(places.v) * places.row + truncate(places.u)), outside);
+
+    const Floats u = places.u - 0.5f, v = places.v - 0.5f;
+    const Ints i = truncate(u), j = truncate(v);
+    const Floats right = u - to_floats(i), down = v - to_floats(j);
+    const Ints corner = places.first + j * places.row + i;
+    const auto blend = [](const Floats& a, const Floats& b, const Floats& weight)
+                           HWY_ATTR { return fused(b - a, weight, a); };
+    if (map.pcf == 1) {
+        const auto lit_pair = [&](const Ints& texel) HWY_ATTR {
+            Floats first, second;
+            gather_pairs(stored, texel, first, second);
+            return blend(select(first >= depth, 1.0f, 0.0f), select(second >= depth, 1.0f, 0.0f), right);
+        };
+        return select(places.mapped, blend(lit_pair(corner), lit_pair(corner + places.row), down), outside);
+    }
+    Floats sum = 0.0f;
+    for (int y = -1; y <= 2; ++y) {
+        const Ints row = corner + places.row * y;
+        const Floats across = blend(lit(row + (-1)), lit(row + 2), right) + lit(row) + lit(row + 1);
+        sum = fused(across, y == -1 ? 1.0f - down : y == 2 ? down : Floats(1.0f), sum);
+    }
+    return select(places.mapped, sum * (1.0f / 9), outside);
+}
+
+HWY_INLINE Floats lit_share16(const ShadowMap& map, const Vec3s& point) {
+    return map.empty() ? Floats(1.0f) : lit_share_at(map, map_coordinates(map, point));
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

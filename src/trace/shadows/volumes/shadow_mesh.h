@@ -1,0 +1,22 @@
+// The triangles that cast shadows, joined: corners at the same place are one corner, edges between the same corners one
+// edge. Nothing else is asked of a mesh: it may be open, fold, touch or cross itself.
+#pragma once
+#include "trace/occlusion/occluders.h"
+
+namespace tyndall {
+struct ShadowMesh {
+    struct Edge {
+        uint32_t a = 0, b = 0; // corners, a < b
+    };
+    struct Triangle {
+        uint32_t corners[3];
+        uint32_t edges[3]; // the k-th runs between corners k and k+1
+    };
+    std::vector<dvec3> corners;
+    std::vector<Edge> edges;
+    std::vector<Triangle> triangles;
+};
+
+// Triangles with alpha and those without area are left out.
+ShadowMesh make_shadow_mesh(const std::vector<ShadowTriangle>& triangles);
+}

@@ -1,0 +1,49 @@
+#include "trace/shadows/volumes/shadow_volumes.h"
+
+namespace tyndall {
+namespace {
+bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const LightPoint& light) {
+    if (light.far || !(light.radius > 0)) return false;
+    for (const uint32_t corner : triangle.corners)
+        if (glm::distance(mesh.corners[corner], light.center) > light.radius) return false;
+    return true;
+}
+}
+
+ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light) {
+    ShadowVolumes result{std::move(mesh), light, {}, {}};
+    const ShadowMesh& m = *result.mesh;
+    std::vector<int> volumes(m.edges.size(), 0);
+    for (uint32_t t = 0; t < m.triangles.size(); ++t) {
+        const ShadowMesh::Triangle& triangle = m.triangles[t];
+        const dvec3 a = m.corners[triangle.corners[0]];
+        const dvec3 normal = glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
+        const double facing = glm::dot(normal, towards(light, a));
+        if (facing == 0 || in_ball(m, triangle, light)) continue;
+        result.caps.push_back({t, facing < 0});
+        for (int k = 0; k < 3; ++k) volumes[triangle.edges[k]] += is_left(triangle, k, facing < 0) ? 1 : -1;
+    }
+    for (uint32_t e = 0; e < volumes.size(); ++e)
+        if (volumes[e]) result.sides.push_back({e, volumes[e]});
+    return result;
+}
+
+int count_between(const ShadowVolumes& volumes, dvec3 point) {
+    const ShadowMesh& m = *volumes.mesh;
+    int count = 0;
+    for (const ShadowVolumes::Cap& cap : volumes.caps) {
+        const ShadowMesh::Triangle& triangle = m.triangles[cap.triangle];
+        bool inside = true;
+        for (int k = 0; k < 3 && inside; ++k) {
+            const ShadowMesh::Edge edge = m.edges[triangle.edges[k]];
+            const dvec3 a = m.corners[edge.a], side = glm::cross(towards(volumes.light, a), m.corners[edge.b] - a);
+            inside = (glm::dot(side, point - a) >= 0) == is_left(triangle, k, cap.flipped);
+        }
+        if (!inside) continue;
+        const dvec3 a = m.corners[triangle.corners[0]];
+        const dvec3 normal = glm::cross(m.corners[triangle.corners[1]] - a, m.corners[triangle.corners[2]] - a);
+        count += (glm::dot(normal, point - a) < 0) != cap.flipped;
+    }
+    return count;
+}
+}

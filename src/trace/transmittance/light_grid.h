@@ -1,0 +1,37 @@
+// Grids of optical depth, from fitting to filling.
+#pragma once
+#include "trace/transmittance/light_depth.h"
+
+#include <atomic>
+#include <memory>
+#include <span>
+
+namespace tyndall {
+// A grid fitted to the brick media, without its depths; size 0 when the light reaches none of them. `resolution`: cells
+// across the longer side of the fog as the light sees it; along the light they are about as long as wide.
+LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution);
+
+// Integrates the media along the columns of a fitted grid, in parallel over columns.
+void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid);
+
+// The same when columns are first asked for (light_grid_simd.h), from any thread. Columns nobody asked for hold
+// nothing.
+class GridColumns {
+public:
+    GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid);
+    void fill(int packet) const; // sixteen columns of a row, once
+
+    const LightDepthGrid& grid() const { return grid_; }
+    int packets_across() const { return (grid_.size.x + 15) / 16; }
+    bool is_filled(int packet) const {
+        return states_[static_cast<size_t>(packet)].load(std::memory_order_acquire) == done;
+    }
+
+private:
+    enum State : uint8_t { untouched, at_work, done };
+    std::vector<const Medium*> media_;
+    const LightDepthGrid& grid_;
+    std::shared_ptr<std::vector<float>> depths_; // the grid's
+    std::unique_ptr<std::atomic<uint8_t>[]> states_;
+};
+}

@@ -1,0 +1,37 @@
+#include "viewer/editing/input_times.h"
+#include "scene/scene.h"
+
+namespace tyndall {
+namespace {
+std::optional<InputTime> time_of(const std::filesystem::path& file) {
+    std::error_code error;
+    InputTime time{file, std::filesystem::last_write_time(file, error), 0};
+    if (error) return {};
+    time.size = std::filesystem::file_size(file, error);
+    return error ? std::nullopt : std::optional(time);
+}
+}
+
+std::vector<InputTime> input_times(const Scene& scene) {
+    std::vector<std::filesystem::path> files = scene.inputs;
+    for (const MediumSource& medium : scene.media) {
+        if (medium.kind != MediumKind::vdb) continue;
+        if (medium.sequence.files.empty()) files.push_back(medium.sequence.pattern);
+        for (const int number : medium.sequence.files)
+            if (const auto file = sequence_file(medium.sequence, number - medium.sequence.offset, MissingFrame::hold))
+                files.push_back(*file);
+    }
+    std::vector<InputTime> times;
+    for (const std::filesystem::path& file : files)
+        if (const auto time = time_of(file)) times.push_back(*time);
+    return times;
+}
+
+std::vector<std::filesystem::path> changed_inputs(std::span<const InputTime> known) {
+    std::vector<std::filesystem::path> changed;
+    for (const InputTime& before : known)
+        if (const auto now = time_of(before.file); now && (now->written != before.written || now->size != before.size))
+            changed.push_back(before.file);
+    return changed;
+}
+}

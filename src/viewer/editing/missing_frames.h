@@ -1,0 +1,17 @@
+// Gaps in the volume files of a scene.
+#pragma once
+#include "volume/vdb/sequence.h"
+
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct Scene;
+
+// Frames of the scene for which a sequence of volume files lacks the file, ascending.
+std::vector<int> missing_frames(const Scene& scene);
+
+// What a frame lacks and what stands in for it: "a file of smoke is missing at this frame: smoke.0006.vdb is held".
+// Empty when there is nothing to say.
+std::string missing_text(const Scene& scene, int frame, MissingFrame missing);
+}

@@ -1,0 +1,227 @@
+#include "viewer/editing/properties.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/scene.h"
+
+namespace tyndall {
+namespace {
+using enum ValueKind;
+
+bool is_spot(const Scene& scene, size_t i) { return scene.lights[i].kind == LightKind::spot; }
+bool is_sun(const Scene& scene, size_t i) { return scene.lights[i].kind == LightKind::sun; }
+bool is_local(const Scene& scene, size_t i) { return !is_sun(scene, i); }
+bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
+bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
+bool has_direction(const Scene& scene, size_t i) {
+    return scene.lights[i].kind != LightKind::point && !has_target(scene, i);
+}
+bool has_mean_cosine(const Scene& scene, size_t i) {
+    const PhaseKind phase = scene.media[i].phase;
+    return phase == PhaseKind::henyey_greenstein || phase == PhaseKind::schlick;
+}
+bool is_height(const Scene& scene, size_t i) { return scene.media[i].kind == MediumKind::height; }
+bool is_noise(const Scene& scene, size_t i) { return scene.media[i].recipe.has_value(); }
+bool has_bounds(const Scene& scene, size_t i) {
+    return is_finite(scene.media[i].bounds.low) && is_finite(scene.media[i].bounds.high);
+}
+bool is_own_camera(const Scene& scene, size_t i) { return scene.cameras[i].node < 0; }
+bool has_view_angle(const Scene& scene, size_t i) {
+    return is_own_camera(scene, i) && scene.cameras[i].ortho_height == 0;
+}
+bool is_even(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::color; }
+bool is_sky(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::sky; }
+bool is_image(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::image; }
+bool always(const Scene&, size_t) { return true; }
+
+template<auto member> Slot of_light(Scene& scene, size_t i) { return &(scene.lights[i].*member); }
+template<auto member> Slot of_medium(Scene& scene, size_t i) { return &(scene.media[i].*member); }
+template<auto member> Slot of_camera(Scene& scene, size_t i) { return &(scene.cameras[i].*member); }
+
+constexpr float far = 1e9f, bright = 1e12f, tiny = 1e-6f;
+
+const Property table[] = {
+    // lights
+    {Part::light, "position", vector, "m", -far, far, -10, 10, "Where the light is", of_light<&LightSource::position>,
+     has_place},
+    {Part::light, "direction", vector, "", -far, far, -1, 1, "The way the light travels, any length",
+     of_light<&LightSource::direction>, has_direction},
+    {Part::light, "target", vector, "m", -far, far, -10, 10, "The point the light shines at",
+     [](Scene& s, size_t i) -> Slot { return &*s.lights[i].target; }, has_target},
+    {Part::light, "color", color, "", 0, bright, 0, 1, "Colour, multiplies the intensity",
+     of_light<&LightSource::color>, always},
+    {Part::light, "intensity", number, "cd", 0, bright, 0, 2000, "Luminous intensity",
+     of_light<&LightSource::intensity>, is_local},
+    {Part::light, "intensity", number, "lx", 0, bright, 0, 100, "Illuminance across the light",
+     of_light<&LightSource::intensity>, is_sun},
+    {Part::light, "volume_scale", number, "", 0, bright, 0, 4, "Multiplies the light in fog only",
+     of_light<&LightSource::volume_scale>, always},
+    {Part::light, "surface_scale", number, "", 0, bright, 0, 4, "Multiplies the light on surfaces only",
+     of_light<&LightSource::surface_scale>, always},
+    {Part::light, "inner_cone", number, "degrees", 0, 90, 0, 90, "Half angle of the part of full brightness",
+     of_light<&LightSource::inner_cone>, is_spot},
+    {Part::light, "outer_cone", number, "degrees", 0, 90, 0, 90, "Half angle where the light ends",
+     of_light<&LightSource::outer_cone>, is_spot},
+    {Part::light, "range", number, "m", tiny, far, 0.1f, 100, "The light fades to nothing at this distance",
+     of_light<&LightSource::range>, is_local},
+    {Part::light, "radius", number, "m", 0, bright, 0, 0.5f, "Radius of the glowing ball: soft shadows",
+     of_light<&LightSource::radius>, is_local},
+    {Part::light, "angle", number, "degrees", 0, 90, 0, 5, "Half angle of the sun's disc: soft shadows",
+     of_light<&LightSource::angle>, is_sun},
+    {Part::light, "shadows", toggle, "", 0, 1, 0, 1, "Whether surfaces block the light",
+     of_light<&LightSource::shadows>, always},
+
+    // fog
+    {Part::medium, "extinction", number, "1/m", 0, bright, 0, 1, "Density: extinction at density 1",
+     of_medium<&MediumSource::extinction>, always},
+    {Part::medium, "albedo", color, "", 0, 1, 0, 1, "Share of the extinction that is scattered, not absorbed",
+     of_medium<&MediumSource::albedo>, always},
+    {Part::medium, "g", number, "", -largest_g, largest_g, -0.9f, 0.9f,
+     "Mean cosine of the scattering angle: above 0 forward", of_medium<&MediumSource::g>, has_mean_cosine},
+    {Part::medium, "emission", color, "nits/m", 0, bright, 0, 1, "Radiance added per metre at density 1",
+     of_medium<&MediumSource::emission>, always},
+    {Part::medium, "base", number, "m", -far, far, -10, 10, "World height below which the density is 1",
+     of_medium<&MediumSource::height_base>, is_height},
+    {Part::medium, "falloff", number, "m", tiny, far, 0.1f, 50, "Metres over which the density falls to 1/e",
+     of_medium<&MediumSource::height_falloff>, is_height},
+    {Part::medium, "wind", vector, "m/s", -1000, 1000, -2, 2, "Carries the noise",
+     [](Scene& s, size_t i) -> Slot { return &s.media[i].recipe->wind; }, is_noise},
+    {Part::medium, "translate", vector, "m", -far, far, -10, 10, "Moves the fog", of_medium<&MediumSource::translation>,
+     always},
+    {Part::medium, "rotate", vector, "degrees", -far, far, -180, 180, "Turns the fog about X, then Y, then Z",
+     of_medium<&MediumSource::rotate>, always},
+    {Part::medium, "scale", vector, "", -1e6f, 1e6f, 0.1f, 10, "Factors along the fog's own axes, not 0",
+     of_medium<&MediumSource::scale>, always},
+    {Part::medium, "bounds/low", vector, "m", -far, far, -20, 20, "Lower corner of the box the fog fills",
+     [](Scene& s, size_t i) -> Slot { return &s.media[i].bounds.low; }, has_bounds},
+    {Part::medium, "bounds/high", vector, "m", -far, far, -20, 20, "Upper corner of the box the fog fills",
+     [](Scene& s, size_t i) -> Slot { return &s.media[i].bounds.high; }, has_bounds},
+
+    // cameras that are not the glTF's
+    {Part::camera, "position", vector, "m", -far, far, -10, 10, "Where the eye is", of_camera<&CameraSource::position>,
+     is_own_camera},
+    {Part::camera, "target", vector, "m", -far, far, -10, 10, "The point in the middle of the picture",
+     of_camera<&CameraSource::target>, is_own_camera},
+    {Part::camera, "vertical_fov", number, "degrees", 5, 150, 10, 120, "Angle between lower and upper edge",
+     of_camera<&CameraSource::vertical_fov>, has_view_angle},
+
+    // the scene itself
+    {Part::scene, "exposure", number, "EV", -64, 64, -8, 8, "Stops by which PNGs are brightened",
+     [](Scene& s, size_t) -> Slot { return &s.exposure; }, always},
+    {Part::scene, "ambient", color, "nits", 0, bright, 0, 1, "Radiance from everywhere, not shadowed",
+     [](Scene& s, size_t) -> Slot { return &s.ambient; }, always},
+    {Part::scene, "background/color", color, "nits", 0, bright, 0, 1, "Radiance behind everything",
+     [](Scene& s, size_t) -> Slot { return &s.background.color; }, is_even},
+    {Part::scene, "background/sky/zenith", color, "nits", 0, bright, 0, 4, "Radiance straight up",
+     [](Scene& s, size_t) -> Slot { return &s.background.zenith; }, is_sky},
+    {Part::scene, "background/sky/horizon", color, "nits", 0, bright, 0, 4, "Radiance at the horizon",
+     [](Scene& s, size_t) -> Slot { return &s.background.color; }, is_sky},
+    {Part::scene, "background/sky/ground", color, "nits", 0, bright, 0, 4, "Radiance straight down",
+     [](Scene& s, size_t) -> Slot { return &s.background.ground; }, is_sky},
+    {Part::scene, "background/intensity", number, "", 0, bright, 0, 4, "Multiplies the image",
+     [](Scene& s, size_t) -> Slot { return &s.background.intensity; }, is_image},
+};
+
+// Slots are where values are read as well; nothing is written through them here.
+Slot slot_of(const Scene& scene, const Property& property, size_t index) {
+    return property.slot(const_cast<Scene&>(scene), index);
+}
+}
+
+std::span<const Property> all_properties() { return table; }
+
+std::vector<const Property*> properties_of(const Scene& scene, Part part, size_t index) {
+    std::vector<const Property*> properties;
+    for (const Property& property : table)
+        if (property.part == part && property.applies(scene, index)) properties.push_back(&property);
+    return properties;
+}
+
+const Property& find_property(const Scene& scene, Part part, size_t index, std::string_view name) {
+    std::vector<std::string> names;
+    for (const Property* property : properties_of(scene, part, index)) {
+        if (property->name == name) return *property;
+        names.push_back(property->name);
+    }
+    fail(ExitCode::usage, place_of(scene, part, index),
+         names.empty() ? "nothing of it can be changed here: it belongs to the glTF"
+                       : "no \"" + std::string(name) + "\" here; there is " + joined(names, ", "));
+}
+
+size_t count_of(const Scene& scene, Part part) {
+    switch (part) {
+    case Part::light:
+        return scene.lights.size();
+    case Part::medium:
+        return scene.media.size();
+    case Part::camera:
+        return scene.cameras.size();
+    case Part::scene:
+        break;
+    }
+    return 1;
+}
+
+const std::string& name_of(const Scene& scene, Part part, size_t index) {
+    static const std::string none;
+    switch (part) {
+    case Part::light:
+        return scene.lights[index].name;
+    case Part::medium:
+        return scene.media[index].name;
+    case Part::camera:
+        return scene.cameras[index].name;
+    case Part::scene:
+        break;
+    }
+    return none;
+}
+
+std::string place_of(const Scene& scene, Part part, size_t index) {
+    switch (part) {
+    case Part::light:
+        return "lights/" + name_of(scene, part, index);
+    case Part::medium:
+        return "media/" + name_of(scene, part, index);
+    case Part::camera:
+        return "cameras/" + name_of(scene, part, index);
+    case Part::scene:
+        break;
+    }
+    return "scene";
+}
+
+LightPlace light_place(const Scene& scene, size_t light, double seconds) {
+    const LightSource& source = scene.lights[light];
+    if (source.node < 0) {
+        const vec3 direction = source.direction.at(seconds);
+        const float length = glm::length(direction);
+        return {source.position.at(seconds), length > 0 ? direction / length : vec3(0, -1, 0)};
+    }
+    const mat4 matrix = node_matrix(scene, source.node, seconds);
+    return {vec3(matrix[3]), -glm::normalize(vec3(matrix[2]))};
+}
+
+vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds) {
+    const std::string_view name = property.name;
+    if (property.part == Part::light && scene.lights[index].node >= 0 && (name == "position" || name == "direction")) {
+        const LightPlace place = light_place(scene, index, seconds);
+        return name == "position" ? place.position : place.direction;
+    }
+    const Slot slot = slot_of(scene, property, index);
+    vec3 value(0);
+    if (const auto* number = std::get_if<Keyed<float>*>(&slot)) value.x = (*number)->at(seconds);
+    if (const auto* vector_value = std::get_if<Keyed<vec3>*>(&slot)) value = (*vector_value)->at(seconds);
+    if (const auto* number = std::get_if<float*>(&slot)) value.x = **number;
+    if (const auto* vector_value = std::get_if<vec3*>(&slot)) value = **vector_value;
+    if (const auto* flag = std::get_if<bool*>(&slot)) value.x = **flag;
+    return property.is_angle() ? glm::degrees(value) : value;
+}
+
+bool is_keyed(const Scene& scene, const Property& property, size_t index) {
+    const Slot slot = slot_of(scene, property, index);
+    if (const auto* number = std::get_if<Keyed<float>*>(&slot)) return !(*number)->times.empty();
+    if (const auto* vector_value = std::get_if<Keyed<vec3>*>(&slot)) return !(*vector_value)->times.empty();
+    return false;
+}
+}

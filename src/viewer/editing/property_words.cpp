@@ -1,0 +1,131 @@
+#include "viewer/editing/property_words.h"
+
+#include "base/error.h"
+#include "scene/scene.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+struct Row {
+    Part part;
+    std::string_view name;
+    PropertyWords words;
+};
+
+const Row rows[] = {
+    {Part::light, "position", {"position", "Where the light stands: x, y up, z, metres."}},
+    {Part::light, "direction", {"direction", "The way the light travels; 0 -1 0 is straight down."}},
+    {Part::light,
+     "target",
+     {"aims at", "The point the light shines at, metres. It goes on doing so when it is moved."}},
+    {Part::light, "color", {"colour", "Tint of the light, linear. It multiplies the brightness."}},
+    {Part::light, "intensity", {"brightness", "How bright the light is: candela for lamps, lux for the sun.", true}},
+    {Part::light,
+     "volume_scale",
+     {"in fog", "Makes the light's beam in fog stronger or weaker, surfaces left alone. 1 is as in nature."}},
+    {Part::light,
+     "surface_scale",
+     {"on surfaces", "Makes the light on surfaces stronger or weaker, fog left alone. 1 is as in nature."}},
+    {Part::light, "inner_cone", {"full beam", "From the middle of the beam to where it begins to fade."}},
+    {Part::light,
+     "outer_cone",
+     {"beam edge", "From the middle of the beam to where it ends; not below the full beam."}},
+    {Part::light, "range", {"reach", "The light fades to nothing at this distance.", true}},
+    {Part::light, "radius", {"size", "Radius of the glowing ball: larger means softer shadows and shafts."}},
+    {Part::light, "angle", {"softness", "Half the width of the sun's disc: larger means softer shadows and shafts."}},
+    {Part::light, "shadows", {"casts shadows", "Whether surfaces block the light: no shafts without."}},
+
+    {Part::medium, "extinction", {"density", "How thick the fog is: light lost per metre.", true}},
+    {Part::medium,
+     "albedo",
+     {"scattered colour", "Share of the light the fog passes on; what is missing from 1 it swallows."}},
+    {Part::medium,
+     "g",
+     {"forward glow", "Above 0 the fog glows towards the light source, below 0 away from it; 0 is even."}},
+    {Part::medium, "emission", {"own glow", "Light the fog gives off by itself."}},
+    {Part::medium, "base", {"full below", "Height below which the fog has its full density."}},
+    {Part::medium, "falloff", {"thins over", "Height over which it thins to about a third.", true}},
+    {Part::medium, "wind", {"drift", "How fast the fog's pattern moves along x, y, z, metres per second."}},
+    {Part::medium, "translate", {"move", "Shifts the fog, metres."}},
+    {Part::medium, "rotate", {"turn", "Turns the fog about x, then y, then z, degrees."}},
+    {Part::medium, "scale", {"stretch", "Makes the fog larger or smaller along its own axes."}},
+    {Part::medium, "bounds/low", {"box from", "Lower corner of the box that the fog fills, metres."}},
+    {Part::medium, "bounds/high", {"box to", "Upper corner of the box that the fog fills, metres."}},
+
+    {Part::camera, "position", {"position", "Where the eye is, metres."}},
+    {Part::camera, "target", {"looks at", "The point in the middle of the picture, metres."}},
+    {Part::camera, "vertical_fov", {"view angle", "Angle between lower and upper edge of the picture."}},
+
+    {Part::scene, "exposure", {"exposure", "Stops by which the scene's pictures are brightened; light itself stays."}},
+    {Part::scene, "ambient", {"ambient light", "Even light from everywhere, which nothing shadows."}},
+    {Part::scene, "background/color", {"background", "Light behind everything."}},
+    {Part::scene, "background/sky/zenith", {"sky above", "Colour of the sky straight up."}},
+    {Part::scene, "background/sky/horizon", {"sky at horizon", "Colour of the sky at the horizon."}},
+    {Part::scene, "background/sky/ground", {"sky below", "Colour straight down."}},
+    {Part::scene, "background/intensity", {"background", "Brightness of the image behind everything."}},
+};
+}
+
+const PropertyWords& words_of(const Property& property) {
+    for (const Row& row : rows)
+        if (row.part == property.part && row.name == property.name) return row.words;
+    fail(ExitCode::internal, property.name, "has no words");
+}
+
+SliderRange slider_range(const Property& property, float value) {
+    SliderRange range{property.slider_low, property.slider_high, words_of(property).logarithmic};
+    if (!std::isfinite(value)) return range;
+    if (value > property.slider_high) range.high = std::min(2 * value, property.most);
+    if (value < property.slider_low) range.low = value < 0 ? std::max(2 * value, property.least) : property.least;
+    return range;
+}
+
+// Names of one ordinary word may stand for themselves in a message.
+std::string in_words(Part part, std::string message) {
+    for (const Row& row : rows) {
+        if (row.part != part || row.name.find('_') == row.name.npos) continue;
+        for (size_t at = 0; (at = message.find(row.name, at)) != message.npos;
+             at += std::string_view(row.words.label).size())
+            message.replace(at, row.name.size(), row.words.label);
+    }
+    return message;
+}
+
+SunPlace sun_place(vec3 direction) {
+    const vec3 to_sun = -glm::normalize(direction);
+    const float bearing = glm::degrees(std::atan2(to_sun.x, to_sun.z));
+    return {glm::degrees(std::asin(std::clamp(to_sun.y, -1.0f, 1.0f))), bearing < 0 ? bearing + 360 : bearing};
+}
+
+vec3 direction_from(const SunPlace& place) {
+    const float height = glm::radians(place.height), bearing = glm::radians(place.bearing);
+    return -vec3(std::cos(height) * std::sin(bearing), std::sin(height), std::cos(height) * std::cos(bearing));
+}
+
+const char* kind_name(const LightSource& light) {
+    switch (light.kind) {
+    case LightKind::point:
+        return "lamp";
+    case LightKind::spot:
+        return "spot";
+    case LightKind::sun:
+        break;
+    }
+    return "sun";
+}
+
+const char* kind_name(const MediumSource& medium) {
+    switch (medium.kind) {
+    case MediumKind::homogeneous:
+        return "even fog";
+    case MediumKind::height:
+        return "height fog";
+    case MediumKind::noise:
+        return "noise fog";
+    case MediumKind::vdb:
+        break;
+    }
+    return "volume";
+}
+}

@@ -1,0 +1,230 @@
+#include "viewer/editing/scene_text.h"
+
+#include "base/error.h"
+#include "base/io/json.h"
+#include "base/io/json_pointer.h"
+#include "scene/scene_bounds.h"
+#include "scene_schema.h"
+#include "viewer/editing/json_text.h"
+#include "viewer/editing/key_place.h"
+#include "volume/vdb/vdb.h"
+
+namespace tyndall {
+namespace {
+bool is_grey(vec3 value) { return value.x == value.y && value.y == value.z; }
+
+std::string list_text(vec3 value) {
+    return "[" + json_number(value.x) + ", " + json_number(value.y) + ", " + json_number(value.z) + "]";
+}
+
+std::string value_text(const Property& property, vec3 value) {
+    if (property.kind == ValueKind::toggle) return value.x != 0 ? "true" : "false";
+    if (property.kind == ValueKind::number) return json_number(value.x);
+    return property.kind == ValueKind::color && is_grey(value) ? json_number(value.x) : list_text(value);
+}
+
+Json json_at(std::string_view text, std::string_view pointer) {
+    return parse_json(find_json(text, pointer)->of(text), pointer);
+}
+
+// A number keeps its digits when they say the value already.
+void write_number(std::string& text, const std::string& pointer, float value) {
+    const Json old = json_at(text, pointer);
+    if (old.kind == Json::Kind::number && static_cast<float>(old.number) == value) return;
+    text = with_json(text, pointer, json_number(value));
+}
+
+// A value without keys, over the one that stands there.
+void write_value(std::string& text, const std::string& pointer, const Property& property, vec3 value) {
+    const Json old = json_at(text, pointer);
+    const bool grey = old.kind == Json::Kind::number && is_grey(value);
+    if (property.kind == ValueKind::number || (property.kind != ValueKind::toggle && grey))
+        return write_number(text, pointer, value.x);
+    if (old.kind != Json::Kind::array) {
+        const bool list = property.kind != ValueKind::toggle && !grey;
+        text = with_json(text, pointer, list ? list_text(value) : value_text(property, value));
+        return;
+    }
+    for (int i = 0; i < 3; ++i) write_number(text, json_pointer(pointer, static_cast<size_t>(i)), value[i]);
+}
+
+vec3 color_of(const Json& json) {
+    if (json.kind == Json::Kind::number) return vec3(static_cast<float>(json.number));
+    return {static_cast<float>(json.items[0].number), static_cast<float>(json.items[1].number),
+            static_cast<float>(json.items[2].number)};
+}
+
+// A value with keys: what scene_edit does to the keys in memory.
+void write_key(std::string& text, const std::string& pointer, const Property& property, const Edit& edit,
+               double frame_rate) {
+    const Json keyed = json_at(text, pointer);
+    const std::vector<Json>& keys = keyed.find("keys")->items;
+    std::vector<float> times;
+    for (const Json& key : keys) times.push_back(static_cast<float>(key.items[0].number));
+    const KeyPlace place = key_place(times, keyed.boolean_or("loop", false), edit.seconds, frame_rate);
+    const std::string list = pointer + "/keys";
+    if (!place.there) {
+        const std::string key = "[" + json_number(place.time) + ", " + value_text(property, edit.value) + "]";
+        text = with_json_item(text, list, place.index, key);
+        return;
+    }
+    if (place.seam && color_of(keys.front().items[1]) == color_of(keys.back().items[1]))
+        write_value(text, json_pointer(list, keys.size() - 1) + "/1", property, edit.value);
+    write_value(text, json_pointer(list, place.index) + "/1", property, edit.value);
+}
+
+std::string camera_text(const CameraSource& camera) {
+    return "{ \"name\": " + quote_json(camera.name) + ", \"position\": " + list_text(camera.position.at(0)) +
+           ", \"target\": " + list_text(camera.target.at(0)) +
+           ", \"vertical_fov\": " + json_number(std::round(glm::degrees(camera.vertical_fov.at(0)))) +
+           ", \"near\": " + json_number(camera.near) + " }";
+}
+
+std::string sun_text(const LightSource& sun) {
+    return "{ \"name\": " + quote_json(sun.name) +
+           ", \"type\": \"sun\", \"direction\": " + list_text(sun.direction.at(0)) +
+           ", \"intensity\": " + json_number(sun.intensity.at(0)) + " }";
+}
+
+// A new last entry of a list in the root, on a line of its own where the text has lines.
+std::string add_entry(std::string& text, const char* list, const std::string& entry) {
+    const std::string pointer = "/" + std::string(list);
+    const std::string indent = indentation_of(text), line = line_end_of(text);
+    if (const auto span = find_json(text, pointer)) {
+        const size_t count = parse_json(span->of(text), pointer).items.size();
+        text = with_json_item(text, pointer, count, entry);
+        return json_pointer(pointer, count);
+    }
+    text = with_json(text, pointer,
+                     indent.empty() ? "[" + entry + "]" : "[" + line + indent + indent + entry + line + indent + "]");
+    return pointer + "/0";
+}
+
+struct Writer {
+    std::string& text;
+    const Scene& scene;
+    std::vector<std::string> lights, cameras; // where each stands in the text; empty = nowhere yet
+
+    Writer(std::string& to, const Scene& from) : text(to), scene(from) {
+        for (const LightSource& light : scene.lights) lights.push_back(light.entry);
+        for (const CameraSource& camera : scene.cameras) cameras.push_back(camera.entry);
+    }
+
+    std::string entry_of(const Edit& edit) {
+        if (edit.part == Part::scene) return "";
+        if (edit.part == Part::medium) return scene.media[edit.index].entry;
+        std::string& entry = edit.part == Part::light ? lights[edit.index] : cameras[edit.index];
+        if (!entry.empty()) return entry;
+        if (edit.part == Part::light)
+            return entry = add_entry(text, "lights", "{ \"name\": " + quote_json(scene.lights[edit.index].name) + " }");
+        text = with_json(text, "/camera", camera_text(scene.cameras[edit.index]));
+        return entry = "/camera";
+    }
+
+    void write(const Edit& edit) {
+        const Property& property = find_property(scene, edit.part, edit.index, edit.property);
+        const std::string pointer = entry_of(edit) + "/" + edit.property;
+        const auto span = find_json(text, pointer);
+        if (!span)
+            text = with_json(text, pointer, value_text(property, edit.value));
+        else if (text[span->begin] == '{')
+            write_key(text, pointer, property, edit, scene.frame_rate);
+        else
+            write_value(text, pointer, property, edit.value);
+    }
+};
+
+bool is_relative_file(const std::string& path) {
+    return !path.empty() && std::filesystem::path(path).is_relative() && path.find("://") == path.npos;
+}
+}
+
+std::string edited_text(std::string text, const Scene& scene, std::span<const Edit> edits) {
+    Writer writer(text, scene);
+    for (const Edit& edit : edits) writer.write(edit);
+    check_schema(parse_json(text, scene.file.string()), scene_schema, scene.file.string());
+    return text;
+}
+
+std::string new_scene_text(Scene& scene) {
+    std::string text = "{\n  \"tyndall\": 1,\n  \"gltf\": " + quote_json(scene.file.filename().string());
+    const float exposure = scene.exposure.at(0);
+    if (exposure != 0) text += ",\n  \"exposure\": " + json_number(exposure);
+    for (CameraSource& camera : scene.cameras) {
+        if (camera.node >= 0) continue;
+        text += ",\n  \"camera\": " + camera_text(camera);
+        camera.entry = "/camera";
+    }
+    const auto add = [&](const char* list, const std::vector<std::string>& entries) {
+        if (entries.empty()) return;
+        text += ",\n  \"" + std::string(list) + "\": [";
+        for (const std::string& entry : entries) text += (&entry == entries.data() ? "\n    " : ",\n    ") + entry;
+        text += "\n  ]";
+    };
+    std::vector<std::string> lights, media;
+    for (LightSource& light : scene.lights) {
+        if (light.node >= 0) continue;
+        light.entry = "/lights/" + std::to_string(lights.size());
+        lights.push_back(sun_text(light));
+    }
+    add("lights", lights);
+    if (scene.ambient.at(0) != vec3(0)) text += ",\n  \"ambient\": " + list_text(scene.ambient.at(0));
+    for (MediumSource& fog : scene.media) {
+        fog.entry = "/media/" + std::to_string(media.size());
+        media.push_back("{ \"name\": " + quote_json(fog.name) + ", \"type\": \"homogeneous\", \"extinction\": " +
+                        json_number(fog.extinction.at(0)) + ", \"g\": " + json_number(fog.g.at(0)) +
+                        ", \"bounds\": { \"low\": " + list_text(fog.bounds.low) +
+                        ", \"high\": " + list_text(fog.bounds.high) + " } }");
+    }
+    add("media", media);
+    return text + "\n}\n";
+}
+
+std::string new_volume_text(const std::filesystem::path& vdb) {
+    const VdbInfo info = vdb_info(vdb);
+    const VdbGridInfo* fog = nullptr;
+    for (const VdbGridInfo& grid : info.grids)
+        if (grid.usable && (!fog || grid.name == "density")) fog = &grid;
+    if (!fog) refuse(vdb.string(), "holds no grid that can be shown as fog");
+
+    // Framed and lit as a box of its size would be.
+    const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};
+    Scene stand_in;
+    stand_in.media.emplace_back().bounds = transform(mat4(fog->index_to_world), voxels);
+    const float diagonal = std::max(glm::length(stand_in.media[0].bounds.size()), 1e-3f);
+    add_missing_camera(stand_in);
+    add_missing_light_and_fog(stand_in);
+
+    // Where the file does not say how dense it is, its longest way through the densest fog lets 2 % of the light pass.
+    std::string optics;
+    const bool known =
+        std::ranges::any_of(info.metadata, [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });
+    if (!known && fog->maximum > 0) optics = ", \"extinction\": " + json_number(4 / (diagonal * fog->maximum));
+    return "{\n  \"tyndall\": 1,\n  \"camera\": " + camera_text(stand_in.cameras[0]) + ",\n  \"lights\": [\n    " +
+           sun_text(stand_in.lights[0]) + "\n  ],\n  \"ambient\": " + json_number(stand_in.ambient.at(0).x) +
+           ",\n  \"media\": [\n    { \"name\": " + quote_json(vdb.stem().string()) +
+           ", \"type\": \"vdb\", \"file\": " + quote_json(vdb.filename().string()) + optics + " }\n  ]\n}\n";
+}
+
+std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
+    std::error_code error; // folders that are not there, or not to be looked into, are different ones
+    if (std::filesystem::equivalent(from, to, error)) return text;
+    const auto move = [&](const std::string& pointer, bool must_be_there) {
+        const auto span = find_json(text, pointer);
+        if (!span || text[span->begin] != '"') return;
+        const std::string path = parse_json(span->of(text), pointer).string;
+        if (!is_relative_file(path) || (must_be_there && !std::filesystem::exists(from / path))) return;
+        const std::filesystem::path moved =
+            std::filesystem::relative(std::filesystem::absolute(from / path), std::filesystem::absolute(to));
+        text = with_json(text, pointer, quote_json(moved.string()));
+    };
+    move("/$schema", true);
+    move("/gltf", false);
+    move("/background/image", false);
+    const auto media = find_json(text, "/media");
+    const size_t count = media ? parse_json(media->of(text), "/media").items.size() : 0;
+    for (size_t i = 0; i < count; ++i)
+        for (const char* member : {"/recipe", "/file"}) move(json_pointer("/media", i) + member, false);
+    return text;
+}
+}

@@ -1,0 +1,170 @@
+#include "viewer/painting/file_job.h"
+
+#include "base/io/frames.h"
+#include "base/io/output.h"
+#include "base/io/progress.h"
+#include "base/text.h"
+#include "render/sequence/provenance.h"
+#include "render/sequence/sequence.h"
+#include "trace/moment.h"
+#include "viewer/editing/scene_session.h"
+#include "volume/recipe/bake.h"
+
+#include <algorithm>
+#include <new>
+
+namespace tyndall {
+namespace {
+std::vector<int> frames_of(const Scene& scene, const std::string& range) {
+    return range.empty() ? frames_between(scene.first_frame, scene.last_frame) : parse_frames(range);
+}
+
+// The camera moved by hand, as one of the scene's under a name that none has.
+std::string add_camera(Scene& scene, const Viewpoint& view) {
+    CameraSource source;
+    source.name = "view";
+    const auto taken = [&](const CameraSource& camera) { return camera.name == source.name; };
+    while (std::ranges::any_of(scene.cameras, taken)) source.name += "'";
+    const Camera& camera = view.camera;
+    source.position = {camera.position}, source.target = {view.target()}, source.up = {camera.up};
+    source.vertical_fov = {camera.vertical_fov}, source.ortho_height = camera.ortho_height;
+    source.near = camera.near, source.far = camera.far;
+    scene.cameras.push_back(source);
+    return source.name;
+}
+
+std::string frames_done(int done, int of) { return formatted("%d of %s", done, count_text(of, "frame").c_str()); }
+
+JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+    const RenderJob& job = files.job;
+    const RenderReport report = render_sequence(*files.scene, job, progress, cancel);
+    const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(job.frames.size());
+    if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + job.output};
+    progress.finish();
+    const int kept = static_cast<int>(std::ranges::count_if(report.frames, &FrameReport::kept));
+    std::string text = count_text(done - kept, "frame") + " rendered in " + seconds_text(report.seconds);
+    if (kept > 0) text += formatted(", %d kept", kept);
+    text += ": " + job.output;
+    for (const std::string& note : report.notes) text += "; " + note;
+    if (report.non_finite == 0) return {text};
+    return {text + "; " + count_text(report.non_finite, "sample") + " were not finite numbers and were left out",
+            ExitCode::non_finite};
+}
+
+JobResult bake_fog(const BakeFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+    BakeOptions options;
+    options.resume = true, options.cancel = &cancel;
+    const BakeReport report = bake(files.recipe, files.output, files.frames, options, progress);
+    const int done = report.written + report.kept;
+    if (report.cancelled)
+        return {"stopped: " + frames_done(done, static_cast<int>(files.frames.size())) +
+                " are finished: " + files.output};
+    progress.finish();
+    std::string text = count_text(report.written, "frame") + " baked in " + seconds_text(report.seconds);
+    if (report.kept > 0) text += formatted(", %d kept", report.kept);
+    return {text + ": " + files.output};
+}
+}
+
+RenderJob sequence_job(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                       const std::string& isa) {
+    const Scene& scene = loaded_scene(state);
+    RenderJob job;
+    job.frames = frames_of(scene, range);
+    check_pattern(output, ".exr", job.frames.size() > 1, "render");
+    job.scene_file = scene.file, job.output = output;
+    job.mode = state.mode, job.quality = state.quality, job.settings = state.settings, job.camera = state.camera;
+    job.resolution = state.size, job.seed = state.seed, job.missing = state.missing;
+    job.exposure = state.shown.exposure, job.light_units = state.session->options.light_units, job.isa = isa;
+    job.png = png, job.resume = true;
+    job.unsaved = unsaved_text(*state.session);
+    return job;
+}
+
+RenderFiles render_files(const ViewState& state, RenderJob job) {
+    auto scene = std::make_shared<Scene>(loaded_scene(state));
+    if (state.free) job.camera = add_camera(*scene, state.view);
+    return {std::move(scene), std::move(job)};
+}
+
+std::vector<std::string> bakeable_media(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const MediumSource& medium : scene.media)
+        if (medium.recipe) names.push_back(medium.name);
+    return names;
+}
+
+BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
+                     const std::string& range) {
+    const Scene& scene = loaded_scene(state);
+    const auto found =
+        std::ranges::find_if(scene.media, [&](const MediumSource& one) { return one.recipe && one.name == medium; });
+    if (found == scene.media.end()) {
+        const std::vector<std::string> names = bakeable_media(scene);
+        fail(ExitCode::usage, "bake",
+             "no medium '" + printable(medium, 40) + "' that is grown from a recipe; " +
+                 (names.empty() ? "there is none here" : "there is " + joined(names, ", ")));
+    }
+    BakeFiles files{*found->recipe, output, frames_of(scene, range)};
+    check_pattern(output, ".vdb", files.frames.size() > 1, "bake");
+    if (found->voxel_size > 0) files.recipe.voxel_size = found->voxel_size;
+    files.recipe.frame_rate = scene.frame_rate;
+    const double seconds = moment_of(scene, files.frames.front()).seconds;
+    files.recipe.extinction = found->extinction.at(seconds), files.recipe.albedo = found->albedo.at(seconds);
+    files.recipe.g = found->g.at(seconds);
+    return files;
+}
+
+std::string command_of(const ViewState& state, RenderJob job) {
+    const Scene& scene = loaded_scene(state);
+    if (!job.unsaved.empty() || (!state.session->has_file && scene.file.extension() == ".vdb"))
+        fail(ExitCode::usage, "copy-command", "no scene file has what is shown: save the scene first");
+    if (state.free)
+        fail(ExitCode::usage, "copy-command",
+             "no file has the camera moved by hand: copy it into the scene, or go back to one of the scene's (home)");
+    job.scene_file = std::filesystem::absolute(job.scene_file);
+    job.output = std::filesystem::absolute(job.output).string();
+    return command_line(job);
+}
+
+std::string name_of(const FileJob& job) {
+    if (const auto* files = std::get_if<RenderFiles>(&job)) return "render " + files->job.output;
+    return "bake " + std::get<BakeFiles>(job).output;
+}
+
+int frame_count(const FileJob& job) {
+    const auto* files = std::get_if<RenderFiles>(&job);
+    return static_cast<int>(files ? files->job.frames.size() : std::get<BakeFiles>(job).frames.size());
+}
+
+JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel) {
+    const auto* files = std::get_if<RenderFiles>(&job);
+    try {
+        OutputPlaces places;
+        if (files) {
+            places.check(files->job.output, files->job.frames, "render");
+            return render(*files, progress, cancel);
+        }
+        const BakeFiles& fog = std::get<BakeFiles>(job);
+        places.check(fog.output, fog.frames, "bake");
+        return bake_fog(fog, progress, cancel);
+    } catch (const Error& error) {
+        return {error.what(), error.code};
+    } catch (const std::bad_alloc&) {
+        return {"out of memory", ExitCode::out_of_memory};
+    } catch (const std::exception& error) {
+        return {error.what(), ExitCode::internal};
+    }
+}
+
+std::string usual_sequence_name(const ViewState& state) {
+    return loaded_scene(state).file.stem().string() + "." + state.mode + ".####.exr";
+}
+
+std::string usual_bake_name(const std::string& medium) {
+    std::string name = medium;
+    std::ranges::replace_if(
+        name, [](unsigned char letter) { return !std::isalnum(letter) && letter != '-'; }, '_');
+    return name + ".####.vdb";
+}
+}

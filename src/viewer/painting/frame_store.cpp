@@ -1,0 +1,75 @@
+#include "viewer/painting/frame_store.h"
+
+#include "base/error.h"
+#include "scene/light.h"
+#include "trace/kept.h"
+#include "volume/medium.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <utility>
+
+namespace tyndall {
+namespace {
+uint64_t page_bytes() { return static_cast<uint64_t>(sysconf(_SC_PAGESIZE)); }
+
+// Of this process: all that hangs on snapshots counts, wherever it is.
+uint64_t resident_bytes() {
+    uint64_t all = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> all >> resident;
+    return resident * page_bytes();
+}
+}
+
+uint64_t usual_store_bytes() { return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes() / 4; }
+
+FrameStore::FrameStore(uint64_t most_bytes) : most_bytes_(most_bytes) {}
+FrameStore::~FrameStore() = default;
+
+size_t FrameStore::size() const { return frames_.size(); }
+
+void FrameStore::begin(const std::shared_ptr<const Scene>& scene, MissingFrame missing) {
+    if (scene == scene_ && missing == missing_) return;
+    clear();
+    scene_ = scene, missing_ = missing;
+}
+
+void FrameStore::clear() { frames_.clear(), ahead_.reset(); }
+
+void FrameStore::put(const Snapshot& snapshot) {
+    if (!snapshot.kept || snapshot.scene != scene_.get()) return;
+    if (frames_.empty()) bytes_before_ = resident_bytes();
+    const bool is_there = frames_.contains(snapshot.frame);
+    if (!is_there && resident_bytes() >= bytes_before_ + most_bytes_) return;
+    Snapshot& stored = frames_[snapshot.frame];
+    stored = snapshot;
+    stored.kept_before = nullptr;
+}
+
+std::optional<Snapshot> FrameStore::take(int frame, double& seconds) {
+    std::optional<Snapshot> found;
+    if (const auto stored = frames_.find(frame); stored != frames_.end()) {
+        found = stored->second;
+        found->kept_before = std::exchange(found->kept, std::make_shared<Kept>());
+    } else if (ahead_ && ahead_->frame == frame) {
+        found = std::exchange(ahead_, std::nullopt);
+        seconds += ahead_seconds_;
+    }
+    return found;
+}
+
+bool FrameStore::make_ahead(int frame, const Snapshot& current) {
+    if (!scene_ || frames_.contains(frame) || (ahead_ && ahead_->frame == frame)) return false;
+    ahead_.reset();
+    const auto start = std::chrono::steady_clock::now();
+    try {
+        ahead_ = make_snapshot(*scene_, moment_of(*scene_, frame), &current, missing_);
+    } catch (const Error&) {
+        return false;
+    }
+    ahead_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return true;
+}
+}

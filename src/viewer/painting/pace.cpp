@@ -1,0 +1,37 @@
+#include "viewer/painting/pace.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr double late = 1.15;        // of the time wanted
+constexpr double in_time = 0.85;     // of it, as expected of a larger picture
+constexpr double least_share = 0.25; // of the time wanted that pixels always get
+constexpr int pictures_to_bar = 60;
+
+double area(int level) {
+    const double share = pace_shares[static_cast<size_t>(level)];
+    return share * share;
+}
+}
+
+void measured(Pace& pace, double seconds, double fixed) {
+    const int last = static_cast<int>(pace_shares.size()) - 1, level = pace.level;
+    const double pixels = std::max(seconds - fixed, 0.0);
+    if (pace.pictures_barred > 0) --pace.pictures_barred;
+
+    // Down to what fits; the level that did not is left alone for a while.
+    if (seconds > late * pace.wanted && level < last) {
+        const double time = std::max(pace.wanted - fixed, least_share * pace.wanted);
+        int lower = level;
+        while (lower < last && pixels * area(lower) / area(level) > time) ++lower;
+        if (lower != level) {
+            pace.level = lower, pace.barred = level, pace.pictures_barred = pictures_to_bar;
+            return;
+        }
+    }
+    if (level == 0 || (pace.pictures_barred > 0 && level - 1 <= pace.barred)) return;
+    const double time = std::max(in_time * pace.wanted - fixed, in_time * least_share * pace.wanted);
+    if (pixels * area(level - 1) / area(level) < time) --pace.level;
+}
+}

@@ -1,0 +1,46 @@
+#include "viewer/painting/save_picture.h"
+
+#include "base/error.h"
+#include "modes/mode.h"
+#include "render/frame/frame.h"
+#include "render/frame/layers.h"
+#include "render/image/png.h"
+#include "render/sequence/check_job.h"
+#include "render/sequence/job.h"
+#include "render/sequence/provenance.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,
+                  const std::function<void(double)>& progress) {
+    const std::string kind = job.file.extension().string();
+    if (kind != ".exr" && kind != ".png")
+        fail(ExitCode::usage, job.file.string(), "expected a name ending in .exr or .png");
+    const Request& request = job.request;
+    RenderJob render = job_of(request);
+    render.output = std::filesystem::path(job.file).replace_extension(".exr").string();
+    render.quality = job.quality, render.isa = job.isa, render.light_units = job.light_units;
+    render.unsaved = job.unsaved;
+    render.png = kind == ".png";
+    const Mode& mode = find_mode(request.mode);
+    stage(request);
+    const View view = view_of(request);
+    check_job(*request.scene, render, mode);
+    render.camera = job.camera;
+
+    const Snapshot snapshot =
+        make_snapshot(*request.scene, moment_of(*request.scene, request.frame), previous, request.missing);
+    FrameStats stats;
+    FrameOptions options;
+    options.cancel = &cancel, options.progress = progress;
+    const Layers layers = render_frame(mode, view, snapshot, request.settings, options, stats);
+    if (kind == ".png") return write_png(job.file, stored_color(layers, render.exr), request.shown.exposure);
+    FileHashes files;
+    const std::string hash = frame_hash(*request.scene, render, view, files);
+    const Provenance provenance = provenance_of(*request.scene, render, view, hash, stats);
+    write_exr(job.file, layers, provenance, render.exr);
+}
+}

@@ -1,0 +1,37 @@
+// A picture of the viewer to a file: the one tyndall render writes.
+#pragma once
+#include "base/error.h"
+#include "scene/load_options.h"
+#include "viewer/painting/request.h"
+
+#include <atomic>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace tyndall {
+struct Snapshot;
+
+struct SaveJob {
+    std::filesystem::path file; // .exr or .png
+    Request request;
+    std::string camera; // name for the header; empty = the scene's
+    Quality quality = Quality::preview;
+    std::string isa;
+    LightUnits light_units = LightUnits::spec;
+    std::string unsaved; // edits that the scene's files do not have; noted in the header
+};
+
+struct Saved {
+    std::filesystem::path file;
+    double seconds = 0;
+    std::string error; // empty = written
+    ExitCode code = ExitCode::ok;
+};
+
+// Renders all samples of the settings, without what pictures before left behind, and writes the file: bit for bit that
+// of tyndall render for the same scene, frame, camera, size, mode, settings and seed, but for `unsaved`. What stands
+// still may be shared with `previous`, when that is of the same scene. Throws Error.
+void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,
+                  const std::function<void(double)>& progress);
+}

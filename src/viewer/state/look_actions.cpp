@@ -1,0 +1,109 @@
+// How pictures are shown, what is asked about them, and which panels are there.
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/scene.h"
+#include "viewer/state/verb_actions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tyndall {
+namespace {
+void set_arrangement(ViewState& state, const Action& action) {
+    state.shown.side_by_side = action.words[0] == "side";
+    ++state.shown_revision;
+}
+
+void set_wipe(ViewState& state, const Action& action) {
+    state.shown.wipe = static_cast<float>(std::clamp(action.numbers[0], 0.0, 1.0));
+    ++state.shown_revision;
+}
+
+void set_shown(ViewState& state, const Action& action) {
+    const auto& names = shown_layer_names();
+    const auto found = std::ranges::find(names, action.words[0]);
+    if (found == names.end())
+        fail(ExitCode::usage, "show", "no '" + printable(action.words[0], 40) + "'; there is " + joined(names, ", "));
+    state.shown.layer = static_cast<ShownLayer>(found - names.begin());
+    ++state.shown_revision;
+}
+
+void expose(ViewState& state, double stops) {
+    state.shown.exposure = static_cast<float>(std::clamp(stops, -100.0, 100.0));
+    ++state.shown_revision;
+}
+void set_exposure(ViewState& state, const Action& action) { expose(state, action.numbers[0]); }
+void brighten(ViewState& state, const Action& action) { expose(state, state.shown.exposure + action.numbers[0]); }
+
+void explain_pixel(ViewState& state, const Action& action) {
+    std::optional<ivec2> asked;
+    if (!action.numbers.empty()) {
+        const ivec2 size = state.size.x > 0 ? state.size : loaded_scene(state).resolution;
+        const double x = std::floor(action.numbers[0]), y = std::floor(action.numbers[1]);
+        if (!(x >= 0 && y >= 0 && x < size.x && y < size.y))
+            fail(ExitCode::usage, "explain",
+                 formatted("%g %g lies outside the picture of %d x %d pixels", x, y, size.x, size.y));
+        asked = ivec2(static_cast<int>(x), static_cast<int>(y));
+    }
+    state.explain = asked;
+    ++state.shown_revision;
+}
+
+void show_volume(ViewState& state, const Action& action) {
+    state.volume_shown = is_on(action);
+    ++state.shown_revision;
+}
+
+// What is asked about is shown.
+void set_medium(ViewState& state, const Action& action) {
+    std::vector<std::string> names;
+    for (const MediumSource& medium : loaded_scene(state).media) names.push_back(medium.name);
+    if (!std::ranges::count(names, action.words[0]))
+        fail(ExitCode::usage, "medium",
+             "no '" + printable(action.words[0], 40) + "' here; there is " + joined(names, ", "));
+    state.volume.medium = action.words[0], state.volume_shown = true;
+    ++state.shown_revision;
+}
+
+void look_along(ViewState& state, const Action& action, VolumeLook look) {
+    state.volume.look = look, state.volume.axis = action.words[0][0] - 'x';
+    state.volume_shown = true;
+    ++state.shown_revision;
+}
+
+void slice_volume(ViewState& state, const Action& action) {
+    look_along(state, action, VolumeLook::slice);
+    state.volume.position = std::clamp(static_cast<float>(action.numbers[0]), 0.0f, 1.0f);
+}
+
+void project_volume(ViewState& state, const Action& action) {
+    look_along(state, action, action.words[1] == "mean" ? VolumeLook::mean : VolumeLook::maximum);
+}
+
+void show_tab(ViewState& state, const Action& action) {
+    const std::string& name = action.words[0];
+    if (name != "render" && name != "lights")
+        fail(ExitCode::usage, "tab", "no '" + printable(name, 40) + "'; there is render, lights");
+    state.lights_tab = name == "lights";
+}
+
+constexpr VerbAction table[] = {
+    {Verb::arrange, set_arrangement},
+    {Verb::wipe, set_wipe},
+    {Verb::show, set_shown},
+    {Verb::exposure, set_exposure},
+    {Verb::brighten, brighten},
+    {Verb::explain, explain_pixel},
+    {Verb::volume, show_volume},
+    {Verb::medium, set_medium},
+    {Verb::slice, slice_volume},
+    {Verb::project, project_volume},
+    {Verb::tab, show_tab},
+    {Verb::handles, [](ViewState& state, const Action& action) { state.handles = is_on(action); }},
+    {Verb::panels, [](ViewState& state, const Action& action) { state.panels = is_on(action); }},
+    {Verb::help, [](ViewState& state, const Action& action) { state.help = is_on(action); }},
+};
+}
+
+std::span<const VerbAction> look_actions() { return table; }
+}

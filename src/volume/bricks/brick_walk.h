@@ -1,0 +1,99 @@
+// Rays through grids, cell by cell (Amanatides & Woo 1987). The state is whole cells and the distances to their
+// borders; a cell is never worked out anew from a point, so no cell is missed or met twice.
+#pragma once
+#include "volume/bricks/bricks.h"
+
+#include <type_traits>
+
+namespace tyndall {
+// origin + t·direction in local coordinates, t in world metres: the direction has any length.
+struct LocalRay {
+    dvec3 origin{0}, direction{0};
+};
+
+inline LocalRay local_ray(const BrickPool& pool, const Ray& ray) {
+    const glm::dmat3 matrix(pool.world_to_index);
+    return {matrix * (dvec3(ray.origin) - dvec3(pool.anchor)) + dvec3(pool.anchor_index),
+            matrix * dvec3(ray.direction)};
+}
+
+inline LocalRay local_ray(const mat4& world_to_local, const Ray& ray) {
+    const dmat4 matrix(world_to_local);
+    return {dvec3(matrix * glm::dvec4(ray.origin, 1)), glm::dmat3(matrix) * dvec3(ray.direction)};
+}
+
+// A stretch low..high of a ray; empty when high <= low.
+struct Stretch {
+    double low = 0, high = 0;
+
+    bool empty() const { return !(low < high); }
+    double length() const { return empty() ? 0.0 : high - low; }
+};
+
+// The part of the stretch inside the box. Directions may have any length, zeros included.
+inline Stretch clip(const Box& box, const LocalRay& ray, Stretch range) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = box.low[axis], high = box.high[axis];
+        if (ray.direction[axis] == 0) {
+            if (!(ray.origin[axis] >= low && ray.origin[axis] <= high)) return {};
+            continue;
+        }
+        const double inverse = 1 / ray.direction[axis];
+        const double a = (low - ray.origin[axis]) * inverse, b = (high - ray.origin[axis]) * inverse;
+        range.low = std::max(range.low, std::min(a, b));
+        range.high = std::min(range.high, std::max(a, b));
+    }
+    return range.empty() ? Stretch{} : range;
+}
+
+// Calls a visitor; one that returns nothing always goes on.
+template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Arguments... arguments) {
+    if constexpr (std::is_void_v<std::invoke_result_t<Visit, Arguments...>>)
+        return visit(arguments...), true;
+    else
+        return visit(arguments...);
+}
+
+// Calls visit(cell, low, high) for every cell first..last of edge length `edge` the ray crosses on the stretch, in
+// order, until it returns false. The stretch has to lie inside these cells up to rounding.
+template<class Visit>
+void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, ivec3 last, const Visit& visit) {
+    ivec3 cell, step;
+    dvec3 border, across; // t at the next border of each axis, t from border to border
+    for (int axis = 0; axis < 3; ++axis) {
+        const double at = ray.origin[axis] + range.low * ray.direction[axis], direction = ray.direction[axis];
+        cell[axis] = std::clamp(static_cast<int>(std::floor(at / edge)), first[axis], last[axis]);
+        step[axis] = direction > 0 ? 1 : -1;
+        const double to_border = edge * (cell[axis] + (direction > 0)) - at;
+        border[axis] = direction == 0 ? infinity : range.low + to_border / direction;
+        across[axis] = direction == 0 ? infinity : edge / std::abs(direction);
+    }
+    for (double low = range.low;;) {
+        const double next = std::min(border.x, std::min(border.y, border.z)), high = std::min(next, range.high);
+        if (high > low) {
+            if (!goes_on(visit, cell, low, high)) return;
+            low = high;
+        }
+        if (next >= range.high) return;
+
+        // Over every border that lies here; through an edge or a corner several at once.
+        for (int axis = 0; axis < 3; ++axis) {
+            if (border[axis] != next) continue;
+            cell[axis] += step[axis], border[axis] += across[axis];
+            if (cell[axis] < first[axis] || cell[axis] > last[axis]) return;
+        }
+    }
+}
+
+// Calls visit(cell of the index, low, high) for every brick that is not empty, in order, until it returns
+// false.
+template<class Visit> void walk_bricks(const BrickPool& pool, const LocalRay& ray, Stretch range, const Visit& visit) {
+    if (pool.empty()) return;
+    range = clip(pool.local_bounds, ray, range);
+    if (range.empty()) return;
+    walk_cells(ray, range, 8, ivec3(0), pool.size - 1, [&](ivec3 brick, double low, double high) {
+        const int64_t cell = (int64_t{brick.x} * pool.size.y + brick.y) * pool.size.z + brick.z;
+        return pool.index[cell] == 0 || goes_on(visit, brick, cell, low, high);
+    });
+}
+}

@@ -1,0 +1,180 @@
+// From leaves and tiles to bricks: find what every brick is made of, pack the ones that differ inside, drop the rest.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "volume/bricks/brick_sources.h"
+#include "volume/bricks/half.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+namespace tyndall {
+namespace {
+constexpr int64_t largest_index = int64_t{256} << 20; // bytes
+constexpr int64_t longest_axis = 1 << 20;             // bricks: floats still tell its voxels apart
+constexpr int64_t farthest_voxel = int64_t{1} << 30;
+
+// The eight cells whose voxels are corners of one brick, d = 4·dx + 2·dy + dz.
+using Corners = std::array<int32_t, 8>;
+
+struct Packed {
+    uint16_t largest = 0;
+    bool uniform = false;
+};
+
+// Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
+void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
+    int64_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int64_t low = box.low[axis], high = box.high[axis];
+        if (low < -farthest_voxel || high > farthest_voxel)
+            refuse(name, "voxel coordinates go beyond 2^30; move the grid by its transform instead");
+        const int64_t first = (low - 1) >> 3, count = ((high + 1) >> 3) - first + 1;
+        pool.low[axis] = static_cast<int>(first * 8);
+        pool.size[axis] = static_cast<int>(count);
+        if (count > longest_axis || (cells *= count) * int64_t{sizeof(int32_t)} > largest_index)
+            fail(ExitCode::out_of_memory, name,
+                 "fog spans " + std::to_string(int64_t{box.high.x} - box.low.x + 1) + "x" +
+                     std::to_string(int64_t{box.high.y} - box.low.y + 1) + "x" +
+                     std::to_string(int64_t{box.high.z} - box.low.z + 1) +
+                     " voxels; its brick index would pass 256 MB. Use larger voxels or a smaller active box");
+    }
+    pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
+    pool.index.assign(cells, 0);
+    pool.maximum.assign(cells, 0);
+}
+
+Corners corners_of(const BrickPool& pool, const Sources& sources, ivec3 cell) {
+    Corners corners;
+    for (int d = 0; d < 8; ++d) {
+        const ivec3 at = cell + ivec3(d >> 2, (d >> 1) & 1, d & 1);
+        const bool inside = at.x < pool.size.x && at.y < pool.size.y && at.z < pool.size.z;
+        corners[d] = inside ? sources.cells[cell_at(pool, at)] : 0;
+    }
+    return corners;
+}
+
+// 0 = empty, 1 = has to be packed, -h = constant of the half h.
+int32_t kind_of(const Corners& corners, const Sources& sources) {
+    const uint16_t tile = corners[0] < 0 ? sources.tiles[-corners[0] - 1] : 0;
+    bool empty = true, constant = tile != 0;
+    for (int d = 0; d < 8; ++d) {
+        const int32_t source = corners[d];
+        empty &= source == 0 || (source > 0 && !((sources.summaries[source - 1].parts >> d) & 1));
+        constant &= source < 0 && sources.tiles[-source - 1] == tile;
+    }
+    return empty ? 0 : constant ? -int32_t{tile} : 1;
+}
+
+// Marks every cell of the index with its kind and lists the ones to pack, in order.
+std::vector<ivec3> listed_bricks(BrickPool& pool, const Sources& sources) {
+    std::vector<std::vector<ivec3>> slabs(pool.size.x);
+    parallel_for(pool.size.x, [&](int64_t x) {
+        for (int y = 0; y < pool.size.y; ++y)
+            for (int z = 0; z < pool.size.z; ++z) {
+                const ivec3 cell(static_cast<int>(x), y, z);
+                const int32_t kind = kind_of(corners_of(pool, sources, cell), sources);
+                pool.index[cell_at(pool, cell)] = kind;
+                if (kind == 1) slabs[x].push_back(cell);
+            }
+    });
+    std::vector<ivec3> list;
+    for (const std::vector<ivec3>& slab : slabs) list.insert(list.end(), slab.begin(), slab.end());
+    return list;
+}
+
+// Writes the 9³ corner values of a brick.
+Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
+    static constexpr std::array<float, 8> nothing{};
+    float buffer[729];
+    for (int x = 0; x < 9; ++x)
+        for (int y = 0; y < 9; ++y) {
+            float* to = buffer + (x * 9 + y) * 9;
+            for (const int z : {0, 8}) {
+                const int32_t source = corners[4 * (x >> 3) + 2 * (y >> 3) + (z >> 3)];
+                const Leaf* leaf = source > 0 ? sources.leaves[source - 1] : nullptr;
+                const float* from = leaf ? &leaf->values[(x & 7) * 64 + (y & 7) * 8] : nothing.data();
+                if (source < 0)
+                    std::fill_n(to + z, z ? 1 : 8, float_from_half(sources.tiles[-source - 1]));
+                else if (z == 0)
+                    std::copy_n(from, 8, to);
+                else
+                    to[8] = from[0];
+            }
+        }
+    const HalfRange range = halves_from_floats(buffer, 729, values);
+    return {range.high, range.low == range.high};
+}
+
+std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
+                                  BrickPool& pool) {
+    const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
+    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (bytes > memory)
+        fail(ExitCode::out_of_memory, name,
+             "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +
+                 std::to_string(static_cast<int64_t>(memory / 1e6)) + " MB. Use larger voxels");
+    // Large pages, where there are any, take a fraction of the time that small ones need to be touched first.
+    pool.values.reserve(list.size() * brick_stride);
+    constexpr uintptr_t page = uintptr_t{2} << 20;
+    const auto room = reinterpret_cast<uintptr_t>(pool.values.data());
+    const uintptr_t low = (room + page - 1) & ~(page - 1), high = (room + list.size() * brick_stride * 2) & ~(page - 1);
+    if (low < high) madvise(reinterpret_cast<void*>(low), high - low, MADV_HUGEPAGE);
+    pool.values.resize(list.size() * brick_stride);
+    std::vector<Packed> packed(list.size());
+    parallel_ranges(static_cast<int64_t>(list.size()), 16, [&](int64_t begin, int64_t end) {
+        for (int64_t i = begin; i < end; ++i)
+            packed[i] = pack(corners_of(pool, sources, list[i]), sources, &pool.values[i * brick_stride]);
+    });
+    return packed;
+}
+
+// Turns the marks in the index into brick and constant numbers, closing the gaps that uniform bricks leave.
+void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
+    std::vector<int32_t> constant_of(half_from_float(largest_half) + 1, 0);
+    size_t next = 0, bricks = 0, filled = 0;
+    for (size_t cell = 0; cell < pool.index.size(); ++cell) {
+        int32_t& id = pool.index[cell];
+        if (id == 0) continue;
+        ++filled;
+        const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true};
+        pool.maximum[cell] = float_from_half(brick.largest);
+        if (brick.uniform) {
+            int32_t& constant = constant_of[brick.largest];
+            if (constant == 0) {
+                pool.constants.push_back(pool.maximum[cell]);
+                constant = -static_cast<int32_t>(pool.constants.size());
+            }
+            next += id > 0, id = constant;
+        } else {
+            const uint16_t* from = &pool.values[next * brick_stride];
+            if (bricks != next) std::copy_n(from, brick_stride, &pool.values[bricks * brick_stride]);
+            ++next, id = static_cast<int32_t>(++bricks);
+        }
+        pool.highest = std::max(pool.highest, pool.maximum[cell]);
+    }
+    pool.values.resize(bricks * brick_stride);
+    if (pool.values.size() < pool.values.capacity() / 4 * 3) pool.values.shrink_to_fit();
+    const ivec3 reach = (ivec3(pool.local_bounds.high) - 1) / 8; // the last bricks that fog can be in
+    const size_t bricks_within = static_cast<size_t>(reach.x + 1) * (reach.y + 1) * (reach.z + 1);
+    pool.crowded = bricks_within - filled <= bricks_within / 16;
+    pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));
+}
+}
+
+std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
+    auto pool = std::make_shared<BrickPool>();
+    Sources sources = make_sources(volume);
+    if (!sources.box.empty()) {
+        size_pool(volume.name, sources.box, *pool);
+        pool->mass = sources.mass;
+        fill_cells(*pool, volume, sources);
+        const std::vector<ivec3> list = listed_bricks(*pool, sources);
+        finish_index(packed_bricks(volume.name, list, sources, *pool), *pool);
+    }
+    place(*pool, volume.index_to_world);
+    return pool;
+}
+}

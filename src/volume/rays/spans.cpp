@@ -1,0 +1,136 @@
+#include "volume/rays/spans.h"
+
+#include "volume/bricks/brick_walk.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+constexpr double farthest = 1e7; // metres; fog without end is cut here
+constexpr double ln2 = 0.69314718055994530942;
+constexpr int highest_band = 24; // density 2^-24 of the ground's; above it height fog is left out
+constexpr double closest = 1e-3; // metres: nearer to a light steps shrink no further
+
+// Calls visit(stretch, largest density, smallest density) along homogeneous or height fog. Height fog comes in bands
+// over which its density halves: band k lies (k-1)·ln 2 to k·ln 2 fall-offs above the base, band 0 below it.
+template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, const Visit& visit) {
+    const double t_max = std::min<double>(ray.t_max, farthest);
+    const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_max});
+    if (inside.empty()) return;
+    if (medium.kind == DensityKind::homogeneous) return visit(inside, 1.0, 1.0);
+
+    const double start = (double(ray.origin.y) - medium.height_base) / medium.height_falloff;
+    const double slope = double(ray.direction.y) / medium.height_falloff;
+    const auto density = [&](double t) { return std::exp(-std::max(start + slope * t, 0.0)); };
+    const double entry = (start + slope * inside.low) / ln2;
+    int band = entry <= 0 ? 0 : 1 + static_cast<int>(std::min<double>(entry, highest_band));
+    if (slope == 0) {
+        if (band <= highest_band) visit(inside, density(0), density(0));
+        return;
+    }
+
+    const bool rising = slope > 0;
+    for (double low = inside.low; low < inside.high && band >= 0; band += rising ? 1 : -1) {
+        if (rising && band > highest_band) return;
+        const double edge = ((rising ? band : band - 1) * ln2 - start) / slope;
+        const double high = !rising && band == 0 ? inside.high : std::min(inside.high, edge);
+        if (high <= low) continue;
+        if (band <= highest_band) visit({low, high}, density(rising ? low : high), density(rising ? high : low));
+        low = high;
+    }
+}
+
+void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule,
+                        std::vector<Span>& spans) {
+    const BrickPool& pool = *medium.bricks;
+    const LocalRay local = local_ray(pool, ray);
+    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = medium.optics.extinction;
+    const size_t first = spans.size();
+
+    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
+    // the few that are empty: a step there costs less than looking for them on every ray.
+    const double highest = extinction * pool.highest;
+    if (pool.crowded && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
+        const Stretch inside = clip(pool.local_bounds, local, {0, t_end});
+        if (!inside.empty()) spans.push_back({inside.low, inside.high, highest, varied_rate});
+        return;
+    }
+    walk_bricks(pool, local, {0, t_end}, [&](ivec3, int64_t at, double low, double high) {
+        const Span span{low, high, extinction * pool.maximum[at], pool.index[at] < 0 ? 0 : varied_rate};
+        const bool joins = spans.size() > first && spans.back().high == low &&
+                           spans.back().extinction == span.extinction && spans.back().rate == span.rate;
+        if (joins)
+            spans.back().high = high;
+        else
+            spans.push_back(span);
+    });
+}
+}
+
+double horizon(const Ray& ray, std::span<const Medium> media) {
+    double end = std::min<double>(ray.t_max, farthest);
+    for (const Medium& medium : media) {
+        if (medium.kind == DensityKind::bricks) continue;
+        double depth = 0;
+        walk_bands(ray, medium, [&](Stretch stretch, double, double smallest) {
+            const double extinction = medium.optics.extinction * smallest;
+            const double opaque = stretch.low + (opaque_depth - depth) / extinction;
+            if (depth < opaque_depth && opaque < stretch.high) end = std::min(end, opaque);
+            depth += extinction * stretch.length();
+        });
+    }
+    return end;
+}
+
+void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans) {
+    if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
+    walk_bands(ray, medium, [&](Stretch stretch, double largest, double) {
+        const double high = std::min(stretch.high, t_end);
+        if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, 0});
+    });
+}
+
+void append_near_spans(const Ray& ray, vec3 point, double ratio, double longest, std::vector<Span>& spans) {
+    const dvec3 direction(ray.direction), to_point = dvec3(point) - dvec3(ray.origin);
+    const double middle = glm::dot(to_point, direction);
+    const double distance = glm::length(to_point - middle * direction);
+    const double inner = std::max(distance, closest);
+    if (!(ratio > 0) || ratio * inner >= longest) return;
+
+    // Shells of doubling radius; the rate of a shell is what its inner radius asks for.
+    int shells = 1;
+    while (ratio * std::ldexp(inner, shells) < longest && shells < 64) ++shells;
+    const auto reach = [&](int shell) {
+        const double radius = std::ldexp(inner, shell);
+        return std::sqrt(std::max(radius * radius - distance * distance, 0.0));
+    };
+    const auto rate = [&](int shell) { return 1 / (ratio * std::ldexp(inner, shell)); };
+    for (int k = shells - 1; k > 0; --k) spans.push_back({middle - reach(k + 1), middle - reach(k), 0, rate(k)});
+    spans.push_back({middle - reach(1), middle + reach(1), 0, rate(0)});
+    for (int k = 1; k < shells; ++k) spans.push_back({middle + reach(k), middle + reach(k + 1), 0, rate(k)});
+}
+
+void overlay(const std::vector<Span>& first, const std::vector<Span>& second, bool keep_second,
+             std::vector<Span>& result) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    double at = -none;
+    for (size_t i = 0, j = 0; i < first.size() || (keep_second && j < second.size());) {
+        // The next piece begins where either list goes on, and ends at the next border of either.
+        const double a = i < first.size() ? std::max(first[i].low, at) : none;
+        const double b = j < second.size() ? std::max(second[j].low, at) : none;
+        const double low = std::min(a, b);
+        const double a_end = a == none ? none : a > low ? a : first[i].high;
+        const double b_end = b == none ? none : b > low ? b : second[j].high;
+        const double high = std::min(a_end, b_end);
+        if (a == low && b == low)
+            result.push_back(
+                {low, high, first[i].extinction + second[j].extinction, std::max(first[i].rate, second[j].rate)});
+        else if (a == low)
+            result.push_back({low, high, first[i].extinction, first[i].rate});
+        else if (keep_second)
+            result.push_back({low, high, second[j].extinction, second[j].rate});
+        at = high;
+        if (i < first.size() && first[i].high <= at) ++i;
+        if (j < second.size() && second[j].high <= at) ++j;
+    }
+}
+}

@@ -1,0 +1,168 @@
+#include "volume/recipe/bake.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+#include "base/parallel.h"
+#include "volume/recipe/growth.h"
+
+#include <charconv>
+#include <chrono>
+#include <cstdio>
+#include <deque>
+#include <future>
+
+namespace tyndall {
+namespace {
+using Metadata = std::vector<std::pair<std::string, std::string>>;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+template<class T> std::string shortest(T value) {
+    char text[40];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+std::string shortest(vec3 v) { return shortest(v.x) + " " + shortest(v.y) + " " + shortest(v.z); }
+
+std::string settings_hash(const FogRecipe& recipe, const VdbWriteOptions& write) {
+    return content_hash(recipe_hash(recipe) + (write.half ? " half" : " float") + (write.blosc ? " blosc " : " zip ") +
+                        write.creator);
+}
+
+Metadata frame_metadata(const FogRecipe& recipe, const std::string& hash, int frame, double seconds) {
+    Metadata metadata{{"tyndall_schema", "1"},
+                      {"tyndall_frame", std::to_string(frame)},
+                      {"tyndall_time_s", shortest(seconds)},
+                      {"tyndall_fps", shortest(recipe.frame_rate)},
+                      {"tyndall_up_axis", "Y"},
+                      {"tyndall_unit_m", "1"},
+                      {"tyndall_extinction_per_m", shortest(recipe.extinction)},
+                      {"tyndall_albedo", shortest(recipe.albedo)},
+                      {"tyndall_g", shortest(recipe.g)},
+                      {"tyndall_seed", std::to_string(recipe.noise.seed)},
+                      {"tyndall_settings_hash", hash}};
+    // A loop says what became of speeds that were rounded to whole turns.
+    if (recipe.period > 0) {
+        const auto speed = [&](double asked) {
+            return shortest(static_cast<float>(turns_per_loop(recipe, asked) / recipe.period));
+        };
+        metadata.emplace_back("tyndall_period_s", shortest(recipe.period));
+        if (recipe.noise.evolve != 0) metadata.emplace_back("tyndall_evolve_per_s", speed(recipe.noise.evolve));
+        if (recipe.swirl != 0) metadata.emplace_back("tyndall_swirl_per_s", speed(recipe.swirl_speed));
+    }
+    return metadata;
+}
+
+const std::string* find(const Metadata& metadata, std::string_view key) {
+    for (const auto& [name, text] : metadata)
+        if (name == key) return &text;
+    return nullptr;
+}
+
+// True when the file is this frame made by these settings and every voxel of it can be read.
+bool is_right(const std::filesystem::path& file, const std::string& name, const std::string& hash, int frame) {
+    if (!std::filesystem::exists(file)) return false;
+    try {
+        const Metadata metadata = vdb_metadata(file);
+        const std::string* made_by = find(metadata, "tyndall_settings_hash");
+        const std::string* shows = find(metadata, "tyndall_frame");
+        if (!made_by || *made_by != hash || !shows) return false;
+        double number = 0;
+        std::from_chars(shows->data(), shows->data() + shows->size(), number);
+        if (number != frame) return false;
+        read_vdb(file, name);
+        return true;
+    } catch (const Error&) {
+        return false; // cut or damaged: made again
+    }
+}
+
+struct Written {
+    std::filesystem::path file;
+    int frame = 0;
+    uint64_t voxels = 0, bytes = 0;
+};
+
+// Frames that are being written while the next one grows. Few, so that memory stays bounded.
+class Writers {
+public:
+    Writers(BakeReport& report, Progress& progress)
+        : report_(report), progress_(progress), most_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
+
+    void start(std::filesystem::path file, int frame, VdbImage image) {
+        while (pending_.size() >= most_) finish_one();
+        // One thread means one: the frame is then written when its turn to finish comes.
+        const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
+        pending_.push_back(std::async(when, [file = std::move(file), frame, image = std::move(image)] {
+            image.write(file);
+            return Written{file, frame, image.voxels(), check_readable(file)};
+        }));
+    }
+    void keep(const std::filesystem::path& file) {
+        ++report_.kept;
+        done(file.filename().string() + ": kept");
+    }
+    void finish() {
+        while (!pending_.empty()) finish_one();
+    }
+
+private:
+    void finish_one() {
+        const Written written = pending_.front().get();
+        pending_.pop_front();
+        ++report_.written;
+        report_.voxels += written.voxels, report_.bytes += written.bytes;
+        char text[80];
+        std::snprintf(text, sizeof text, ": %.2f M voxels with fog, %.2f MB", written.voxels * 1e-6,
+                      written.bytes * 1e-6);
+        done(written.file.filename().string() + text);
+    }
+    void done(const std::string& line) {
+        progress_.line(line);
+        progress_.set(report_.written + report_.kept);
+    }
+
+    BakeReport& report_;
+    Progress& progress_;
+    size_t most_;
+    std::deque<std::future<Written>> pending_;
+};
+}
+
+BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames,
+                const BakeOptions& options, Progress& progress) {
+    if (frames.size() > 1 && !has_frame_token(pattern))
+        fail(ExitCode::usage, pattern, "needs a place for the frame number, such as fog.####.vdb");
+    const auto start = Clock::now();
+    BakeReport report;
+    if (frames.empty()) return report;
+    const std::filesystem::path first = frame_name(pattern, frames.front());
+    check_output(first);
+    sweep_temporaries(first.has_parent_path() ? first.parent_path() : ".");
+
+    const std::string hash = settings_hash(recipe, options.write);
+    Writers writers(report, progress);
+    for (const int frame : frames) {
+        if (options.cancel && *options.cancel) break;
+        const std::filesystem::path file = frame_name(pattern, frame);
+        if (options.resume && is_right(file, recipe.name, hash, frame)) {
+            writers.keep(file);
+            continue;
+        }
+        const double seconds = frame / recipe.frame_rate;
+        const Growth growth = start_growth(recipe, seconds);
+        const VdbContent content{.name = recipe.name,
+                                 .index_to_world = growth.index_to_world,
+                                 .metadata = frame_metadata(recipe, hash, frame, seconds),
+                                 .tiles = {},
+                                 .origins = growth.origins,
+                                 .fill = [&](size_t number, Leaf& leaf) { grow_leaf(growth, number, leaf); }};
+        writers.start(file, frame, VdbImage(content, options.write, file.string()));
+    }
+    writers.finish();
+    report.cancelled = report.written + report.kept < static_cast<int>(frames.size());
+    report.seconds = seconds_since(start);
+    return report;
+}
+}

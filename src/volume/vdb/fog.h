@@ -1,0 +1,20 @@
+// From a tree as stored to fog: values cleaned, and nothing outside the box of the active voxels.
+#pragma once
+#include "volume/vdb/codec.h"
+
+namespace tyndall {
+// Box of the active voxels and tiles, both corners included; high < low when there are none.
+struct ActiveBox {
+    ivec3 low{0}, high{-1};
+
+    bool empty() const { return high.x < low.x; }
+};
+ActiveBox active_box(const DecodedTree& tree);
+
+// Fills leaves, tiles and active box of `volume`. Counts what was mended in `report`.
+// Inactive values inside the active box are kept. Throws Error (refused) naming `where`.
+void make_fog(DecodedTree tree, SparseVolume& volume, VdbReadReport& report, const std::string& where);
+
+// Minimum, maximum and mean of the finite active values, and how many are not finite or negative.
+void add_statistics(const DecodedTree& tree, VdbGridInfo& info);
+}

@@ -1,0 +1,66 @@
+#include "volume/vdb/head.h"
+
+#include <openvdb/MetaMap.h>
+#include <openvdb/Metadata.h>
+#include <openvdb/version.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace tyndall {
+namespace {
+std::optional<double> number(const std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return value;
+}
+
+// Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
+openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creator) {
+    constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
+    constexpr std::string_view real[] = {"tyndall_frame",  "tyndall_time_s",           "tyndall_fps",
+                                         "tyndall_unit_m", "tyndall_extinction_per_m", "tyndall_g"};
+    openvdb::MetaMap metadata;
+    for (const auto& [key, text] : texts) {
+        if (key.empty() || key == "creator") continue;
+        metadata.removeMeta(key);
+        const std::optional<double> value = number(text);
+        const auto is_key = [&](std::string_view name) { return name == key; };
+        if (value && std::ranges::any_of(whole, is_key) && *value == std::floor(*value) && std::abs(*value) < 1e15)
+            metadata.insertMeta(key, openvdb::Int64Metadata(static_cast<int64_t>(*value)));
+        else if (value && std::ranges::any_of(real, is_key))
+            metadata.insertMeta(key, openvdb::DoubleMetadata(*value));
+        else
+            metadata.insertMeta(key, openvdb::StringMetadata(text));
+    }
+    metadata.insertMeta("creator", openvdb::StringMetadata(creator));
+    return metadata;
+}
+
+// Where the 36 characters of the UUID stand; the library would fill them at random.
+constexpr size_t uuid_begin = 21, uuid_bytes = 36;
+
+void write_header(std::ostream& stream) {
+    write_value<int64_t>(stream, openvdb::OPENVDB_MAGIC);
+    write_value<uint32_t>(stream, openvdb::OPENVDB_FILE_VERSION);
+    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MAJOR_VERSION);
+    write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MINOR_VERSION);
+    write_value<char>(stream, 1); // the grids say where they begin and end
+    stream << "00000000-0000-0000-0000-000000000000";
+}
+}
+
+void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator) {
+    write_header(stream);
+    metadata_map(metadata, creator).writeMeta(stream);
+    write_value<int32_t>(stream, 1);
+}
+
+void set_identity(std::string& head, std::string digits) {
+    for (const size_t hyphen : {8, 13, 18, 23}) digits.insert(hyphen, "-");
+    head.replace(uuid_begin, uuid_bytes, digits);
+}
+}

@@ -1,0 +1,18 @@
+// The head of a file: what it is, who it is, what its author says of it.
+#pragma once
+#include "volume/vdb/prewalk.h"
+
+#include <ostream>
+#include <string>
+
+namespace tyndall {
+// Up to and including the number of grids, which is one. The identity is still nought.
+void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator);
+
+// Puts 32 hex digits in the place of the file's UUID.
+void set_identity(std::string& head, std::string digits);
+
+template<class T> void write_value(std::ostream& stream, T value) {
+    stream.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+}

@@ -1,0 +1,38 @@
+// The values of leaves as a file holds them: a mask, what inactive voxels are, a compressed chunk of the active ones.
+// The library codes one leaf at a time; here many are coded in parallel, to the same bytes.
+#pragma once
+#include "volume/bricks/voxel_mask.h"
+#include "volume/vdb/vdb.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace tyndall {
+// The value a reader will see: what half cannot hold is clamped, what it rounds to nothing is nothing.
+float stored_value(float value, bool half);
+
+struct EncodedLeaves {
+    std::vector<VoxelMask> masks;         // voxels that are not 0 as stored, of every leaf asked for
+    std::vector<std::string_view> pieces; // bytes of the leaves that hold any, in order; they live in `memory`
+    std::unique_ptr<char[]> memory;
+};
+
+// Encodes `count` leaves, each filled when its turn comes, on several threads. `compression` is one of vdb_zip and
+// vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
+EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression);
+
+// How a file holds the leaves of a float or double tree.
+struct LeafCoding {
+    uint32_t file_version = 0, compression = 0;
+    bool half = false, is_double = false;
+    double background = 0;
+};
+
+// Decodes the leaf that begins at each position into the leaf and the mask of that number; origins stay. Throws when
+// its bytes are not a leaf's, or not all of them up to the next.
+void decode_leaves(std::string_view bytes, std::span<const uint64_t> begins, const LeafCoding& coding,
+                   std::span<Leaf> leaves, std::span<VoxelMask> active);
+}

@@ -1,0 +1,219 @@
+#include "volume/vdb/prewalk.h"
+
+#include "base/error.h"
+#include "volume/vdb/transform.h"
+
+#include <charconv>
+#include <cstring>
+
+namespace tyndall {
+namespace {
+constexpr int64_t magic = 0x56444220;
+constexpr uint64_t most_text = 4096, most_items = 4096, most_metadata = 16 << 20, most_grids = 1024;
+
+// What lies in the place of a volume often enough to deserve its own hint.
+void check_magic(ByteCursor& file) {
+    char start[20] = {};
+    file.read(start, std::min<uint64_t>(sizeof start, file.left()), "the header");
+    const std::string_view text(start, sizeof start);
+    if (text.starts_with("version https://git-"))
+        refuse(file.where, "is a Git LFS pointer, not a volume: run git lfs pull");
+    if (text.starts_with("NanoVDB"))
+        refuse(file.where, "is a NanoVDB file; convert it with nanovdb_convert in.nvdb out.vdb");
+    if (std::memcmp(start, &magic, sizeof magic) != 0) refuse(file.where, "is not an OpenVDB file");
+    file.seek(sizeof magic, "the header");
+}
+
+template<class T> void append_number(std::string& text, T value) {
+    char digits[64];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    if (!text.empty()) text += ' ';
+    text.append(digits, end);
+}
+
+// The numbers of a metadata value, separated by spaces.
+template<class T> std::string numbers(ByteCursor& file, uint32_t size, size_t count, const std::string& name) {
+    if (size != count * sizeof(T)) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+    std::string text;
+    for (size_t i = 0; i < count; ++i) append_number(text, file.value<T>("metadata " + name));
+    return text;
+}
+
+// How many numbers a type of metadata holds: vec3s 3, mat4d 16, float 1.
+size_t component_count(const std::string& type) {
+    if (type.size() != 5) return 1;
+    const size_t n = static_cast<size_t>(type[3] - '0');
+    return type.starts_with("vec") ? n : type.starts_with("mat") ? n * n : 1;
+}
+
+// One value as text; false for a type that is not shown (it is skipped).
+bool read_value(ByteCursor& file, const std::string& name, const std::string& type, std::string& text) {
+    const auto size = file.value<uint32_t>("metadata " + name);
+    const bool vector =
+        type.size() == 5 && (type.starts_with("vec") || type.starts_with("mat")) && type[3] >= '2' && type[3] <= '4';
+    const size_t count = component_count(type);
+    if (type == "string") {
+        if (size > most_metadata) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+        text = file.bytes(size, "metadata " + name);
+    } else if (type == "bool") {
+        if (size != 1) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+        text = file.value<char>("metadata " + name) ? "true" : "false";
+    } else if (type == "float" || (vector && type[4] == 's')) {
+        text = numbers<float>(file, size, count, name);
+    } else if (type == "double" || (vector && type[4] == 'd')) {
+        text = numbers<double>(file, size, count, name);
+    } else if (type == "int32" || (vector && type[4] == 'i')) {
+        text = numbers<int32_t>(file, size, count, name);
+    } else if (type == "int64") {
+        text = numbers<int64_t>(file, size, 1, name);
+    } else {
+        file.skip(size, "metadata " + name);
+        return false;
+    }
+    return true;
+}
+
+VdbMetadata read_metadata(ByteCursor& file) {
+    const auto count = file.value<uint32_t>("the number of metadata");
+    if (count > most_items) file.complain("announces " + std::to_string(count) + " metadata");
+    VdbMetadata metadata;
+    const uint64_t start = file.position();
+    for (uint32_t i = 0; i < count; ++i) {
+        std::string name = file.text(most_text, "a metadata name"), value;
+        const std::string type = file.text(most_text, "the type of metadata " + name);
+        if (read_value(file, name, type, value)) metadata.emplace_back(std::move(name), std::move(value));
+        if (file.position() - start > most_metadata && type != "__delayedload")
+            file.complain("holds more than " + std::to_string(most_metadata >> 20) + " MB of metadata");
+    }
+    return metadata;
+}
+
+const std::string* find(const VdbMetadata& metadata, std::string_view name) {
+    for (const auto& [key, value] : metadata)
+        if (key == name) return &value;
+    return nullptr;
+}
+
+// "Tree_float_5_4_3_HalfFloat" is a float tree of the usual shape, stored as half.
+void split_type(std::string type, VdbGridEntry& grid) {
+    constexpr std::string_view half = "_HalfFloat", tree = "Tree_";
+    grid.half = type.ends_with(half);
+    if (grid.half) type.resize(type.size() - half.size());
+    if (type.starts_with(tree)) type.erase(0, tree.size());
+    const size_t end = type.find('_');
+    grid.type = type.substr(0, end);
+    if (end != std::string::npos) grid.tree_shape = type.substr(end + 1);
+}
+
+struct Offsets {
+    int64_t grid = 0, voxels = 0, end = 0;
+};
+
+// Metadata and transform, from the end of the descriptor up to the tree.
+void read_description(ByteCursor& file, VdbGridEntry& grid, bool whole_needed) {
+    grid.compression = file.value<uint32_t>("the compression");
+    if (grid.compression > 7) file.complain("its compression is not known: " + std::to_string(grid.compression));
+    grid.metadata = read_metadata(file);
+    if (const std::string* text = find(grid.metadata, "class")) grid.grid_class = *text;
+    const std::string* half = find(grid.metadata, "is_saved_as_half_float");
+    if (grid.half != (half && *half == "true"))
+        file.complain("its type and its metadata disagree whether it is stored as half");
+    VdbTransform transform = read_transform(file);
+    if (!transform.complete && whole_needed) file.complain(transform.problem);
+    grid.index_to_world = transform.index_to_world;
+    grid.transform_problem = std::move(transform.problem);
+}
+
+void check_offsets(ByteCursor& file, const Offsets& offsets, bool instance) {
+    const auto here = static_cast<int64_t>(file.position());
+    const bool ascending = here <= offsets.grid && offsets.grid <= offsets.end &&
+                           (instance || (offsets.grid <= offsets.voxels && offsets.voxels <= offsets.end));
+    if (!ascending)
+        file.complain("its place in the file makes no sense: " + std::to_string(offsets.grid) + " to " +
+                      std::to_string(offsets.end));
+    if (static_cast<uint64_t>(offsets.end) > file.end())
+        refuse(file.where, "is cut: the grid ends at byte " + std::to_string(offsets.end) + ", the file at byte " +
+                               std::to_string(file.end()));
+}
+
+VdbGridEntry read_grid(ByteCursor& file, bool has_offsets) {
+    VdbGridEntry grid;
+    grid.unique_name = file.text(most_text, "a grid name");
+    grid.name = grid.unique_name.substr(0, grid.unique_name.find('\x1e'));
+    file.where += ": grid \"" + printable(grid.name, 80) + "\"";
+    split_type(file.text(most_text, "the grid type"), grid);
+    grid.parent = file.text(most_text, "the name of the shared grid");
+    const bool instance = !grid.parent.empty();
+
+    const auto offsets = file.value<Offsets>("the offsets");
+    if (has_offsets) {
+        check_offsets(file, offsets, instance);
+        file.seek(static_cast<uint64_t>(offsets.grid), "the grid");
+    }
+    read_description(file, grid, !has_offsets);
+
+    // Without offsets the only way to the next grid is through the tree.
+    grid.tree_begin = file.position();
+    if (has_offsets) {
+        if (file.position() > static_cast<uint64_t>(offsets.end)) file.complain("its description passes its end");
+        file.seek(static_cast<uint64_t>(offsets.end), "the end of the grid");
+    } else if (!instance) {
+        if (!is_walkable(grid))
+            file.complain("holds " + printable(grid.type, 40) + " values and the file has no offsets to pass it by");
+        walk_tree(file, grid);
+    }
+    grid.tree_end = file.position();
+    return grid;
+}
+
+void connect_instances(const ByteCursor& file, std::vector<VdbGridEntry>& grids) {
+    for (VdbGridEntry& grid : grids) {
+        if (grid.parent.empty()) continue;
+        const VdbGridEntry* parent = nullptr;
+        for (const VdbGridEntry& other : grids)
+            if (!parent && other.unique_name == grid.parent && other.parent.empty()) parent = &other;
+        if (!parent || parent->type != grid.type || parent->tree_shape != grid.tree_shape)
+            refuse(file.where + ": grid \"" + printable(grid.name, 80) + "\"",
+                   "shares the voxels of a grid that is not there: " + printable(grid.parent, 80));
+        grid.tree_begin = parent->tree_begin, grid.tree_end = parent->tree_end;
+        grid.half = parent->half, grid.compression = parent->compression;
+    }
+}
+}
+
+std::string compression_name(uint32_t flags) {
+    std::string name;
+    const auto add = [&](const char* part) { name += (name.empty() ? "" : " + ") + std::string(part); };
+    if (flags & vdb_zip) add("zip");
+    if (flags & vdb_blosc) add("blosc");
+    if (flags & vdb_active_mask) add("active values");
+    return name.empty() ? "none" : name;
+}
+
+VdbDirectory read_directory(ByteCursor& file) {
+    check_magic(file);
+    VdbDirectory directory;
+    directory.file_version = file.value<uint32_t>("the header");
+    if (directory.file_version < 222 || directory.file_version > 224)
+        file.complain("has file version " + std::to_string(directory.file_version) + "; 222 to 224 can be read");
+    directory.library_major = file.value<uint32_t>("the header");
+    directory.library_minor = file.value<uint32_t>("the header");
+    const auto has_offsets = file.value<uint8_t>("the header");
+    if (has_offsets > 1) file.complain("its header is damaged");
+    file.skip(36, "the header"); // UUID
+
+    directory.metadata = read_metadata(file);
+    const auto count = file.value<int32_t>("the number of grids");
+    if (count == 0) refuse(file.where, "holds no grids");
+    if (count < 0 || count > static_cast<int32_t>(most_grids))
+        file.complain("announces " + std::to_string(count) + " grids");
+
+    const std::string where = file.where;
+    for (int32_t i = 0; i < count; ++i) {
+        directory.grids.push_back(read_grid(file, has_offsets != 0));
+        file.where = where;
+    }
+    connect_instances(file, directory.grids);
+    return directory;
+}
+}

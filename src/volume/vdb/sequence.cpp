@@ -1,0 +1,104 @@
+#include "volume/vdb/sequence.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+
+namespace tyndall {
+namespace fs = std::filesystem;
+
+namespace {
+// What stands around the number in the names of a pattern.
+struct NameParts {
+    std::string before, after;
+};
+
+// The names of frames 1 and -1 part where the number begins, those of 1 and 2 at its last digit.
+NameParts split_name(const std::string& pattern) {
+    const std::string one = frame_name(pattern, 1), minus_one = frame_name(pattern, -1), two = frame_name(pattern, 2);
+    const auto begin = std::ranges::mismatch(one, minus_one).in1, last = std::ranges::mismatch(one, two).in1;
+    return {std::string(one.begin(), begin), std::string(last + 1, one.end())};
+}
+
+// The frame a file name stands for; nothing unless the pattern gives that frame exactly this name.
+bool parse_name(const std::string& name, const std::string& pattern, const NameParts& parts, int& frame) {
+    if (name.size() <= parts.before.size() + parts.after.size() || !name.starts_with(parts.before) ||
+        !name.ends_with(parts.after))
+        return false;
+    const char *begin = name.data() + parts.before.size(), *end = name.data() + name.size() - parts.after.size();
+    const auto [stop, error] = std::from_chars(begin, end, frame);
+    return error == std::errc() && stop == end && frame_name(pattern, frame) == name;
+}
+
+// Remainder that is never negative.
+int64_t modulo(int64_t value, int64_t period) { return (value % period + period) % period; }
+
+// The frame of the sequence that is shown at `frame`; nothing when a clip does not reach there.
+std::optional<int64_t> mapped_frame(int64_t frame, int64_t first, int64_t last, SequenceMode mode) {
+    if (frame >= first && frame <= last) return frame;
+    const int64_t length = last - first + 1;
+    switch (mode) {
+    case SequenceMode::hold:
+        return std::clamp(frame, first, last);
+    case SequenceMode::loop:
+        return first + modulo(frame - first, length);
+    case SequenceMode::clip:
+        return {};
+    case SequenceMode::ping_pong: {
+        if (length == 1) return first;
+        const int64_t step = modulo(frame - first, 2 * (length - 1));
+        return first + std::min(step, 2 * (length - 1) - step);
+    }
+    }
+    return {};
+}
+}
+
+VdbSequence find_sequence(const std::string& pattern, const fs::path& base_directory) {
+    const fs::path path = base_directory / pattern;
+    const std::string name = path.filename().string();
+    VdbSequence sequence;
+    sequence.pattern = path.string();
+    if (!has_frame_token(name)) { // a directory may be called anything
+        check_readable(path);
+        return sequence;
+    }
+
+    const NameParts parts = split_name(name);
+    std::error_code error;
+    fs::directory_iterator entries(path.has_parent_path() ? path.parent_path() : fs::path("."), error);
+    if (error) fail(ExitCode::unreadable, path.parent_path().string(), error.message());
+    for (; entries != fs::directory_iterator(); entries.increment(error)) {
+        int frame = 0;
+        if (parse_name(entries->path().filename().string(), name, parts, frame)) sequence.files.push_back(frame);
+    }
+    if (error) fail(ExitCode::unreadable, path.parent_path().string(), error.message());
+    if (sequence.files.empty()) fail(ExitCode::unreadable, sequence.pattern, "no file of this sequence is there");
+    std::ranges::sort(sequence.files);
+    return sequence;
+}
+
+std::optional<fs::path> sequence_file(const VdbSequence& sequence, int frame, MissingFrame missing) {
+    if (sequence.files.empty()) return fs::path(sequence.pattern);
+    const int64_t wanted = int64_t{frame} + sequence.offset;
+    const auto mapped = mapped_frame(wanted, sequence.files.front(), sequence.files.back(), sequence.mode);
+    if (!mapped) return {};
+
+    // The first and the last file exist, so the nearest earlier one does as well.
+    const auto after = std::ranges::upper_bound(sequence.files, *mapped);
+    const int nearest = *(after - 1);
+    const auto name = [&](int64_t f) {
+        const fs::path path(sequence.pattern);
+        return path.parent_path() / frame_name(path.filename().string(), static_cast<int>(f));
+    };
+    if (nearest == *mapped || missing == MissingFrame::hold) return name(nearest);
+    if (missing == MissingFrame::skip) return {};
+    fail(ExitCode::unreadable, name(*mapped).string(),
+         "is missing from a sequence of frames " + std::to_string(sequence.files.front()) + " to " +
+             std::to_string(sequence.files.back()) + "; --missing hold or skip goes on without it");
+}
+}

@@ -1,0 +1,88 @@
+// OpenVDB files in and out, guarded against cut, hostile and half-written ones. The only user of OpenVDB.
+#pragma once
+#include "volume/bricks/sparse_volume.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct VdbWriteOptions {
+    bool half = true;  // 16-bit floats on disk
+    bool blosc = true; // else ZIP
+    std::string creator = "tyndall " TYNDALL_VERSION;
+};
+
+using LeafFill = std::function<void(size_t number, Leaf& leaf)>;
+
+// A fog grid whose leaves are computed while they are written, so that no more than a few exist at a time.
+struct VdbContent {
+    std::string name = "density";
+    dmat4 index_to_world{1};
+    std::vector<std::pair<std::string, std::string>> metadata;
+    std::vector<Tile> tiles;    // disjoint from the leaves and each other
+    std::vector<ivec3> origins; // of the leaves, multiples of 8, no two alike
+    LeafFill fill;              // every value of a leaf; called once for each, on several threads
+};
+
+// Writes one fog grid (class fog volume, background 0, zero voxels inactive) atomically. Same input, same bytes.
+// The metadata goes into the file's metadata. Throws Error (unwritable).
+void write_vdb(const std::filesystem::path& file, const SparseVolume& volume, const VdbWriteOptions& options = {});
+
+// The same in two steps, of which only the second waits for the disk.
+class VdbImage {
+public:
+    VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where);
+    VdbImage(VdbImage&&) noexcept;
+    ~VdbImage();
+
+    void write(const std::filesystem::path& file) const;
+    uint64_t voxels() const; // that are not 0, in leaves
+
+private:
+    std::unique_ptr<struct EncodedFog> fog_;
+};
+
+struct VdbGridInfo {
+    std::string name, type, grid_class; // "density", "float", "fog volume"
+    bool usable = false;                // can be rendered as fog
+    std::string why_not;                // when it cannot
+    dmat4 index_to_world{1};
+    vec3 voxel_size{0};
+    ivec3 active_low{0}, active_high{-1};
+    uint64_t active_voxels = 0, leaves = 0, tiles = 0;
+    float minimum = 0, maximum = 0, mean = 0, background = 0;
+    uint64_t non_finite = 0, negative = 0;
+    uint64_t memory_bytes = 0;
+    std::vector<std::pair<std::string, std::string>> metadata;
+};
+
+struct VdbInfo {
+    uint32_t file_version = 0;
+    std::string library_version, compression;
+    std::vector<std::pair<std::string, std::string>> metadata;
+    std::vector<VdbGridInfo> grids;
+};
+
+// Throws Error: unreadable, refused (not a VDB, cut, hostile; the message names the place).
+VdbInfo vdb_info(const std::filesystem::path& file);
+
+// What was mended while reading; say it to the user once per file.
+struct VdbReadReport {
+    uint64_t non_finite = 0, negative = 0; // voxels set to 0
+    float background = 0;                  // non-zero: fog outside the active box was dropped
+    std::string grid;                      // the one that was read
+    bool empty = false;                    // it holds no active voxels
+    std::string summary() const;           // empty when there is nothing to say
+};
+
+// Reads one grid as fog. `grid`: a name, name[index] for the index-th of that name, or empty for the only usable one
+// ("density" when there are several). Throws Error: an unknown name lists what is there, a level set says what to do.
+SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid = {}, VdbReadReport* report = nullptr);
+
+// Metadata of the file without its voxels (optics and frame written by a bake).
+std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);
+}

@@ -1,0 +1,172 @@
+// What a chart says about pictures whose errors are known.
+#include "base/io/json.h"
+#include "base/random.h"
+#include "measure/chart/report.h"
+#include "modes/mode.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace tyndall::test {
+namespace {
+const ivec2 size(128, 96);
+constexpr double pixels = 128 * 96;
+
+Image<vec3> flat(float value) { return Image<vec3>(size, vec3(value)); }
+
+// Grey noise of its own for each seed, evenly spread over ± amplitude: variance amplitude² / 3.
+Image<vec3> noisy(float value, float amplitude, uint32_t seed) {
+    Image<vec3> image = flat(value);
+    for (size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] += amplitude * (2 * random_unit(static_cast<uint32_t>(i), 0, 0, seed) - 1);
+    return image;
+}
+
+Reference exact_reference(float color, float inscatter) {
+    Reference reference;
+    reference.halves[0] = reference.halves[1] = {flat(color), flat(inscatter)};
+    reference.unlit[0] = reference.unlit[1] = {flat(0), flat(0)};
+    return reference;
+}
+
+ChartPoint point_at(const char* mode, double rung, double seconds, double error) {
+    ChartPoint point;
+    point.mode = mode, point.settings = "pixel.samples=1", point.rung = rung;
+    point.frame_seconds = point.frame_fastest = point.frame_slowest = point.seconds_1 = point.seconds_100 = seconds;
+    point.errors.error = point.errors.rmse = point.fog_error = error;
+    return point;
+}
+
+Chart small_chart() {
+    Chart chart;
+    chart.size = chart.sequence_size = size;
+    chart.job.render.scene_file = "a/scene.json";
+    chart.modes = {{"march", "", Accuracy::single_scattering, {}}, {"billboard", "", Accuracy::look, {}}};
+    chart.points = {point_at("march", 1, 0.01, 0.15), point_at("march", 2, 0.05, 0.04), point_at("march", 3, 0.2, 0.06),
+                    point_at("billboard", 1, 0.002, 2)};
+    chart.points[3].gain = 0.5, chart.points[3].fitted = chart.points[3].errors, chart.points[3].fitted.error = 0.9;
+    chart.points[3].fitted_fog_error = 0.8;
+    mark_best(chart.points);
+    return chart;
+}
+
+TEST(ChartErrors, TakeTheWorseOfPictureAndFogLight) {
+    const Yardstick yardstick = make_yardstick(exact_reference(2, 0.5f), false);
+    const ChartErrors errors = chart_errors(yardstick, {flat(2.2f), flat(0.6f)});
+    EXPECT_NEAR(errors.rmse, 0.1, 1e-6);
+    EXPECT_NEAR(errors.inscatter_rmse, 0.2, 1e-6);
+    EXPECT_EQ(errors.error, errors.inscatter_rmse);
+    EXPECT_NEAR(errors.bias, 0.1, 1e-6);
+    EXPECT_NEAR(errors.inscatter_bias, 0.2, 1e-6);
+    EXPECT_NEAR(errors.rel_mse, 0.01 / 1.01, 1e-6); // 0.2² / (2² + 0.01 · 2²)
+    EXPECT_EQ(errors.uncertainty, 0);
+}
+
+TEST(ChartErrors, DoNotCountTheNoiseOfTheReference) {
+    // An error of 0.1 under noise of 0.5 / √3 = 0.29 in either half. The product of the errors is 0.01 plus twice the
+    // mean of the halves' noise times 0.1 (deviation 0.1 · 0.29 · √2) plus a product of both (0.29²), over all pixels.
+    Reference reference = exact_reference(1, 1);
+    for (uint32_t half = 0; half < 2; ++half) reference.halves[half].color = noisy(1, 0.5f, half + 1);
+    const ChartErrors errors = chart_errors(make_yardstick(reference, false), {flat(1.1f), flat(1)});
+    const double variance = 0.25 / 3;
+    const double deviation = std::sqrt((0.01 * 2 * variance + variance * variance) / pixels); // of the square
+    EXPECT_NEAR(errors.rmse * errors.rmse, 0.01, 4 * deviation);
+    EXPECT_NEAR(errors.uncertainty, std::sqrt(0.01 + deviation) - 0.1, 0.3 * deviation / 0.2);
+}
+
+TEST(ChartErrors, LeaveOutWhatLightsHaveNoPartIn) {
+    Reference reference = exact_reference(3, 1);
+    reference.unlit[0] = reference.unlit[1] = {flat(2), flat(0.25f)};
+    const Yardstick yardstick = make_yardstick(reference, true);
+    const ChartErrors errors = chart_errors(yardstick, {flat(1), flat(0.75f)});
+    EXPECT_EQ(errors.error, 0);
+    EXPECT_LT(errors.flip, 1e-6); // of the whole picture
+    EXPECT_EQ(whole(yardstick, flat(1)).pixels[0], vec3(3));
+}
+
+TEST(ChartErrors, FitOneGainToTheFogLight) {
+    const Yardstick yardstick = make_yardstick(exact_reference(1, 0.5f), false);
+    const ColorLayers look{flat(2.5f), flat(2)}; // surfaces of 0.5, fog light four times too strong
+    const double gain = fitted_gain(yardstick, look);
+    EXPECT_NEAR(gain, 0.25, 1e-7);
+    EXPECT_NEAR(chart_errors(yardstick, with_gain(look, gain)).error, 0, 1e-6);
+    EXPECT_EQ(fitted_gain(yardstick, {flat(1), flat(0)}), 1);
+}
+
+TEST(ChartFlicker, CountsChangesThatTheReferenceLacks) {
+    std::vector<Yardstick> frames;
+    std::vector<ColorLayers> steady, flickering;
+    for (int t = 0; t < 4; ++t) {
+        const float now = 1 + 0.25f * static_cast<float>(t); // the scene itself grows brighter: mean 1.375
+        frames.push_back(make_yardstick(exact_reference(now, now), false));
+        steady.push_back({flat(now + 0.5f), flat(now)});
+        flickering.push_back({flat(now + (t % 2 ? 0.1f : 0)), flat(now)});
+    }
+    EXPECT_NEAR(chart_flicker(frames, steady), 0, 1e-6);
+    EXPECT_NEAR(chart_flicker(frames, flickering), 0.1 / 1.375, 1e-6);
+}
+
+TEST(Chart, MarksWhatNothingBeats) {
+    const Chart chart = small_chart();
+    EXPECT_EQ(chart.points[0].best_1, 1);
+    EXPECT_EQ(chart.points[1].best_1, 1);
+    EXPECT_EQ(chart.points[2].best_1, 0); // rung 2 is quicker and better
+    EXPECT_EQ(chart.points[3].best_1, 1); // nothing is as quick
+}
+
+TEST(Chart, AdvisesTheQuickestGoodEnoughAndTheBestInTime) {
+    for (const Advice& advice : advice_of(small_chart())) {
+        const std::string name = advice.single ? point_name(*advice.single) : "none";
+        if (advice.error == 0.2) {
+            EXPECT_EQ(name, "march.1");
+        }
+        if (advice.error == 0.05) {
+            EXPECT_EQ(name, "march.2");
+        }
+        if (advice.error == 0.02) {
+            EXPECT_EQ(name, "none");
+        }
+        if (advice.seconds == 1) {
+            EXPECT_EQ(name, "march.2");
+        }
+        if (advice.seconds == 1.0 / 30) {
+            EXPECT_EQ(name, "march.1");
+        }
+    }
+}
+
+TEST(Chart, SaysTheSameInCsvAndJson) {
+    const Chart chart = small_chart();
+    const Json json = parse_json(chart_json(chart), "chart.json");
+    const std::vector<Json>& points = json.find("points")->items;
+    ASSERT_EQ(points.size(), chart.points.size());
+    EXPECT_EQ(points[1].number_or("error", 0), 0.04);
+    EXPECT_EQ(points[1].find("gain")->kind, Json::Kind::null);
+    EXPECT_EQ(points[3].number_or("fitted_error", 0), 0.9);
+    const std::string csv = chart_csv(chart);
+    EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
+    EXPECT_NE(csv.find("march,\"pixel.samples=1\",2,"), csv.npos);
+}
+
+TEST(Chart, DrawsEveryPointAndLooksTwice) {
+    const std::string svg = chart_svg(small_chart(), FrameTime::single, ErrorOf::worse);
+    for (const char* id : {"march.1", "march.2", "march.3", "billboard.1", "billboard.1.fitted"})
+        EXPECT_NE(svg.find(std::string("data-id='") + id + "'"), svg.npos) << id;
+    EXPECT_NE(svg.find(">billboard, gain fitted<"), svg.npos);
+    EXPECT_EQ(svg.find("nan"), svg.npos);
+    EXPECT_EQ(svg.find("inf"), svg.npos);
+}
+
+TEST(Chart, DrawsModesInColoursAndShapesOfTheirOwn) {
+    std::set<std::string> colors;
+    std::set<int> shapes;
+    for (const Mode& mode : modes()) {
+        colors.insert(style_of(std::string(mode.name)).color);
+        shapes.insert(style_of(std::string(mode.name)).shape);
+    }
+    EXPECT_EQ(colors.size(), modes().size());
+    EXPECT_EQ(shapes.size(), modes().size());
+}
+}
+}

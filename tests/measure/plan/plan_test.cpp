@@ -1,0 +1,196 @@
+// Plans of scenes of which it is known what they need.
+#include "measure/plan/plan.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/meshes.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+#include "measure/metrics/halves.h"
+#include "render/adaptive/to_target.h"
+#include "scene/file/scene_file.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+const Box room{vec3(-4), vec3(4)};
+
+View small_view() {
+    View view;
+    view.camera = look_at({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 0.9f);
+    view.size = {64, 36}, view.pixel_samples = 1;
+    return view;
+}
+
+Light spot_light() {
+    Light light = point_light({-3, 2.5f, 0}, 50);
+    light.name = "spot", light.kind = LightKind::spot;
+    light.direction = glm::normalize(vec3(3, -2, 0)), light.inner_cone = 0.2f, light.outer_cone = 0.3f;
+    return light;
+}
+
+const Term& term_named(const std::vector<Term>& terms, std::string_view name) {
+    for (const Term& term : terms)
+        if (term.name == name) return term;
+    ADD_FAILURE() << "no term " << name;
+    return terms.front();
+}
+
+Plan plan_of(const Snapshot& snapshot, double error) {
+    return make_plan(modes(), small_view(), snapshot, Settings{}, {error, 0, Quality::preview, {}, {}});
+}
+
+TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
+    const Snapshot snapshot = scene_of({even_fog(0.1f, room)}, {spot_light()});
+    const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.01);
+    for (const char* name :
+         {"shadows", "changing density", "direction of scattering", "emission", "ambient light in fog"}) {
+        const Term& term = term_named(terms, name);
+        EXPECT_TRUE(term.rigorous) << name;
+        EXPECT_FALSE(term.needed) << name;
+        EXPECT_EQ(term.bound, 0) << name;
+    }
+}
+
+// 8 m across each side: no line is longer than 13.9 m.
+TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
+    const float extinction = 1e-4f;
+    const Snapshot snapshot = scene_of({even_fog(extinction, room)}, {spot_light()});
+    EXPECT_NEAR(thickest_line(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
+    const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.05);
+    for (const char* name : {"dimming of light on its way", "fog before surfaces"}) {
+        const Term& term = term_named(terms, name);
+        EXPECT_TRUE(term.rigorous) << name;
+        EXPECT_FALSE(term.needed) << name;
+        EXPECT_GE(term.bound, std::expm1(thickest_line(snapshot))) << name;
+    }
+    EXPECT_EQ(without_needless(terms, Settings{}).march.light, LightTransmittance::off);
+}
+
+TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
+    Settings all;
+    all.fluence.orders = all_orders;
+    for (const float extinction : {1e-4f, 1.0f}) {
+        const std::vector<Term> terms =
+            terms_of(small_view(), scene_of({even_fog(extinction, room)}, {spot_light()}), all, 0.05);
+        const Term& term = term_named(terms, "light scattered again");
+        EXPECT_EQ(term.needed, extinction > 0.1f);
+        EXPECT_EQ(without_needless(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
+    }
+}
+
+TEST(Terms, EndlessFogHasNoThickestLine) { EXPECT_EQ(thickest_line(scene_of({even_fog(0.1f)}, {})), infinity); }
+
+// Light in the middle of thick fog: what is lost on the way is the same measured and in closed form at every point of
+// the picture's middle; here only that it is large, and known to be.
+TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
+    const Phase forward{PhaseKind::henyey_greenstein, 0.8f};
+    const Stage stage =
+        stage_of({even_fog(0.5f, room, forward)}, {spot_light()}, {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const std::vector<Term> terms = terms_of(small_view(), stage.snapshot, Settings{}, 0.02);
+    for (const char* name : {"shadows", "dimming of light on its way", "direction of scattering"}) {
+        const Term& term = term_named(terms, name);
+        EXPECT_TRUE(term.needed) << name;
+        EXPECT_GT(term.error, 0.1) << name;
+        EXPECT_GE(term.bound, term.error) << name;
+    }
+    const Settings kept = without_needless(terms, Settings{});
+    EXPECT_EQ(kept.march.visibility, Visibility::slices);
+    EXPECT_TRUE(kept.march.phase);
+}
+
+// Isotropic instead of g: the error of light seen under one angle is 1/(4 pi p) - 1; a sun in thin fog has one angle
+// for each pixel, and an orthographic eye the same for all.
+TEST(Terms, ErrorsAreThoseOfClosedForms) {
+    View view = small_view();
+    view.camera.ortho_height = 2, view.filter = PixelFilter::center;
+    const Phase phase{PhaseKind::henyey_greenstein, 0.3f};
+    const Snapshot snapshot =
+        scene_of({even_fog(0.001f, Box{vec3(-10, -10, -1), vec3(10, 10, 1)}, phase)}, {sun({1, 0, -1})});
+    const std::vector<Term> terms = terms_of(view, snapshot, Settings{}, 1e-3);
+    const double seen = phase_value_of<double>(phase, glm::dot(glm::normalize(vec3(1, 0, -1)), vec3(0, 0, 1)));
+    const double expected = std::abs(1 / (4 * std::numbers::pi * seen) - 1);
+    EXPECT_NEAR(term_named(terms, "direction of scattering").error, expected, 2e-3 * expected);
+}
+
+TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
+    const Plan plan = plan_of(scene_of({even_fog(0.1f, room)}, {spot_light()}), 0.02);
+    EXPECT_TRUE(plan.chosen.gets_there());
+    EXPECT_LE(plan.chosen.error, 0.02);
+    const auto cone = std::ranges::find(plan.standings, "cone", [](const Standing& s) { return s.mode->name; });
+    ASSERT_NE(cone, plan.standings.end());
+    EXPECT_TRUE(cone->best->gets_there());
+}
+
+TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
+    const Stage stage = stage_of({even_fog(0.2f, room)}, {spot_light()}, {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const Plan plan = plan_of(stage.snapshot, 0.05);
+    EXPECT_TRUE(plan.chosen.gets_there());
+    for (const Standing& standing : plan.standings) {
+        if (standing.mode->accuracy == Accuracy::look) {
+            EXPECT_FALSE(standing.best) << standing.mode->name;
+            EXPECT_FALSE(standing.why.empty());
+        }
+        if (standing.mode->name == "cone") {
+            EXPECT_FALSE(standing.best->gets_there());
+            EXPECT_GT(standing.best->error, 0.05);
+        }
+    }
+    EXPECT_EQ(plan.standings.front().mode, plan.chosen.mode);
+    EXPECT_NE(plan.certificate().find(std::string(plan.chosen.mode->name)), std::string::npos);
+}
+
+// Every plan of these scenes is kept: rendered as planned, the picture is as near to the truth as wanted. At the
+// centres of pixels: elsewhere in them lamps and bright edges make pictures noisier than the targets for minutes.
+class PlannedScene : public testing::TestWithParam<const char*> {};
+
+void keeps_its_plan(const std::string& file, double wanted) {
+    const Scene scene = load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / file);
+    const Moment moment = moment_of(scene, scene.first_frame);
+    const Snapshot snapshot = make_snapshot(scene, moment, nullptr, MissingFrame::error);
+    View view;
+    view.camera = camera_at(scene, find_camera(scene, ""), moment.seconds), view.size = {96, 54};
+    view.filter = PixelFilter::center;
+    const Goal goal{wanted, 0, Quality::preview, {}, {}};
+    const Plan plan = make_plan(modes(), view, snapshot, Settings{}, goal);
+    FrameStats stats;
+    const Layers layers = render_to_target(*plan.chosen.mode, view, snapshot, plan.settings, goal, {}, stats);
+
+    const Settings truth = truth_of(Settings{});
+    const bool soft = std::ranges::any_of(snapshot.lights, is_soft); // all that is random in the truth
+    Layers halves[2];
+    for (uint32_t half = 0; half < 2; ++half) {
+        View of_half = view;
+        of_half.pixel_samples = soft ? 16 : 1, of_half.seed = 71 + half;
+        FrameStats unused;
+        halves[half] = render_frame(find_mode("march"), of_half, snapshot, truth, {}, unused);
+    }
+    const auto error = [&](Image<vec3> Layers::*layer) {
+        double mean = 0;
+        for (const Layers& half : halves)
+            for (const vec3& pixel : (half.*layer).pixels) mean += (pixel.x + pixel.y + pixel.z) / 3;
+        mean /= 2 * static_cast<double>(view.size.x) * view.size.y;
+        const Image<vec3>& own = layers.*layer;
+        return std::sqrt(std::max(product_of_errors(own, own, halves[0].*layer, halves[1].*layer).value, 0.0)) / mean;
+    };
+    EXPECT_LE(std::max(error(&Layers::color), error(&Layers::inscatter)), wanted) << plan_text(plan);
+}
+
+TEST_P(PlannedScene, NightlyIsAsRightAsWantedAtTheCentersOfPixels) {
+    for (const double wanted : {0.05, 0.02}) keeps_its_plan(GetParam(), wanted);
+}
+INSTANTIATE_TEST_SUITE_P(Plan, PlannedScene,
+                         testing::Values("scenes/window.json", "scenes/spotlight.json", "scenes/pillars.json",
+                                         "scenes/lantern.json", "scenes/cloud.json",
+                                         "tests/measure/plan/plan_scenes/even_room.json",
+                                         "tests/measure/plan/plan_scenes/bare_spot.json",
+                                         "tests/measure/plan/plan_scenes/foggy_colonnade.json",
+                                         "tests/measure/plan/plan_scenes/three_lamps.json",
+                                         "tests/measure/plan/plan_scenes/glowing_cloud.json",
+                                         "tests/measure/plan/plan_scenes/thin_haze.json"));
+}
+}

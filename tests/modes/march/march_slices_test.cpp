@@ -1,0 +1,132 @@
+// Steps between exact shadows: against the exact march, in every kind of fog and light.
+#include "integrate/ray_batch.h"
+#include "modes/busy_stage.h"
+#include "modes/mode.h"
+#include "modes/promise.h"
+#include "modes/settings.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/view.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+const Box unit_box{vec3(0), vec3(1)};
+const double four_pi = 4 * std::acos(-1.0);
+
+TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
+    // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
+    // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
+    const float height = 0.3f;
+    const Stage stage = stage_of({even_fog(1.5f, unit_box)}, {sun({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const Scatter result = marched(stage.snapshot, settings_for(Quality::preview), {{2, height, 0.5f}, {-1, 0, 0}, 10});
+    const double lit = 1 - double(0.4f - 50 + 50);
+    const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
+    EXPECT_NEAR(result.radiance.x / expected, 1, 2e-6); // rounding to float
+    EXPECT_NEAR(result.transmittance / std::exp(-1.5), 1, 2e-6);
+}
+
+// The greatest difference from the exact march, as a share of its brightest ray.
+double worst(const Stage& stage, const Settings& settings, const std::vector<Ray>& rays) {
+    const std::vector<Scatter> exact = marched(stage.snapshot, exact_settings(), rays);
+    const std::vector<Scatter> found = marched(stage.snapshot, settings, rays);
+    float difference = 0, brightest = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        difference = std::max(difference, max_component(glm::abs(exact[i].radiance - found[i].radiance)));
+        brightest = std::max(brightest, max_component(exact[i].radiance));
+    }
+    EXPECT_GT(brightest, 0);
+    return difference / brightest;
+}
+
+TEST(MarchSlices, ApproachesTheExactMarchBySecondOrder) {
+    // Fog is all that steps sample: midpoints, where shadow rays leave an error of first order.
+    const Stage stage = busy_stage();
+    const std::vector<Ray> rays = busy_rays(64);
+    const std::vector<Scatter> exact = marched(stage.snapshot, exact_settings(), rays);
+    std::vector<double> errors;
+    for (const float share : {1.0f / 16, 1.0f / 64, 1.0f / 256}) {
+        Settings settings = sliced_settings();
+        settings.march.step_share = share, settings.march.step_voxels = 64, settings.march.step_depth = 10;
+        errors.push_back(rms_difference(marched(stage.snapshot, settings, rays), exact) / mean_of(exact));
+    }
+    EXPECT_LT(errors[1], errors[0] / 8);
+    EXPECT_LT(errors[2], errors[1] / 4); // the kinks between voxels are of first order, but small
+    EXPECT_LT(errors[2], 2e-4);
+}
+
+TEST(MarchSlices, EveryKindOfLightInAGrid) {
+    const std::vector<Medium> fog{grid_fog(2, unit_grid(24, wavy))};
+    Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
+    spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
+    spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
+    for (const Light& light : {sun({0.3f, -1, 0.1f}), point_light({0.4f, 0.8f, 0.6f}), spot})
+        EXPECT_LT(worst(stage_of(fog, {light},
+                                 {shade(0.35f, 1.2f), box_mesh(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),
+                        sliced_settings(), busy_rays(64)),
+                  2e-3);
+}
+
+TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
+    Mesh sheet = shade(50, 2);
+    sheet.material = 0; // half transparent
+    const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
+    const std::vector<Medium> fog{even_fog(1, unit_box)};
+    const float open = marched(stage_of(fog, {sun({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
+    const Stage under = stage_of(fog, {sun({0, -1, 0})}, {sheet});
+    EXPECT_NEAR(marched(under.snapshot, sliced_settings(), ray).radiance.x / open, 0.5, 1e-4); // 512 steps
+    const auto limits = find_mode("march").limits(View{}, under.snapshot, sliced_settings());
+    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "march.visibility"; }));
+}
+
+TEST(MarchSlices, SurfacesWithAlphaAreSampledBesideOpaqueOnes) {
+    // An opaque and a half transparent sheet over parts of the ray: lit by 0, a half and all of the light.
+    Mesh half = quad({0.2f, 2, -50}, {0.5f, 0, 0}, {0, 0, 100});
+    half.material = 0;
+    const Stage stage = stage_of({even_fog(1e-3f, unit_box)}, {sun({0, -1, 0})}, {shade(0.2f, 1.5f), half});
+    const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
+    const float open =
+        marched(stage_of({even_fog(1e-3f, unit_box)}, {sun({0, -1, 0})}, {}).snapshot, sliced_settings(), ray)
+            .radiance.x;
+    EXPECT_NEAR(marched(stage.snapshot, sliced_settings(), ray).radiance.x / open, 0.3 + 0.25, 2.0 / 512);
+}
+
+TEST(MarchSlices, LightsWithoutShadowsPassThroughSurfaces) {
+    Light light = sun({0, -1, 0});
+    light.shadows = false;
+    const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
+    const std::vector<Medium> fog{even_fog(6, unit_box)};
+    const Stage under = stage_of(fog, {light}, {shade(50, 2)});
+    const float expected = marched(scene_of(fog, {light}), sliced_settings(), ray).radiance.x;
+    EXPECT_GT(expected, 0);
+    EXPECT_EQ(marched(under.snapshot, sliced_settings(), ray).radiance.x, expected);
+}
+
+TEST(MarchSlices, TheMarchEndsWhereLittlePasses) {
+    const Snapshot grid = scene_of({grid_fog(20, unit_grid(32, wavy))}, {sun({0, -1, 0})});
+    Settings settings = sliced_settings();
+    settings.march.min_transmittance = 0.1f;
+    const Ray far{{0.5f, 0.5f, 2}, {0, 0, -1}, 10};
+    const Scatter ended = marched(grid, settings, far), whole = marched(grid, sliced_settings(), far);
+    EXPECT_LT(ended.radiance.x, whole.radiance.x);
+    EXPECT_GT(ended.radiance.x, 0.85f * whole.radiance.x); // at most a tenth is left out
+    EXPECT_LT(ended.steps, whole.steps);
+}
+
+TEST(MarchSlices, PartsOfTheLightsAddUp) {
+    const Stage stage = busy_stage();
+    Stage dark = busy_stage();
+    dark.snapshot.lights.clear();
+    const std::vector<Ray> rays = busy_rays(16);
+    const Settings settings = settings_for(Quality::preview);
+    std::vector<Scatter> results(16);
+    std::vector<vec3> parts(32, vec3(0));
+    const std::vector<uint32_t> ids(16, 7);
+    find_mode("march").prepare(View{}, stage.snapshot, settings, nullptr)({rays, ids, parts, {}}, results);
+    const std::vector<Scatter> glow = marched(dark.snapshot, settings, rays);
+    for (size_t i = 0; i < 16; ++i)
+        EXPECT_NEAR((parts[2 * i] + parts[2 * i + 1] + glow[i].radiance).x / results[i].radiance.x, 1, 1e-5);
+}
+}
+}

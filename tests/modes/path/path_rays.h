@@ -1,0 +1,28 @@
+// The light of paths along many rays, each with random numbers of its own.
+#pragma once
+#include "integrate/ray_batch.h"
+
+#include <vector>
+
+namespace tyndall {
+struct Snapshot;
+}
+
+namespace tyndall::test {
+// Lines evenly spread over all lines through a ball, up to where they leave its neighbourhood: the mean of their light
+// is in proportion to what the ball sends out.
+std::vector<Ray> lines_through(vec3 center, float radius, int count);
+
+double mean_light(const std::vector<Scatter>& results);
+
+std::vector<Scatter> path_light(const Snapshot& snapshot, const std::vector<Ray>& rays, int orders);
+
+// Mean and standard error of independent values.
+struct Mean {
+    double value = 0, error = 0;
+};
+Mean mean_of(const std::vector<double>& values);
+
+// a - factor b, ray by ray.
+std::vector<double> difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b, double factor = 1);
+}

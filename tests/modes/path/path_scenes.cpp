@@ -1,0 +1,73 @@
+#include "modes/path/path_scenes.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall::test {
+Estimate estimate(const ScatterFunction& scatter, const Ray& ray, int samples,
+                  const std::function<vec3(const Scatter&)>& part) {
+    constexpr int batches = 64;
+    std::vector<dvec3> means(batches, dvec3(0));
+    parallel_for(batches, [&](int64_t b) {
+        for (int first = 0; first < samples; first += 16) {
+            const size_t count = static_cast<size_t>(std::min(16, samples - first));
+            Ray rays[16];
+            uint32_t ids[16];
+            SamplePlace places[16];
+            Scatter results[16];
+            for (size_t i = 0; i < count; ++i) {
+                const uint32_t index = static_cast<uint32_t>(first) + static_cast<uint32_t>(i);
+                rays[i] = ray;
+                ids[i] = hash(index, static_cast<uint32_t>(b), 77u);
+                places[i] = {hash(static_cast<uint32_t>(b), 78u), index};
+            }
+            scatter({{rays, count}, {ids, count}, {}, {}, {places, count}}, {results, count});
+            for (size_t i = 0; i < count; ++i) means[b] += dvec3(part(results[i])) / static_cast<double>(samples);
+        }
+    });
+    Estimate result;
+    for (const dvec3& mean : means) result.value += mean / static_cast<double>(batches);
+    for (const dvec3& mean : means) result.error += (mean - result.value) * (mean - result.value);
+    result.error = glm::sqrt(result.error / static_cast<double>(batches * (batches - 1)));
+    return result;
+}
+
+vec3 all_light(const Scatter& s) { return s.radiance + s.surface; }
+
+vec3 fog_light(const Scatter& s) { return s.radiance; }
+
+vec3 surface_light(const Scatter& s) { return s.surface; }
+
+ScatterFunction path_mode(const Snapshot& snapshot, int orders) {
+    Settings settings;
+    settings.path.orders = orders;
+    return find_mode("path").prepare(View{}, snapshot, settings, nullptr);
+}
+
+Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders) {
+    return estimate(path_mode(snapshot, orders), ray, samples, all_light);
+}
+
+void add_surfaces(const Scene& scene, Snapshot& snapshot) {
+    snapshot.scene = &scene;
+    snapshot.occluders = Occluders::make(scene, 0, nullptr);
+    snapshot.bounds.grow(snapshot.occluders->bounds());
+}
+
+Material lambert(vec3 base_color, vec3 emission) {
+    Material material;
+    material.base_color = base_color, material.emission = emission;
+    return material;
+}
+
+Mesh floor_at(float height, float half, int material) {
+    return quad({-half, height, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, material);
+}
+}

@@ -1,0 +1,325 @@
+// Fog between shadow volumes, against closed forms and the deterministic reference.
+#include "integrate/lit_fog.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/run_mode.h"
+#include "support/tiny_scenes.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include "base/parallel.h"
+#include "base/random.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+namespace tyndall::test {
+namespace {
+struct Stage {
+    std::shared_ptr<Scene> scene = std::make_shared<Scene>();
+    Snapshot snapshot;
+};
+
+Mesh box_between(vec3 low, vec3 high) {
+    Mesh mesh;
+    for (int i = 0; i < 8; ++i)
+        mesh.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
+    for (const glm::uvec4 s : {glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6), glm::uvec4(0, 1, 5, 4),
+                               glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5)})
+        mesh.triangles.push_back({s.x, s.y, s.z}), mesh.triangles.push_back({s.x, s.z, s.w});
+    return mesh;
+}
+
+Mesh sheet(vec3 corner, vec3 a, vec3 b) {
+    Mesh mesh;
+    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient = vec3(0)) {
+    Stage stage;
+    for (Mesh& mesh : meshes) {
+        stage.scene->meshes.push_back(std::move(mesh));
+        stage.scene->instances.push_back({-1, static_cast<int>(stage.scene->meshes.size()) - 1});
+    }
+    stage.snapshot = scene_of(std::move(media), std::move(lights), ambient);
+    stage.snapshot.scene = stage.scene.get();
+    stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
+    stage.snapshot.bounds.grow(stage.snapshot.occluders->bounds());
+    return stage;
+}
+
+Light spot_light(vec3 position, vec3 direction, float candela) {
+    Light light = point_light(position, candela);
+    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
+    light.inner_cone = 0.25f, light.outer_cone = 0.5f;
+    return light;
+}
+
+// The rays of a small picture, packet by packet, as the renderer asks.
+struct Picture {
+    View view;
+    std::vector<Ray> rays;
+    std::vector<vec2> positions;
+};
+
+Picture picture_of(const Camera& camera, const Snapshot& snapshot, float t_max) {
+    Picture picture;
+    picture.view.camera = camera, picture.view.size = {32, 32}, picture.view.filter = PixelFilter::center;
+    for (int tile = 0; tile < 64; ++tile) {
+        for (int i = 0; i < 16; ++i) {
+            const vec2 p(4 * (tile % 8) + i % 4 + 0.5f, 4 * (tile / 8) + i / 4 + 0.5f);
+            picture.positions.push_back(p);
+            picture.rays.push_back(camera_ray(camera, picture.view.size, p));
+        }
+        Hits hits;
+        hits.instance.fill(-1);
+        const std::span<Ray> last = std::span(picture.rays).last(16);
+        if (snapshot.occluders) snapshot.occluders->closest(last, 0, hits);
+        for (int i = 0; i < 16; ++i) last[i].t_max = hits.instance[i] < 0 ? t_max : std::min(t_max, hits.t[i]);
+    }
+    return picture;
+}
+
+std::vector<Scatter> drawn(std::string_view mode, const Picture& picture, const Snapshot& snapshot,
+                           const Settings& settings) {
+    const ScatterFunction scatter = find_mode(mode).prepare(picture.view, snapshot, settings, nullptr);
+    std::vector<Scatter> results(picture.rays.size());
+    const std::vector<uint32_t> ids(16, 7);
+    for (size_t first = 0; first < results.size(); first += 16)
+        scatter({std::span(picture.rays).subspan(first, 16),
+                 ids,
+                 {},
+                 {},
+                 {},
+                 {},
+                 std::span(picture.positions).subspan(first, 16)},
+                std::span(results).subspan(first, 16));
+    return results;
+}
+
+double mean_of(const std::vector<Scatter>& results) {
+    double sum = 0;
+    for (const Scatter& result : results) sum += (result.radiance.x + result.radiance.y + result.radiance.z) / 3;
+    return sum / static_cast<double>(results.size());
+}
+
+double rmse(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) {
+        const dvec3 d = dvec3(a[i].radiance) - dvec3(b[i].radiance);
+        sum += glm::dot(d, d) / 3;
+    }
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+const Box room{vec3(-3, 0, -3), vec3(3, 4, 3)};
+std::vector<Mesh> furniture() {
+    return {box_between({-1, 1, -1}, {-0.2f, 1.6f, 0.4f}), box_between({0.4f, 2, -0.5f}, {1.2f, 2.1f, 0.9f}),
+            sheet({-2, 2.6f, -0.2f}, {1.7f, 0, 0.3f}, {0, 0.4f, 1}),
+            sheet({0.2f, 0.5f, -2}, {0, 1.5f, 0}, {1, 0, 0.4f})};
+}
+std::vector<Light> all_lights() {
+    return {sun({0.4f, -1, 0.2f}, 2), point_light({0.3f, 2.8f, 0.2f}, 3),
+            spot_light({-1, 3.5f, 1.5f}, {0.3f, -1, -0.5f}, 9)};
+}
+const Camera cameras[] = {look_at({2.5f, 1.5f, 5}, {0, 1.5f, 0}, {0, 1, 0}, 0.9f),
+                          look_at({-0.5f, 0.6f, -0.2f}, {1, 1.2f, 1}, {0, 1, 0}, 1.3f)}; // the second in a shadow
+
+TEST(ShadowVolume, SunUnderARoofByHand) {
+    // Without light-side dimming (the sun is level with the roof's end of the fog) half the path is lit.
+    const Box thin{vec3(-4, -0.001f, -1), vec3(4, 0.001f, 1)};
+    const Stage stage =
+        stage_of({even_fog(0.5f, thin)}, {sun({0, -1, 0}, 3)}, {sheet({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
+    Picture picture;
+    picture.rays.assign(16, {{-4, 0, 0}, {1, 0, 0}, 8});
+    picture.view.camera = look_at({-4, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1);
+    picture.positions.assign(16, vec2(320, 180));
+    const Scatter result = drawn("shadow-volume", picture, stage.snapshot, {})[3];
+    const double dimmed = std::exp(-0.5 * 0.001); // through half the slab
+    EXPECT_NEAR(result.radiance.x, 3 * dimmed * (1 - std::exp(-0.5 * 4)) / (4 * std::numbers::pi), 1e-6);
+    EXPECT_NEAR(result.transmittance, std::exp(-0.5 * 8), 1e-7);
+    EXPECT_EQ(result.validity, 1);
+}
+
+TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
+    for (const Light& light : all_lights()) {
+        const Stage stage =
+            stage_of({even_fog(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
+        for (const Camera& camera : cameras) {
+            const Picture picture = picture_of(camera, stage.snapshot, 20);
+            const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
+            const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, {});
+            EXPECT_GT(mean_of(expected), 1e-4);
+            EXPECT_LT(rmse(found, expected) / mean_of(expected), 1e-4) << light.name;
+            for (size_t i = 0; i < found.size(); ++i) {
+                EXPECT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5);
+                EXPECT_GE(found[i].radiance.x, 0);
+            }
+        }
+    }
+}
+
+TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
+    Medium height = even_fog(0.4f, room);
+    height.kind = DensityKind::height, height.height_base = 0.5f, height.height_falloff = 0.8f;
+    height.optics.emission = vec3(0.02f, 0.01f, 0);
+    Medium other = even_fog(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
+    other.optics.albedo = vec3(0.9f, 0.5f, 0.2f);
+    const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
+    const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
+    const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
+    EXPECT_LT(rmse(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 2e-3);
+}
+
+TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
+    const Stage stage = stage_of({even_fog(0.3f, room)}, all_lights(), furniture());
+    Camera flat = cameras[0];
+    flat.ortho_height = 4;
+    const Picture picture = picture_of(flat, stage.snapshot, 20);
+    const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
+    EXPECT_LT(rmse(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 1e-3);
+
+    // The same stretch, begun anywhere on the line from the camera; and rays of no camera at all.
+    for (const float skip : {0.5f, 2.5f, 4.0f}) {
+        Picture behind = picture_of(cameras[0], stage.snapshot, 20);
+        for (Ray& ray : behind.rays) ray = {ray.at(skip), ray.direction, std::max(ray.t_max - skip, 0.0f)};
+        const std::vector<Scatter> rest = drawn("march", behind, stage.snapshot, exact_settings());
+        EXPECT_LT(rmse(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
+        behind.view.camera.position += vec3(0.3f, 0.1f, 0);
+        EXPECT_LT(rmse(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
+    }
+}
+
+TEST(ShadowVolume, SampledFogApproachesTheReference) {
+    const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 4 * p.z); };
+    const Stage stage =
+        stage_of({grid_fog(2, unit_grid(32, wavy))}, {sun({0.4f, -1, 0.2f}, 2), point_light({0.4f, 1.3f, 0.6f}, 1)},
+                 {box_between({0.2f, 0.7f, 0.2f}, {0.5f, 0.8f, 0.6f})});
+    const Picture picture =
+        picture_of(look_at({0.5f, 0.5f, 2.5f}, {0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.6f), stage.snapshot, 9);
+    const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
+    double before = 1;
+    for (const char* steps : {"shadow_volume.steps=12", "shadow_volume.steps=48", "shadow_volume.steps=192"}) {
+        Settings settings;
+        apply_setting(settings, steps);
+        apply_setting(settings, "shadow_volume.light_resolution=128");
+        const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, settings);
+        const double error = rmse(found, expected) / mean_of(expected);
+        EXPECT_LT(error, before);
+        before = error;
+        EXPECT_EQ(found[500].validity, 1);
+    }
+    EXPECT_LT(before, 0.01); // what the light's grid of 128 cells leaves
+    Settings even;
+    even.shadow_volume.fog = ShadowFog::even;
+    EXPECT_EQ(drawn("shadow-volume", picture, stage.snapshot, even)[500].validity, 0);
+    EXPECT_TRUE(std::ranges::any_of(find_mode("shadow-volume").limits(picture.view, stage.snapshot, even),
+                                    [](const Limit& limit) { return limit.severity == Severity::wrong; }));
+}
+
+TEST(ShadowVolume, EndlessFogAndFarEnds) {
+    const Stage stage = stage_of({even_fog(0.2f)}, {sun({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
+    Picture picture = picture_of(cameras[0], stage.snapshot, 1e6f);
+    for (const Scatter& result : drawn("shadow-volume", picture, stage.snapshot, {})) {
+        EXPECT_TRUE(is_finite(result.radiance));
+        EXPECT_GE(result.radiance.x, 0);
+    }
+    // Closed form: an isotropic sun that nothing dims.
+    Light light = sun({0, 0, -1}, 2);
+    Medium fog = even_fog(1e-4f);
+    fog.bounds = fog.world_bounds = {vec3(-1e6f, -1e6f, -1), vec3(1e6f, 1e6f, 1)};
+    Picture level;
+    level.view.camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
+    level.rays.assign(16, {{0, 0, 0}, {1, 0, 0}, 1e6f}), level.positions.assign(16, vec2(320, 180));
+    const Scatter result = drawn("shadow-volume", level, scene_of({fog}, {light}), {})[0];
+    EXPECT_NEAR(result.radiance.x * 4 * std::numbers::pi / 2, 1 - std::exp(-1e-4 * 1e6), 2e-4);
+}
+
+TEST(ShadowVolume, ShellsAreALookAndSaySo) {
+    const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture());
+    const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
+    Settings shells, brighter;
+    shells.shadow_volume.draw = brighter.shadow_volume.draw = ShadowDraw::shells;
+    brighter.shadow_volume.shell_intensity *= 2;
+    const std::vector<Scatter> one = drawn("shadow-volume", picture, stage.snapshot, shells);
+    const std::vector<Scatter> two = drawn("shadow-volume", picture, stage.snapshot, brighter);
+    EXPECT_GT(mean_of(one), 0);
+    EXPECT_NEAR(mean_of(two) / mean_of(one), 2, 1e-5);
+    EXPECT_EQ(one[100].validity, 0);
+    const auto limits = find_mode("shadow-volume").limits(picture.view, stage.snapshot, shells);
+    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "shadow_volume.draw"; }));
+    shells.shadow_volume.shell_length = 1e-3f; // nothing shows that near its occluder
+    EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
+}
+
+TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
+    const vec3 ambient(0.1f, 0.2f, 0.3f);
+    const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
+    const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
+    Settings shells, measured;
+    shells.shadow_volume.draw = measured.shadow_volume.draw = ShadowDraw::shells;
+    const Box& bounds = stage.snapshot.bounds;
+    measured.shadow_volume.shell_length = 0.5f * glm::distance(bounds.low, bounds.high);
+    const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, shells);
+    EXPECT_EQ(rmse(found, drawn("shadow-volume", picture, stage.snapshot, measured)), 0);
+
+    shells.shadow_volume.shell_intensity = 0;
+    const std::vector<Scatter> dark = drawn("shadow-volume", picture, stage.snapshot, shells);
+    for (size_t i = 0; i < dark.size(); ++i) // albedo 1: what the fog takes away, of the ambient light
+        EXPECT_NEAR(dark[i].radiance.z, ambient.z * (1 - dark[i].transmittance), 1e-6f);
+    EXPECT_GT(mean_of(found), mean_of(dark));
+}
+
+TEST(ShadowVolume, LimitsNameSoftLightsAndAlpha) {
+    Light soft = sun({0, -1, 0});
+    soft.angle = 0.01f;
+    Stage stage = stage_of({even_fog(0.1f, room)}, {soft}, furniture());
+    const auto where = [&](const Snapshot& snapshot, std::string_view name) {
+        const auto limits = find_mode("shadow-volume").limits(View{}, snapshot, {});
+        return std::ranges::any_of(limits, [&](const Limit& limit) { return limit.where == name; });
+    };
+    EXPECT_TRUE(where(stage.snapshot, "light sun"));
+    EXPECT_FALSE(where(stage.snapshot, "occluders"));
+    Material glass;
+    glass.alpha_mode = AlphaMode::blend, glass.alpha = 0.5f;
+    stage.scene->materials.push_back(glass), stage.scene->meshes[0].material = 0;
+    stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
+    EXPECT_TRUE(where(stage.snapshot, "occluders"));
+}
+
+TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
+    const Stage stage = stage_of({even_fog(0.3f, room)}, all_lights(), furniture());
+    const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
+    const std::vector<Scatter> alone = drawn("shadow-volume", picture, stage.snapshot, {});
+    const ScatterFunction scatter = find_mode("shadow-volume").prepare(picture.view, stage.snapshot, {}, nullptr);
+    std::vector<Scatter> together(alone.size());
+    std::vector<vec3> parts(3 * alone.size(), vec3(0));
+    const std::vector<uint32_t> ids(16, 7);
+    parallel_for(64, [&](int64_t p) {
+        const size_t first = 16 * static_cast<size_t>(p);
+        scatter({std::span(picture.rays).subspan(first, 16),
+                 ids,
+                 std::span(parts).subspan(3 * first, 48),
+                 {},
+                 {},
+                 {},
+                 std::span(picture.positions).subspan(first, 16)},
+                std::span(together).subspan(first, 16));
+    });
+    for (size_t i = 0; i < alone.size(); ++i) {
+        EXPECT_EQ(alone[i].radiance, together[i].radiance);
+        const vec3 sum = parts[3 * i] + parts[3 * i + 1] + parts[3 * i + 2];
+        EXPECT_NEAR(sum.x, alone[i].radiance.x, 1e-6f * (1 + sum.x));
+    }
+}
+}
+}

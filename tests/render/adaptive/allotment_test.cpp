@@ -1,0 +1,142 @@
+// Samples go where pictures spread: by hand, then in pictures that are rendered until they are right.
+#include "base/random.h"
+#include "integrate/ray_batch.h"
+#include "modes/mode.h"
+#include "render/adaptive/allotment.h"
+#include "render/adaptive/to_target.h"
+#include "render/frame/noise_fixtures.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+// Two tiles side by side, of mean 1 and of these variances.
+Layers two_tiles(float left, float right) {
+    Layers layers;
+    layers.display = layers.size = {8, 4};
+    layers.color = layers.inscatter = Image<vec3>(layers.size, vec3(1));
+    layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 8; ++x) layers.variance.at(x, y) = vec3(x < 4 ? left : right);
+    return layers;
+}
+
+constexpr double endless = 1e12;
+
+TEST(Allotment, FollowsTheStandardDeviation) {
+    // (1 / n + 9 / 3n) / 2 = 2 / n = 0.02: n = 100.
+    const Allotment allotment = allot(two_tiles(1, 9), 1, {0.02, endless}, 1, 2);
+    EXPECT_NEAR(allotment.samples.at(0, 0), 100, 1e-3);
+    EXPECT_NEAR(allotment.samples.at(1, 0), 300, 1e-3);
+    EXPECT_NEAR(allotment.rays, 16 * 400, 0.02);
+    EXPECT_NEAR(allotment.squared_error, 0.02, 1e-6);
+}
+
+TEST(Allotment, KnowsHowManySamplesTheVariancesStandFor) {
+    const Allotment allotment = allot(two_tiles(1, 9), 5, {0.02, endless}, 1, 2);
+    EXPECT_NEAR(allotment.samples.at(1, 0), 1500, 1e-2);
+}
+
+TEST(Allotment, TakesTheWorseOfColorAndFog) {
+    Layers layers = two_tiles(1, 1);
+    for (vec3& value : layers.inscatter.pixels) value = vec3(0.5f); // of its squared mean, four times the variance
+    layers.inscatter_variance = layers.variance;
+    EXPECT_NEAR(allot(layers, 1, {0.02, endless}, 1, 2).samples.at(0, 0), 200, 1e-2);
+}
+
+TEST(Allotment, StaysWithinTheRaysThereAre) {
+    const Allotment allotment = allot(two_tiles(1, 9), 1, {0.02, 16 * 40}, 1, 2);
+    EXPECT_NEAR(allotment.rays, 16 * 40, 1e-2);
+    EXPECT_NEAR(allotment.squared_error, 0.2, 1e-5);
+}
+
+TEST(Allotment, GoesByThePowerOfTheSamples) {
+    // Samples as variance^(1 / 2.5).
+    const Allotment allotment = allot(two_tiles(1, 9), 1, {0.02, endless}, 1.5, 2);
+    EXPECT_NEAR(allotment.samples.at(1, 0) / allotment.samples.at(0, 0), std::pow(9, 0.4), 1e-3);
+    EXPECT_NEAR(allotment.squared_error, 0.02, 1e-6);
+}
+
+TEST(Allotment, DoesNotTrustTilesThatShowNoNoise) {
+    const Allotment beside = allot(two_tiles(0, 16), 1, {0.02, endless}, 1, 2);
+    EXPECT_NEAR(beside.samples.at(0, 0) / beside.samples.at(1, 0), 0.25, 1e-3);
+    const Allotment least = allot(two_tiles(0, 0), 1, {0.02, endless}, 1, 6);
+    EXPECT_EQ(least.samples.at(0, 0), 6);
+}
+
+TEST(Allotment, BecomesFactors) {
+    const Allotment allotment = allot(two_tiles(1, 9), 1, {0.0201, endless}, 1, 2);
+    const auto whole = factors_of(allotment, 1, 2), half = factors_of(allotment, 0.5, 2),
+               none = factors_of(allotment, 0, 2);
+    EXPECT_EQ(whole->at({0, 0}), 50);
+    EXPECT_EQ(whole->at({1, 0}), 150);
+    EXPECT_EQ(half->at({1, 0}), 75);
+    EXPECT_EQ(none->at({1, 0}), 1);
+
+    View view = plain_view({8, 4}, 2);
+    view.allotted = whole;
+    EXPECT_EQ(samples_of(view, {7, 3}), 300);
+}
+
+// Grey noise in the upper left corner of four tiles, as prepare_random; a constant elsewhere.
+constexpr ivec2 size(64, 64);
+ScatterFunction prepare_noisy_corner(const View&, const Snapshot&, const Settings&, History*) {
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        for (size_t i = 0; i < results.size(); ++i) {
+            const bool noisy = batch.positions[i].x < 8 && batch.positions[i].y < 8;
+            results[i] = {vec3(noisy ? to_unit(batch.ids[i]) : 0.5f), 1, 1, 1};
+        }
+    };
+}
+
+struct Result {
+    Layers layers;
+    FrameStats stats;
+};
+
+Result to_target(double target, uint32_t seed) {
+    static const Scene scene;
+    View view = plain_view(size, 4);
+    view.seed = seed;
+    Result result;
+    result.layers = render_to_target(own_mode(prepare_noisy_corner), view, snapshot_of(scene), Settings{},
+                                     {target, 0, Quality::preview, {}}, {}, result.stats);
+    return result;
+}
+
+TEST(Allotment, NoiseInACornerCostsRaysThereOnly) {
+    // With all pixels alike: variance 1/12 over 64 of 4096 pixels, mean 1/2.
+    const double target = 0.002,
+                 alike = random_variance * 64 / 4096 / std::pow(target * random_mean, 2); // 1302 samples
+    int kept = 0;
+    double mean = 0, squares = 0;
+    constexpr int pictures = 20;
+    for (uint32_t seed = 0; seed < pictures; ++seed) {
+        const Result result = to_target(target, seed);
+        EXPECT_LE(result.stats.noise->bound, target);
+        EXPECT_LT(static_cast<double>(result.stats.camera_rays), 0.25 * alike * 4096);
+        double square = 0, corner = 0;
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x) {
+                const double off = result.layers.color.at(x, y).x - random_mean;
+                square += off * off / 4096;
+                if (x < 8 && y < 8) corner += off / 64;
+            }
+        kept += std::sqrt(square) / random_mean <= target;
+        mean += corner / pictures, squares += corner * corner / pictures;
+    }
+    EXPECT_GE(kept, 19);
+    EXPECT_LT(std::abs(mean), 4 * std::sqrt(squares / pictures)) << "what decides where rays go must not bias them";
+}
+
+TEST(Allotment, SaysHowManySamplesThereAreOnTheAverage) {
+    const Result result = to_target(0.002, 3);
+    EXPECT_LT(result.stats.samples, 300); // of 1302 if all pixels were alike
+    EXPECT_GE(result.stats.camera_rays, 4096u * static_cast<uint64_t>(result.stats.samples));
+}
+}
+}

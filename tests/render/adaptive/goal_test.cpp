@@ -1,0 +1,244 @@
+// Errors promised before they are known, and times kept by a clock of the test's own.
+#include "base/parallel.h"
+#include "base/random.h"
+#include "integrate/ray_batch.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "render/frame/noise_fixtures.h"
+#include "scene/camera.h"
+#include "scene/file/scene_file.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+// A moment of an example scene at a small size, and its exact picture as two independent halves.
+struct Example {
+    Scene scene;
+    Snapshot snapshot;
+    View view;
+    Settings settings = settings_for(Quality::preview);
+
+    explicit Example(const std::string& name)
+        : scene(load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / "scenes" / (name + ".json"))) {
+        const Moment moment = moment_of(scene, scene.first_frame);
+        snapshot = make_snapshot(scene, moment, nullptr, MissingFrame::error);
+        view.camera = camera_at(scene, find_camera(scene, ""), moment.seconds);
+        view.size = {64, 36}, view.pixel_samples = 4;
+    }
+};
+
+struct Halves {
+    Image<vec3> color_a, color_b, fog_a, fog_b;
+};
+
+Layers exact_picture(const Example& example, uint32_t seed, int samples) {
+    View view = example.view;
+    view.pixel_samples = samples, view.seed = seed;
+    FrameStats stats;
+    return render_frame(find_mode("march"), view, example.snapshot, truth_of(example.settings), {}, stats);
+}
+
+Halves exact_halves(const Example& example, int samples) {
+    const Layers a = exact_picture(example, 77, samples), b = exact_picture(example, 78, samples);
+    return {a.color, b.color, a.inscatter, b.inscatter};
+}
+
+// rmse over mean; the noise of the halves falls out of the product of their differences.
+double relative_rmse(const Image<vec3>& image, const Image<vec3>& a, const Image<vec3>& b) {
+    double product = 0, mean = 0;
+    for (size_t i = 0; i < image.pixels.size(); ++i) {
+        const dvec3 own(image.pixels[i]), one(a.pixels[i]), other(b.pixels[i]);
+        product += glm::dot(own - one, own - other) / 3;
+        mean += (one.x + one.y + one.z + other.x + other.y + other.z) / 6;
+    }
+    const double count = static_cast<double>(image.pixels.size());
+    return std::sqrt(std::max(product / count, 0.0)) / (mean / count);
+}
+
+double true_error(const Layers& layers, const Halves& truth) {
+    return std::max(relative_rmse(layers.color, truth.color_a, truth.color_b),
+                    relative_rmse(layers.inscatter, truth.fog_a, truth.fog_b));
+}
+
+struct Result {
+    Layers layers;
+    FrameStats stats;
+};
+
+Result to_goal(const Example& example, const Goal& goal) {
+    Result result;
+    result.layers =
+        render_to_target(find_mode("march"), example.view, example.snapshot, example.settings, goal, {}, result.stats);
+    return result;
+}
+
+void keeps_its_promise(const std::string& name, int truth_samples, PixelFilter filter) {
+    Example example(name);
+    example.view.filter = filter;
+    const Halves truth = exact_halves(example, truth_samples);
+    double finest = infinity;
+    for (const double target : {0.1, 0.03}) {
+        const Result result = to_goal(example, {target, 0, Quality::preview, {}});
+        EXPECT_LE(result.stats.error()->bound, target);
+        EXPECT_LE(result.stats.integrator->error.bound, integrator_share * target);
+        EXPECT_LE(true_error(result.layers, truth), target) << name << " " << result.stats.integrator->candidate;
+        EXPECT_LE(result.stats.error()->error, finest);
+        finest = result.stats.error()->error;
+    }
+}
+}
+
+// At the centres of pixels: elsewhere in them bright edges and lamps make short references noisier than the targets.
+TEST(Goal, MarchKeepsItsPromiseAtTheCentersOfPixels) {
+    keeps_its_promise("window", 4, PixelFilter::center);
+    keeps_its_promise("spotlight", 2, PixelFilter::center);
+}
+TEST(Goal, NightlyMarchKeepsItsPromiseInTheWindow) { keeps_its_promise("window", 256, PixelFilter::blackman_harris); }
+TEST(Goal, NightlyMarchKeepsItsPromiseBetweenThePillars) {
+    keeps_its_promise("pillars", 64, PixelFilter::blackman_harris);
+}
+
+TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
+    const Settings settings = settings_for(Quality::preview);
+    const std::vector<Candidate> all = candidates_of(find_mode("march"), settings, Quality::preview);
+    ASSERT_GE(all.size(), 4u);
+    for (size_t i = 1; i < all.size(); ++i) {
+        const MarchSettings &coarse = all[i - 1].settings.march, &fine = all[i].settings.march;
+        if (fine.visibility == Visibility::exact) continue;
+        EXPECT_LE(fine.step_voxels, coarse.step_voxels) << all[i].name;
+        EXPECT_LE(fine.step_depth, coarse.step_depth) << all[i].name;
+        EXPECT_LE(fine.step_share, coarse.step_share) << all[i].name;
+        EXPECT_GE(fine.light_resolution, coarse.light_resolution) << all[i].name;
+        EXPECT_GE(fine.nodes, coarse.nodes) << all[i].name;
+    }
+    for (const SettingRow& row : setting_rows())
+        EXPECT_EQ(row.get(all.back().settings), row.get(truth_of(settings))) << row.name;
+}
+
+// Steps are what candidates cost on the same rays, but for the last, whose are of another kind.
+TEST(Goal, CandidatesCostMoreAndMore) {
+    Example example("spotlight");
+    apply_setting(example.settings, "march.light_resolution=16"); // for speed: steps do not depend on it
+    View view = example.view;
+    view.size = {16, 9}, view.pixel_samples = 1;
+    uint64_t before = 0;
+    std::vector<Candidate> all = candidates_of(find_mode("march"), example.settings, Quality::preview);
+    all.pop_back();
+    for (const Candidate& candidate : all) {
+        FrameStats stats;
+        render_frame(find_mode("march"), view, example.snapshot, candidate.settings, {}, stats);
+        EXPECT_GE(stats.steps, before) << candidate.name;
+        before = stats.steps;
+    }
+}
+
+TEST(Goal, RowsThatAreSetStay) {
+    Settings settings = settings_for(Quality::preview);
+    apply_setting(settings, "march.light_resolution=20");
+    apply_setting(settings, "march.ambient=off");
+    for (const Candidate& candidate : candidates_of(find_mode("march"), settings, Quality::preview)) {
+        EXPECT_EQ(candidate.settings.march.light_resolution, 20);
+        EXPECT_FALSE(candidate.settings.march.ambient);
+    }
+    EXPECT_EQ(truth_of(settings).march.light, LightTransmittance::marched);
+    EXPECT_FALSE(truth_of(settings).march.ambient);
+}
+
+TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {
+    Example example("window");
+    apply_setting(example.settings, "march.visibility=off");
+    const Result result = to_goal(example, {0.05, 0, Quality::preview, {}});
+    EXPECT_GT(result.stats.integrator->error.error, 0.05);
+    EXPECT_GT(result.stats.error()->bound, 0.05);
+    EXPECT_LT(result.stats.samples, 1000) << "noise far below an error that stays is of no use";
+    const Halves truth = exact_halves(example, 2);
+    EXPECT_NEAR(true_error(result.layers, truth) / result.stats.error()->error, 1, 0.1);
+}
+
+TEST(Goal, PicturesOfATargetHaveTheSameBitsForAnyThreadCount) {
+    const Example example("window");
+    set_thread_count(1);
+    const Result one = to_goal(example, {0.1, 0, Quality::preview, {}});
+    set_thread_count(2);
+    const Result two = to_goal(example, {0.1, 0, Quality::preview, {}});
+    set_thread_count(0);
+    EXPECT_TRUE(same_bits(one.layers.color, two.layers.color));
+    EXPECT_EQ(one.stats.error()->bound, two.stats.error()->bound);
+    EXPECT_EQ(one.stats.integrator->candidate, two.stats.integrator->candidate);
+}
+
+namespace {
+// A microsecond for each ray, a thousand to prepare.
+std::atomic<int64_t> microseconds = 0;
+double counted_seconds() { return 1e-6 * static_cast<double>(microseconds); }
+
+ScatterFunction prepare_counted(const View&, const Snapshot&, const Settings&, History*) {
+    microseconds += 1000;
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        microseconds += static_cast<int64_t>(batch.rays.size());
+        for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(to_unit(batch.ids[i])), 1, 1, 1};
+    };
+}
+
+FrameStats counted(double error, double seconds) {
+    static const Scene scene;
+    FrameStats stats;
+    const Goal goal{error, seconds, Quality::preview, counted_seconds};
+    render_to_target(own_mode(prepare_counted), plain_view({16, 16}, 4), snapshot_of(scene), {}, goal, {}, stats);
+    return stats;
+}
+constexpr double sample_seconds = 256e-6;
+}
+
+TEST(Goal, TimeIsKept) {
+    for (const double seconds : {0.005, 0.02, 0.1, 0.5}) {
+        const FrameStats stats = counted(0, seconds);
+        EXPECT_LE(stats.goal_seconds, seconds);
+        EXPECT_GE(stats.goal_seconds, std::min(0.8 * seconds, seconds - 2 * sample_seconds)) << stats.samples;
+        const double error = std::sqrt(random_variance / stats.samples) / random_mean;
+        EXPECT_NEAR(stats.noise->error / error, 1, 0.3) << stats.samples;
+    }
+}
+
+TEST(Goal, OneSampleIsTheLeast) {
+    const FrameStats stats = counted(0, 1e-6);
+    EXPECT_EQ(stats.samples, 1);
+    const double error = std::sqrt(random_variance) / random_mean;
+    EXPECT_NEAR(stats.noise->error / error, 1, 0.15);
+    EXPECT_GT(stats.noise->bound, stats.noise->error);
+}
+
+TEST(Goal, WhatComesFirstEndsIt) {
+    const FrameStats reached = counted(0.05, 10);
+    EXPECT_LE(reached.noise->bound, 0.05);
+    EXPECT_LT(reached.goal_seconds, 1);
+    const FrameStats stopped = counted(0.005, 0.05);
+    EXPECT_GT(stopped.noise->bound, 0.005);
+    EXPECT_LE(stopped.goal_seconds, 0.05);
+}
+
+// A clock that ticks whenever it is looked at: there is no time for more than one sample.
+TEST(Goal, MarchTakesOneSampleOfACandidateWhateverTheTime) {
+    const Example example("window");
+    double now = 0;
+    const Result result = to_goal(example, {0, 1e-3, Quality::preview, [&now] { return now += 0.5; }});
+    ASSERT_TRUE(result.stats.integrator);
+    EXPECT_FALSE(result.stats.integrator->candidate.empty());
+    EXPECT_EQ(result.stats.samples, 1);
+    const double error = true_error(result.layers, exact_halves(example, 4));
+    EXPECT_NEAR(error / result.stats.error()->error, 1, 0.35);
+}
+
+TEST(Goal, MarchStopsAtTheErrorWhereThereIsTimeLeft) {
+    const Example example("window");
+    double now = 0;
+    const Result timed = to_goal(example, {0.2, 1e6, Quality::preview, [&now] { return now += 0.5; }});
+    EXPECT_LE(timed.stats.error()->bound, 0.2);
+    EXPECT_LT(timed.stats.goal_seconds, 1000);
+    EXPECT_LT(timed.stats.samples, 1000);
+}
+}

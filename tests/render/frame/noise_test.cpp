@@ -1,0 +1,185 @@
+#include "base/random.h"
+#include "integrate/ray_batch.h"
+#include "modes/mode.h"
+#include "render/frame/noise.h"
+#include "render/frame/noise_fixtures.h"
+#include "render/frame/pixel_sum.h"
+#include "scene/light.h"
+#include "scene/light_kind.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+TEST(Noise, RunningMeanMatchesHandComputation) {
+    RunningMean mean;
+    mean.add(vec3(1, 0, 2));
+    EXPECT_EQ(mean.variance(), vec3(0));
+    for (const float value : {3.0f, 5.0f, 7.0f}) mean.add(vec3(value, 0, 2));
+    EXPECT_DOUBLE_EQ(mean.mean.x, 4);
+    // Deviations -3, -1, 1, 3: their squares sum to 20, over 4·3.
+    EXPECT_FLOAT_EQ(mean.variance().x, 20.0f / 12);
+    EXPECT_EQ(mean.variance().y, 0);
+    EXPECT_EQ(mean.variance().z, 0);
+}
+
+namespace {
+Layers even_layers(ivec2 size, float color, float variance, float fog, float fog_variance) {
+    Layers layers;
+    layers.color = Image<vec3>(size, vec3(color)), layers.variance = Image<vec3>(size, vec3(variance));
+    layers.inscatter = Image<vec3>(size, vec3(fog)), layers.inscatter_variance = Image<vec3>(size, vec3(fog_variance));
+    return layers;
+}
+}
+
+TEST(Noise, IsTheStandardErrorOverTheMeanOfTheWorseLayer) {
+    Noise noise = noise_of(even_layers({32, 32}, 2, 0.04f, 1, 0.0025f), 63);
+    EXPECT_NEAR(noise.error, 0.1, 1e-7);
+    // No tile differs: the bound is that of the variance of normal numbers.
+    EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / (63 * 1024))), 1e-7);
+    noise = noise_of(even_layers({32, 32}, 2, 0.04f, 1, 0.09f), 63);
+    EXPECT_NEAR(noise.error, 0.3, 1e-7);
+    noise = noise_of(even_layers({5, 3}, 2, 0.04f, 0, 0), 63);
+    EXPECT_NEAR(noise.error, 0.1, 1e-7);
+    noise = noise_of(even_layers({1, 1}, 2, 0.04f, 0, 0), 63);
+    EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / 63)), 1e-7);
+    noise = noise_of(even_layers({4, 4}, 0, 0, 0, 0), 63);
+    EXPECT_EQ(noise.error, 0);
+    EXPECT_EQ(noise.bound, 0);
+    EXPECT_TRUE(std::isinf(noise_of(even_layers({4, 4}, 0, 1, 0, 0), 63).error));
+}
+
+TEST(Noise, IsLessSureWhereTilesDiffer) {
+    // 16 tiles of 8×8 pixels, half with variance 1 and half with 3: mean 2, standard error √(16/15)/√16.
+    Layers layers = even_layers({32, 32}, 1, 1, 0, 0);
+    for (int y = 16; y < 32; ++y)
+        for (int x = 0; x < 32; ++x) layers.variance.at(x, y) = vec3(3);
+    const Noise noise = noise_of(layers, 63);
+    EXPECT_NEAR(noise.error, std::sqrt(2.0), 1e-6);
+    EXPECT_NEAR(noise.bound, std::sqrt(2 + 1.96 * std::sqrt(16.0 / 15) / 4), 1e-6);
+}
+
+TEST(Noise, VarianceIsThatOfTheMean) {
+    const Scene scene;
+    const Snapshot snapshot = snapshot_of(scene);
+    for (const Mode& mode : {mode_of(prepare_random), own_mode(prepare_random)})
+        for (const int samples : {64, 192}) {
+            const Layers layers = rendered(mode, batched_view({32, 32}, samples, 64), snapshot);
+            // The variance of even numbers, found from 64 of them, is known to √((9/5 - 61/63)/64) = 0.114 of itself
+            // (less for means of three); from 1024 pixels to 0.0036. Five of those.
+            const double expected = random_variance / samples;
+            EXPECT_NEAR(mean_red(layers.variance), expected, 5 * 0.0036 * expected);
+            EXPECT_NEAR(mean_red(layers.inscatter_variance), expected, 5 * 0.0036 * expected);
+            EXPECT_NEAR(mean_red(layers.color), random_mean, 5 * std::sqrt(expected / 1024));
+        }
+}
+
+TEST(Noise, OneBatchHasNoVariance) {
+    const Scene scene;
+    const Snapshot snapshot = snapshot_of(scene);
+    FrameStats stats;
+    View view = batched_view({8, 8}, 4, 1);
+    const Layers layers = render_frame(mode_of(prepare_random), view, snapshot, Settings{}, {}, stats);
+    EXPECT_TRUE(layers.variance.empty());
+    EXPECT_TRUE(layers.half_a.empty());
+    EXPECT_FALSE(stats.noise.has_value());
+    view.batches = 2;
+    render_frame(mode_of(prepare_random), view, snapshot, Settings{}, {}, stats);
+    EXPECT_TRUE(stats.noise.has_value());
+    EXPECT_EQ(stats.samples, 4);
+}
+
+TEST(Noise, HalvesAreIndependentAndAverageToTheColour) {
+    const Scene scene;
+    const Snapshot snapshot = snapshot_of(scene);
+    FrameOptions options;
+    options.halves = true;
+    const int samples = 128;
+    const Layers layers = rendered(own_mode(prepare_random), batched_view({64, 64}, samples, 64), snapshot, options);
+    double covariance = 0, square = 0;
+    for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
+        const double a = layers.half_a.pixels[i].x, b = layers.half_b.pixels[i].x;
+        ASSERT_NEAR((a + b) / 2, layers.color.pixels[i].x, 1e-7);
+        covariance += (a - random_mean) * (b - random_mean);
+        square += (a - random_mean) * (a - random_mean);
+    }
+    // Of 4096 products of independent halves, each of variance 1/12 over 64 samples.
+    const double variance = random_variance / (samples / 2);
+    EXPECT_NEAR(covariance / 4096, 0, 5 * variance / 64);
+    EXPECT_NEAR(square / 4096, variance, 5 * variance * std::sqrt(2.0 / 4096));
+}
+
+namespace {
+// The variance a picture claims for its means against how the means of many seeds differ.
+void expect_honest_variance(const Mode& mode, const Snapshot& snapshot, const View& view) {
+    constexpr int seeds = 40;
+    std::vector<RunningMean> means(static_cast<size_t>(view.size.x) * view.size.y);
+    std::vector<double> claimed(means.size());
+    View seeded = view;
+    for (int seed = 0; seed < seeds; ++seed) {
+        seeded.seed = static_cast<uint32_t>(seed);
+        const Layers layers = rendered(mode, seeded, snapshot);
+        for (size_t i = 0; i < means.size(); ++i) {
+            means[i].add(layers.color.pixels[i]);
+            claimed[i] += layers.variance.pixels[i].x / seeds;
+        }
+    }
+    // Each pixel's variance is known to √(2/(seeds-1)) of itself.
+    double found = 0, wanted = 0, squares = 0;
+    for (size_t i = 0; i < means.size(); ++i) {
+        found += means[i].squares.x / (seeds - 1), wanted += claimed[i];
+        squares += claimed[i] * claimed[i];
+    }
+    ASSERT_GT(wanted, 0);
+    EXPECT_NEAR(found, wanted, 5 * std::sqrt(2.0 / (seeds - 1) * squares));
+}
+
+ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, History*) {
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(batch.jitter[i]), 1, 1, 1};
+    };
+}
+
+ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*) {
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        for (size_t i = 0; i < results.size(); ++i)
+            results[i] = {vec3(sample2(batch.places[i].index, batch.places[i].sequence).x), 1, 1, 1};
+    };
+}
+}
+
+// Were batches not independent, well spread samples would make them differ more than their mean does.
+TEST(Noise, BatchesOfEveryRandomNumberAreIndependent) {
+    const Scene scene;
+    const Snapshot snapshot = snapshot_of(scene);
+    const View view = batched_view({16, 16}, 64, 16);
+    expect_honest_variance(mode_of(prepare_random), snapshot, view);
+    expect_honest_variance(mode_of(prepare_jitter), snapshot, view);
+    expect_honest_variance(mode_of(prepare_place), snapshot, view);
+}
+
+TEST(Noise, BatchesOfPixelPositionsAreIndependent) {
+    Scene scene;
+    add_plane(scene, -3, 0.83f, vec3(1));
+    for (vec3& position : scene.meshes[0].positions) position = vec3(position.x + 0.3f * position.y, position.y, -3);
+    const Snapshot snapshot = snapshot_of(scene);
+    expect_honest_variance(mode_of(prepare_nothing), snapshot, batched_view({16, 16}, 64, 16));
+}
+
+TEST(Noise, BatchesOfSoftLightAreIndependent) {
+    // A wall, a card that shades part of it, and a large lamp.
+    Scene scene;
+    add_plane(scene, -3, 5, vec3(0));
+    scene.materials[0].base_color = vec3(1);
+    add_plane(scene, 1, 0.8f, vec3(0));
+    Snapshot snapshot = snapshot_of(scene);
+    Light light;
+    light.name = "lamp", light.kind = LightKind::point, light.position = vec3(0.3f, 0.2f, 3), light.radius = 1;
+    light.intensity = vec3(100);
+    snapshot.lights.push_back(light);
+    expect_honest_variance(mode_of(prepare_nothing), snapshot, batched_view({16, 16}, 64, 16));
+}
+}

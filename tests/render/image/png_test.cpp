@@ -1,0 +1,96 @@
+#include "base/io/file.h"
+#include "render/image/png.h"
+#include "support/expect_error.h"
+#include "support/scratch.h"
+
+#include <gtest/gtest.h>
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_PNG
+#include <stb/stb_image.h>
+
+namespace tyndall::test {
+namespace {
+struct Decoded {
+    ivec2 size{0};
+    int channels = 0;
+    std::vector<uint8_t> codes;
+};
+
+Decoded written(const Image<vec3>& image, float exposure = 0) {
+    const Scratch directory;
+    write_png(directory.file("a.png"), image, exposure);
+    EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
+    const std::string bytes = read_file(directory.file("a.png"));
+    Decoded result;
+    uint8_t* codes =
+        stbi_load_from_memory(reinterpret_cast<const uint8_t*>(bytes.data()), static_cast<int>(bytes.size()),
+                              &result.size.x, &result.size.y, &result.channels, 0);
+    EXPECT_NE(codes, nullptr);
+    if (codes) result.codes.assign(codes, codes + size_t{3} * image.pixels.size());
+    stbi_image_free(codes);
+    return result;
+}
+
+double mean(const std::vector<uint8_t>& codes) {
+    double sum = 0;
+    for (const uint8_t code : codes) sum += code;
+    return sum / static_cast<double>(codes.size());
+}
+}
+
+TEST(Png, HoldsSrgb) {
+    // Linear values of sRGB codes: below the shoulder the picture is exactly those codes, within the dither.
+    const int codes[] = {0, 1, 5, 10, 11, 64, 128, 188, 200, 230};
+    const double linear[] = {0,         0.000303527, 0.00151763, 0.00303527, 0.00334654,
+                             0.0512695, 0.2158605,   0.5028865,  0.5775804,  0.7912979};
+    for (int i = 0; i < 10; ++i) {
+        const Decoded png = written(Image<vec3>({64, 64}, vec3(static_cast<float>(linear[i]))));
+        EXPECT_EQ(png.size, ivec2(64, 64));
+        EXPECT_EQ(png.channels, 3);
+        EXPECT_NEAR(mean(png.codes), codes[i], 0.02) << codes[i];
+    }
+}
+
+TEST(Png, DithersBetweenCodes) {
+    // sRGB of 0.5 is code 187.516; the mean of n dithered codes deviates by at most 0.5 / sqrt(n) standard errors.
+    const Decoded png = written(Image<vec3>({128, 128}, vec3(0.5f)));
+    EXPECT_NEAR(mean(png.codes), 187.516, 4.5 * 0.5 / std::sqrt(3.0 * 128 * 128));
+    for (const uint8_t code : png.codes) EXPECT_TRUE(code == 187 || code == 188);
+    EXPECT_EQ(png.codes, written(Image<vec3>({128, 128}, vec3(0.5f))).codes);
+}
+
+TEST(Png, ExposesInStops) {
+    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f / 4)), 2).codes), 64, 0.02);
+    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f * 8)), -3).codes), 64, 0.02);
+}
+
+TEST(Png, BendsHighlightsWithoutClipping) {
+    Image<vec3> ramp({256, 1});
+    for (int x = 0; x < 256; ++x) ramp.at(x, 0) = vec3(0.01f * static_cast<float>(x));
+    const Decoded png = written(ramp);
+    for (int x = 3; x < 256; ++x) EXPECT_GE(png.codes[3 * x], png.codes[3 * (x - 3)] - 1) << x;
+    EXPECT_LT(png.codes[3 * 100], 250);
+    EXPECT_GE(png.codes[3 * 255], 254);
+    // Smooth where the shoulder begins: the slope of the mapping is 1 on both sides of 0.8.
+    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.801f))).codes) -
+                    mean(written(Image<vec3>({64, 64}, vec3(0.799f))).codes),
+                0.254, 0.05);
+}
+
+TEST(Png, ShowsWhatIsNoColourAsBlackOrWhite) {
+    Image<vec3> image({3, 1});
+    image.at(0, 0) = vec3(-5, NAN, -infinity);
+    image.at(1, 0) = vec3(infinity, 1e30f, 65504);
+    const Decoded png = written(image);
+    EXPECT_EQ(png.codes, (std::vector<uint8_t>{0, 0, 0, 255, 255, 255, 0, 0, 0}));
+}
+
+TEST(Png, LeavesNothingWhereItCannotWrite) {
+    const Scratch directory;
+    std::filesystem::create_directory(directory.path() / "a.png");
+    error_text(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), 0); });
+    EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
+}
+}

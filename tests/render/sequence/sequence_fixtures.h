@@ -1,0 +1,22 @@
+// A small scene that moves, and jobs that render it with a mode of the test's own.
+#pragma once
+#include "render/fixtures.h"
+#include "render/sequence/sequence.h"
+#include "support/scratch.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace tyndall::test {
+// A plane, a moving camera and fog; the scene file is in `directory`.
+Scene moving_scene(const Scratch& directory);
+
+RenderJob job_for(const Scene& scene, const std::string& output, std::vector<int> frames);
+
+// With the mode given, or with one whose light depends on everything.
+RenderReport run(const Scene& scene, const RenderJob& job);
+RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode);
+
+std::map<std::string, std::string> files_of(const Scratch& directory);
+}

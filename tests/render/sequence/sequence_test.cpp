@@ -1,0 +1,121 @@
+// Frames of a sequence, what is written with them and reported of them.
+#include "base/io/frames.h"
+#include "base/io/json.h"
+#include "base/parallel.h"
+#include "integrate/ray_batch.h"
+#include "modes/mode.h"
+#include "render/sequence/sequence_fixtures.h"
+#include "scene/scene.h"
+#include "trace/view.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Settings&, History*) {
+    return [frame = view.frame](const RayBatch&, std::span<Scatter> results) {
+        for (Scatter& result : results) result = {vec3(frame == 2 ? NAN : 1), 1, 1, 0};
+    };
+}
+}
+
+TEST(Sequence, WritesEveryFrame) {
+    const Scratch in, out;
+    const Scene scene = moving_scene(in);
+    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 5, -3});
+    job.png = true;
+    const RenderReport report = run(scene, job);
+    EXPECT_EQ(out.names(), (std::vector<std::string>{"f.-0003.exr", "f.-0003.png", "f.0001.exr", "f.0001.png",
+                                                     "f.0002.exr", "f.0002.png", "f.0005.exr", "f.0005.png"}));
+    ASSERT_EQ(report.frames.size(), 4u);
+    EXPECT_FALSE(report.cancelled);
+    EXPECT_GT(report.peak_memory_bytes, uint64_t{1} << 20);
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(report.frames[i].frame, job.frames[i]);
+        EXPECT_EQ(report.frames[i].file, frame_name(job.output, job.frames[i]));
+        EXPECT_EQ(report.frames[i].stats.camera_rays, 40u * 30);
+        EXPECT_FALSE(report.frames[i].kept);
+    }
+}
+
+TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
+    const Scratch in, one, two;
+    const Scene scene = moving_scene(in);
+    RenderJob job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
+    job.png = true;
+    set_thread_count(1);
+    run(scene, job);
+    set_thread_count(2);
+    job.output = two.file("f.####.exr");
+    run(scene, job);
+    set_thread_count(0);
+    EXPECT_EQ(files_of(one), files_of(two));
+}
+
+TEST(Sequence, FramesDoNotDependOnTheOthers) {
+    const Scratch in, all, single;
+    const Scene scene = moving_scene(in);
+    run(scene, job_for(scene, all.file("f.####.exr"), {1, 2, 3}));
+    run(scene, job_for(scene, single.file("f.####.exr"), {3}));
+    EXPECT_EQ(files_of(all)["f.0003.exr"], files_of(single)["f.0003.exr"]);
+}
+
+TEST(Sequence, SaysHowItWasMade) {
+    const Scratch in, out;
+    const Scene scene = moving_scene(in);
+    RenderJob job = job_for(scene, out.file("f.exr"), {12});
+    job.settings.pixel.samples = 3;
+    job.seed = 77;
+    job.limits_said = {"info: one", "wrong: two"};
+    run(scene, job);
+    const auto attributes = read_exr(out.file("f.exr")).attributes;
+    EXPECT_EQ(attributes.at("tyndall:mode"), "test");
+    EXPECT_EQ(attributes.at("tyndall:scene"), "scene.json");
+    EXPECT_EQ(attributes.at("tyndall:camera"), "main");
+    EXPECT_EQ(attributes.at("tyndall:isa"), "avx2");
+    EXPECT_EQ(attributes.at("tyndall:nonFinite"), "0");
+    EXPECT_EQ(attributes.at("tyndall:limits"), "info: one\nwrong: two");
+    EXPECT_EQ(attributes.at("imageCounter"), "12");
+    EXPECT_EQ(attributes.at("tyndall:hash").size(), 32u);
+    const std::string settings = attributes.at("tyndall:settings");
+    for (const SettingRow& row : setting_rows())
+        EXPECT_NE(settings.find(row.name + "=" + row.get(job.settings)), settings.npos) << row.name;
+    const std::string command = attributes.at("tyndall:command");
+    for (const char* part : {"--frames 12", "--seed 77", "--res 40x30", "--set pixel.samples=3", "--isa avx2"})
+        EXPECT_NE(command.find(part), command.npos) << part << " in " << command;
+    for (const auto& [name, text] : attributes) EXPECT_EQ(text.find(out.path().string()), text.npos) << name;
+}
+
+TEST(Sequence, CountsSamplesThatAreNotFinite) {
+    const Scratch in, out;
+    const Scene scene = moving_scene(in);
+    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
+    EXPECT_EQ(report.non_finite, 40u * 30);
+    EXPECT_EQ(report.frames[1].stats.non_finite, 40u * 30);
+    const auto attributes = read_exr(out.file("f.0002.exr")).attributes;
+    EXPECT_EQ(attributes.at("tyndall:nonFinite"), "1200");
+    EXPECT_EQ(attributes.at("tyndall:firstNonFinite"), "0,0");
+}
+
+TEST(Sequence, ReportsItselfAsJson) {
+    const Scratch in, out;
+    const Scene scene = moving_scene(in);
+    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
+    const Json json = parse_json(stats_json(report, job), "stats");
+    EXPECT_EQ(json.string_or("schema", ""), "tyndall-render-stats");
+    EXPECT_EQ(json.number_or("schema_version", 0), 1);
+    EXPECT_EQ(json.string_or("mode", ""), "test");
+    EXPECT_EQ(json.find("settings")->members.size(), setting_rows().size());
+    ASSERT_EQ(json.find("frames")->items.size(), 3u);
+    const Json& frame = json.find("frames")->items[1];
+    EXPECT_EQ(frame.number_or("frame", 0), 2);
+    EXPECT_EQ(frame.number_or("non_finite", 0), 1200);
+    EXPECT_TRUE(frame.has("first_non_finite"));
+    const Json* totals = json.find("totals");
+    EXPECT_EQ(totals->number_or("camera_rays", 0), 3 * 1200);
+    EXPECT_EQ(totals->number_or("non_finite", 0), 1200);
+    EXPECT_GT(totals->number_or("peak_memory_bytes", 0), 0);
+}
+}

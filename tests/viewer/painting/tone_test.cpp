@@ -1,0 +1,55 @@
+#include "render/frame/layers.h"
+#include "render/image/png.h"
+#include "viewer/painting/tone.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+// Brightness from nothing to far too much, by factors.
+Layers ramp() {
+    Layers layers;
+    layers.size = layers.display = {512, 64};
+    layers.color = layers.inscatter = Image<vec3>(layers.size);
+    layers.alpha = layers.depth = layers.transmittance = layers.validity = Image<float>(layers.size, 1);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 512; ++x) {
+            const float value = x == 0 ? 0 : std::exp2(-22 + 30 * (x + y / 64.0f) / 512);
+            layers.color.at(x, y) = vec3(value, 0.5f * value, 2 * value);
+            layers.inscatter.at(x, y) = vec3(0.25f * value);
+        }
+    return layers;
+}
+}
+
+TEST(Tone, ThePictureLooksAsItsPngDoes) {
+    const Layers layers = ramp();
+    const Image<glm::u8vec4> codes = toned(layers, {ShownLayer::picture, 0.5f});
+    const Image<glm::u8vec3> png = display_codes(layers.color, 0.5f);
+    int other = 0;
+    for (size_t i = 0; i < png.pixels.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            const int difference = std::abs(codes.pixels[i][c] - png.pixels[i][c]);
+            ASSERT_LE(difference, 1) << "pixel " << i;
+            other += difference;
+        }
+    // Values within a hundredth of a code fall on the other side of the dither once in a hundred times at most.
+    EXPECT_LT(other, 0.01 * 3 * static_cast<double>(png.pixels.size()));
+    EXPECT_EQ(codes.at(5, 5).w, 255);
+}
+
+TEST(Tone, OtherLayersShowWhatTheyAreNamedFor) {
+    Layers layers = ramp();
+    layers.transmittance.at(1, 1) = 0, layers.depth.at(2, 2) = infinity, layers.validity.at(3, 3) = 0;
+    const Image<glm::u8vec4> through = toned(layers, {ShownLayer::transmittance, 3});
+    EXPECT_EQ(through.at(1, 1).x, 0);
+    EXPECT_GT(through.at(2, 1).x, 225);
+    EXPECT_EQ(toned(layers, {ShownLayer::depth, 0}).at(2, 2).y, 0);
+    const glm::u8vec4 wrong = toned(layers, {ShownLayer::validity, 0}).at(3, 3),
+                      right = toned(layers, {ShownLayer::validity, 0}).at(4, 3);
+    EXPECT_GT(wrong.x, 3 * wrong.y);
+    EXPECT_NEAR(right.x, right.y, 1);
+    const Image<glm::u8vec3> fog = display_codes(layers.inscatter, 1);
+    EXPECT_NEAR(toned(layers, {ShownLayer::fog, 1}).at(400, 9).x, fog.at(400, 9).x, 1);
+}
+}
