@@ -1,4 +1,4 @@
-"""Makes docs/chart_*.png and prints the table "which technique to use when" of the README.
+"""Makes docs/images/chart_*.png and prints the table of docs/techniques.md: which technique for which error or time.
 
     python3 docs/make_charts.py build/release/tyndall OUT [SCENE...] [-- OPTIONS of tyndall chart]
 
@@ -70,7 +70,7 @@ def main():
                        check=True, stdout=subprocess.DEVNULL)
         charts[scene] = json.loads((out / scene / "chart.json").read_text())
         if BROWSER:
-            picture(out / scene / "chart.html", ROOT / f"docs/chart_{scene}.png")
+            picture(out / scene / "chart.html", ROOT / f"docs/images/chart_{scene}.png")
     print("| wanted of the fog light |", " | ".join(scenes), "|")
     print("|---|" + "---|" * len(scenes))
     for kind, limit in CHOICES:

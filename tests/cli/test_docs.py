@@ -1,0 +1,55 @@
+"""Every command in README.md and docs runs as it stands there. The long ones run with TYNDALL_NIGHTLY=1."""
+import os
+import re
+import shlex
+import subprocess
+import unittest
+
+from program import SOURCE, TYNDALL, ProgramTest
+
+# What takes longer than a few seconds on two cores, or wants a display.
+LONG = re.compile(r"tyndall (bake|chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--orders all")
+ELSEWHERE = re.compile(r"tyndall (view|COMMAND|--help)")  # the viewer has tests of its own
+
+
+def pages():
+    return [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+
+
+def commands():
+    """Page and words of every command line: indented by four, without comments."""
+    for page in pages():
+        for line in page.read_text().splitlines():
+            if line.startswith("    tyndall ") and not ELSEWHERE.search(line):
+                yield page.name, shlex.split(line.strip(), comments=True)
+
+
+class Docs(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        for name in ("scenes", "volumes"):
+            os.symlink(SOURCE / name, self.path(name))
+
+    def run_commands(self, long):
+        found = [(page, words) for page, words in commands() if bool(LONG.search(" ".join(words))) == long]
+        self.assertGreater(len(found), 5)
+        for page, words in found:
+            result = subprocess.run([TYNDALL, *words[1:]], cwd=self.directory, capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, f"{page}: {' '.join(words)}\n{result.stderr}")
+
+    def test_quick_commands(self):
+        self.run_commands(False)
+
+    @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
+    def test_long_commands(self):
+        self.run_commands(True)
+
+    def test_links_and_pictures_are_there(self):
+        for page in pages():
+            for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text()):
+                if not target.startswith("http"):
+                    self.assertTrue((page.parent / target).exists(), f"{page.name}: {target}")
+
+
+if __name__ == "__main__":
+    unittest.main()
