@@ -91,7 +91,7 @@ std::string command_of(const Plan& plan, const RenderJob& job, bool one_frame) {
 }
 
 int run_plan(const Options& texts, const Globals& globals) {
-    RenderJob job = make_job(texts.render, find_mode("march"));
+    RenderJob job = make_job(texts.render, main_mode());
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(job.scene_file, options);
     job.frames = {scene.first_frame};

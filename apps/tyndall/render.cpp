@@ -83,7 +83,7 @@ void say_idle_settings(const std::vector<std::string>& settings, const RenderJob
         const bool shared = owner == "march" && find_mode(job.mode).surfaces == Surfaces::shared;
         const auto owns = [&](const Mode& mode) { return setting_prefix(mode.name) == owner; };
         const bool plain = (owner == "style" && !honours_style(find_mode(job.mode))) ||
-                           (owner == "fluence" && !has_fluence(find_mode(job.mode)));
+                           (owner == "fluence" && !find_mode(job.mode).adds_fluence);
         if (plain || (owner != setting_prefix(job.mode) && !shared && std::ranges::any_of(modes(), owns)))
             say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
     }
@@ -188,7 +188,8 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
 std::vector<RenderJob> make_jobs(const RenderOptions& texts) {
     std::vector<RenderJob> jobs;
     // Until the scene is known, what is to be chosen is the main renderer.
-    const std::vector<const Mode*> asked = asked_modes(texts.mode == automatic ? "march" : texts.mode);
+    const std::vector<const Mode*> asked =
+        asked_modes(texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
     for (const Mode* mode : asked) {
         jobs.push_back(make_job(texts, *mode));
         if (asked.size() > 1) jobs.back().output = with_word(texts.output, mode->name);

@@ -39,7 +39,7 @@ void read_orders(const std::string& text, RenderJob& job) {
     const int orders = text == "all" ? all_orders : static_cast<int>(integer_option("--orders", text, 1, all_orders));
     if (find_mode(job.mode).accuracy == Accuracy::multiple_scattering)
         job.settings.path.orders = orders;
-    else if (has_fluence(find_mode(job.mode)))
+    else if (find_mode(job.mode).adds_fluence)
         job.settings.fluence.orders = orders;
     else if (orders > 1)
         fail(ExitCode::usage, "--orders",
@@ -200,7 +200,7 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     if (!texts.history.empty() && has_goal(job))
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
-    if (has_goal(job) && has_fluence(mode) && job.settings.fluence.orders > 1 && texts.mode != automatic)
+    if (has_goal(job) && mode.adds_fluence && job.settings.fluence.orders > 1 && texts.mode != automatic)
         fail(ExitCode::usage, job.time_budget > 0 ? "--time-budget" : "--target-error",
              job.mode + " measures its error for --orders 1 only; --mode path does for all");
     if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));

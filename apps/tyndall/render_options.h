@@ -6,7 +6,7 @@
 
 namespace tyndall {
 struct RenderOptions {
-    std::string scene, output, frames, mode = "march", quality = "preview", camera, resolution, crop, samples;
+    std::string scene, output, frames, mode{main_mode().name}, quality = "preview", camera, resolution, crop, samples;
     std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
     std::string orders, target_error, time_budget, history;
     std::vector<std::string> settings;

@@ -1,6 +1,7 @@
 #include "integrate/march_settings.h"
 
 #include "integrate/style.h"
+#include "scene/light.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

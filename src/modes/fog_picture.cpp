@@ -1,5 +1,6 @@
 // Computing fog for a picture, and looking rays up in it.
 #include "modes/fog_picture.h"
+#include "modes/picture_share.h"
 
 #include "base/parallel.h"
 #include "base/random.h"

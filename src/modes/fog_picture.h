@@ -1,6 +1,7 @@
 // The fog of a picture, computed once for every n-th pixel and found again for any ray of the picture.
 #pragma once
 #include "modes/mode.h"
+#include "modes/picture_share.h"
 #include "modes/settings.h"
 #include "trace/view.h"
 

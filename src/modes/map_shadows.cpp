@@ -1,4 +1,6 @@
 #include "modes/map_shadows.h"
+#include "modes/shadow_map/settings.h"
+#include "scene/light.h"
 
 #include "base/text.h"
 #include "modes/limits.h"
@@ -44,10 +46,10 @@ ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
     return {settings.resolution, settings.cascades, settings.pcf, settings.bias};
 }
 
-ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings) {
+ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings) {
     ShadowMaps maps;
     for (const Light& light : snapshot.lights)
-        maps.push_back(kept_shadow_map(view, snapshot, light, shadow_map_options(settings)));
+        maps.push_back(kept_shadow_map(view, snapshot, light, shadow_map_options(settings.of<ShadowMapSettings>())));
     return maps;
 }
 
@@ -59,8 +61,9 @@ std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const 
         if (is_soft(light))
             limits.push_back({Severity::degraded, "light " + light.name,
                               "shadow maps see it from one point: its soft shadows have hard edges in the fog"});
-        append_resolution_limit(view, fitted_shadow_map(view, snapshot, light, shadow_map_options(settings.shadow_map)),
-                                light, rays, limits);
+        append_resolution_limit(
+            view, fitted_shadow_map(view, snapshot, light, shadow_map_options(settings.of<ShadowMapSettings>())), light,
+            rays, limits);
     }
     if (snapshot.occluders && snapshot.occluders->has_alpha() && has_blend(snapshot))
         limits.push_back({Severity::degraded, "BLEND surfaces",

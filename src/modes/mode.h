@@ -10,9 +10,11 @@
 
 namespace tyndall {
 struct History;
+struct SettingRow;
 struct Settings;
 struct Snapshot;
 struct View;
+enum class Quality;
 
 // A picture without fog, and what a mode with Surfaces::post adds to it. All images cover the full picture.
 struct PlainPicture {
@@ -27,6 +29,12 @@ struct Addition {
 };
 using PostFunction = std::function<Addition(const PlainPicture&)>;
 
+// A rung of a mode's ladder: "row=value row=value"; its name, or what it sets.
+struct Rung {
+    std::string name, assignments;
+};
+
+// A technique: all that is true of it alone.
 struct Mode {
     std::string_view name, summary;
     Accuracy accuracy;
@@ -35,17 +43,30 @@ struct Mode {
     // History may be null. Of Surfaces::post: the fog of the picture it works on.
     ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
     PostFunction (*prepare_post)(const View&, const Snapshot&, const Settings&) = nullptr; // for Surfaces::post only
-    bool remembers = false; // whether a History changes anything
+    void (*append_rows)(std::vector<SettingRow>& rows) = nullptr;                          // of its own settings
+    void (*set_quality)(Settings& settings, Quality quality) = nullptr; // its own; null = always the same
+    std::vector<Rung> (*rungs)() = nullptr;                             // from the quickest to the most careful
+    std::string_view color{};                                           // in charts
+    bool remembers = false;                                             // whether a History changes anything
+    bool adds_fluence = false;        // whether it can add light that scatters more than once (fluence.orders)
+    bool interactive = false;         // whether it keeps up with a hand on the camera
+    bool samples_soft_lights = false; // whether soft lights add noise, and not bias
 };
 
+// The one table (modes/table.cpp).
 std::span<const Mode> modes();
+
+// The first row: the default, and at Quality::reference the truth of light that scatters once.
+inline const Mode& main_mode() { return modes().front(); }
+
+// The first row with the truth of all scattered light, and the first that is interactive.
+const Mode& mode_of_all_orders();
+const Mode& interactive_mode();
+
 const Mode& find_mode(std::string_view name); // throws Error (usage) listing the names
 
 // Whether style.* changes its pictures: the truth has none.
 bool honours_style(const Mode& mode);
-
-// Whether it can add light that scatters more than once (fluence.orders).
-bool has_fluence(const Mode& mode);
 
 // Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
 bool error_is_noise(const Mode& mode);

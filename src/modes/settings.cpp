@@ -1,3 +1,4 @@
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 #include "base/error.h"
@@ -46,15 +47,9 @@ const std::vector<SettingRow>& setting_rows() {
         std::vector<SettingRow> all;
         append_pixel_rows(all);
         append_style_rows(all);
-        append_march_rows(all);
         append_fluence_rows(all);
-        append_froxel_rows(all);
-        append_shadow_map_rows(all);
-        append_shadow_volume_rows(all);
-        append_cone_rows(all);
-        append_billboard_rows(all);
-        append_radial_blur_rows(all);
-        append_path_rows(all);
+        for (const Mode& mode : modes())
+            if (mode.append_rows) mode.append_rows(all);
         return all;
     }();
     return rows;
@@ -77,46 +72,26 @@ void apply_setting(Settings& settings, std::string_view assignment) {
 
 Settings settings_for(Quality quality) {
     Settings settings;
-    MarchSettings& march = settings.march;
-    ShadowVolumeSettings& volume = settings.shadow_volume;
-    FroxelSettings& froxel = settings.froxel;
-    ShadowMapSettings& map = settings.shadow_map;
+    PixelSettings& pixel = settings.pixel;
+    FluenceSettings& fluence = settings.fluence;
     switch (quality) {
     case Quality::draft:
-        settings.pixel.samples = 1, settings.pixel.lamp_samples = 1;
-        settings.cone.nodes = 6;
-        march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
-        march.min_transmittance = 1e-2f, march.light_resolution = 32, march.light = LightTransmittance::froxel;
-        march.nodes = 3;
-        volume.nodes = 3, volume.steps = 16, volume.light_resolution = 32;
-        froxel.tile = 16, froxel.depth_slices = 48;
-        settings.fluence.resolution = 32, settings.fluence.paths = 50'000;
-        map.steps = 16, map.resolution = 256;
+        pixel.samples = 1, pixel.lamp_samples = 1;
+        fluence.resolution = 32, fluence.paths = 50'000;
         break;
     case Quality::preview:
         break;
     case Quality::final:
-        settings.pixel.samples = 16, settings.pixel.lamp_samples = 64;
-        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
-        march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128, march.nodes = 6;
-        volume.nodes = 6, volume.steps = 128, volume.light_resolution = 128;
-        froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
-        settings.fluence.resolution = 96, settings.fluence.paths = 1'000'000;
-        map.steps = 64, map.resolution = 2048, map.pcf = 1;
+        pixel.samples = 16, pixel.lamp_samples = 64;
+        fluence.resolution = 96, fluence.paths = 1'000'000;
         break;
     case Quality::reference:
-        settings.pixel.samples = 64, settings.pixel.lamp_samples = 64;
-        settings.cone.nodes = 16;
-        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
-        march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
-        march.visibility = Visibility::exact;
-        march.light_resolution = 256, march.nodes = 16;
-        volume.nodes = 16, volume.steps = 1024, volume.light_resolution = 256;
-        froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
-        settings.fluence.resolution = 128, settings.fluence.paths = 4'000'000;
-        map.steps = 256, map.resolution = 4096, map.pcf = 1, map.light = LightTransmittance::marched;
+        pixel.samples = 64, pixel.lamp_samples = 64;
+        fluence.resolution = 128, fluence.paths = 4'000'000;
         break;
     }
+    for (const Mode& mode : modes())
+        if (mode.set_quality) mode.set_quality(settings, quality);
     return settings;
 }
 

@@ -60,16 +60,8 @@ SettingRow color_row(std::string name, std::string unit, double low, double high
 inline const std::vector<std::string> switches{"off", "on"};
 inline const std::vector<std::string> picture_shares{"full", "half", "third", "quarter"};
 
-// The rows of each technique, in the order of help.
+// The rows that techniques share.
 void append_pixel_rows(std::vector<SettingRow>& rows);
 void append_style_rows(std::vector<SettingRow>& rows);
-void append_march_rows(std::vector<SettingRow>& rows);
 void append_fluence_rows(std::vector<SettingRow>& rows);
-void append_cone_rows(std::vector<SettingRow>& rows);
-void append_billboard_rows(std::vector<SettingRow>& rows);
-void append_path_rows(std::vector<SettingRow>& rows);
-void append_radial_blur_rows(std::vector<SettingRow>& rows);
-void append_shadow_volume_rows(std::vector<SettingRow>& rows);
-void append_froxel_rows(std::vector<SettingRow>& rows);
-void append_shadow_map_rows(std::vector<SettingRow>& rows);
 }

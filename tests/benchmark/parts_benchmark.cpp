@@ -5,6 +5,7 @@
 #include "base/simd/isa.h"
 #include "integrate/march_steps.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
 #include "scene/scene.h"
 #include "trace/light_ray.h"
 #include "trace/occlusion/occluders.h"

@@ -1,7 +1,6 @@
 """Every command in README.md and docs runs as it stands there. The long ones run with TYNDALL_NIGHTLY=1."""
 import os
 import re
-import shlex
 import subprocess
 import unittest
 
@@ -21,7 +20,7 @@ def commands():
     for page in pages():
         for line in page.read_text().splitlines():
             if line.startswith("    tyndall ") and not ELSEWHERE.search(line):
-                yield page.name, shlex.split(line.strip(), comments=True)
+                yield page.name, re.split(r"\s#\s", line)[0].split()
 
 
 class Docs(ProgramTest):

@@ -2,6 +2,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "modes/froxel/froxel_fixtures.h"
+#include "modes/froxel/settings.h"
 #include "modes/mode.h"
 #include "modes/path/path_rays.h"
 #include "modes/path/path_scenes.h"
@@ -214,7 +215,7 @@ TEST(Fluence, LooksTheSameInFroxels) {
     const View view = view_of({0, 2, 9}, {0, 1.5f, 0});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
     Settings settings;
-    settings.froxel.tile = 2, settings.froxel.depth_slices = 128;
+    settings.of<FroxelSettings>().tile = 2, settings.of<FroxelSettings>().depth_slices = 128;
     const auto light = [&](const char* mode, int orders) {
         settings.fluence = grid_settings(orders, 24, 150'000);
         return run_mode(mode, view, stage.snapshot, settings, rays);

@@ -1,8 +1,9 @@
 // Fog computed for a smaller picture and spread over the full one, alone and from frame to frame.
 #include "modes/fog_picture.h"
 #include "modes/history.h"
+#include "modes/mode.h"
+#include "modes/picture_share.h"
 #include "modes/settings.h"
-#include "modes/techniques.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -69,7 +70,7 @@ Settings middle_of_steps() {
 }
 
 ScatterFunction march_of(const View& view, const Snapshot& snapshot) {
-    return prepare_march(view, snapshot, middle_of_steps(), nullptr);
+    return main_mode().prepare(view, snapshot, middle_of_steps(), nullptr);
 }
 
 // Ends of rays as the fog picture finds them: the far side of the box.

@@ -74,7 +74,7 @@ private:
 };
 
 struct Task {
-    Rung rung;
+    ChartRung rung;
     std::string hash;
     std::optional<ChartPoint> kept;
     double seconds = 0; // of a picture
@@ -186,8 +186,8 @@ std::string line_on(const ChartPoint& point) {
 std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& references, FileHashes& files, Chart& chart,
                              const ChartControl& control) {
     std::vector<Task> tasks;
-    const std::vector<Rung> rungs = rungs_of(stage.job);
-    for (const Rung& rung : rungs) {
+    const std::vector<ChartRung> rungs = rungs_of(stage.job);
+    for (const ChartRung& rung : rungs) {
         if (control.progress)
             control.progress(share_of_planning * static_cast<double>(&rung - rungs.data()) /
                              static_cast<double>(rungs.size()));

@@ -41,7 +41,8 @@ Json json_of_point(const ChartPoint& point) {
     return result;
 }
 
-std::string point_hash(const ChartStage& stage, const Rung& rung, const std::string& references, FileHashes& files) {
+std::string point_hash(const ChartStage& stage, const ChartRung& rung, const std::string& references,
+                       FileHashes& files) {
     RenderJob job = stage.job.render;
     job.mode = rung.mode->name, job.settings = settings_of(rung);
     std::string text = references + " " + std::to_string(stage.job.runs) + " " + std::to_string(thread_count());
@@ -52,7 +53,7 @@ std::string point_hash(const ChartStage& stage, const Rung& rung, const std::str
     return content_hash(text);
 }
 
-std::optional<ChartPoint> kept_point(const std::filesystem::path& directory, const Rung& rung,
+std::optional<ChartPoint> kept_point(const std::filesystem::path& directory, const ChartRung& rung,
                                      const std::string& hash) {
     ChartPoint point;
     point.mode = rung.mode->name, point.rung = rung.place; // for the files' names

@@ -10,10 +10,12 @@ namespace tyndall {
 Json json_of_point(const ChartPoint& point);
 
 // One hash over all that a point's numbers depend on but for the machine and its load.
-std::string point_hash(const ChartStage& stage, const Rung& rung, const std::string& references, FileHashes& files);
+std::string point_hash(const ChartStage& stage, const ChartRung& rung, const std::string& references,
+                       FileHashes& files);
 
 // A point of that hash whose pictures are there too. What is damaged counts as missing.
-std::optional<ChartPoint> kept_point(const std::filesystem::path& directory, const Rung& rung, const std::string& hash);
+std::optional<ChartPoint> kept_point(const std::filesystem::path& directory, const ChartRung& rung,
+                                     const std::string& hash);
 
 // Writes a point's pictures, then its numbers. Throws Error (unwritable).
 void keep_point(const std::filesystem::path& directory, const MeasuredPoint& measured, const std::string& hash,

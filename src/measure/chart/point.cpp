@@ -128,8 +128,8 @@ double flicker(const ChartStage& stage, const Mode& mode, Settings settings) {
 }
 }
 
-std::vector<Rung> rungs_of(const ChartJob& job) {
-    std::vector<Rung> rungs;
+std::vector<ChartRung> rungs_of(const ChartJob& job) {
+    std::vector<ChartRung> rungs;
     for (const Mode* mode : job.modes) {
         const std::vector<Candidate> ladder = ladder_of(*mode, job.render.settings);
         for (size_t i = 0; i < ladder.size(); ++i) rungs.push_back({mode, ladder[i], static_cast<int>(i) + 1});
@@ -139,7 +139,7 @@ std::vector<Rung> rungs_of(const ChartJob& job) {
 
 bool lights_only(const Mode& mode) { return mode.accuracy == Accuracy::multiple_scattering; }
 
-Settings settings_of(const Rung& rung) {
+Settings settings_of(const ChartRung& rung) {
     Settings settings = rung.candidate.settings;
     if (lights_only(*rung.mode)) settings.path.orders = 1, settings.path.ambient = settings.path.emission = false;
     return settings;
@@ -154,7 +154,7 @@ std::string rows_of(const Settings& settings) {
     return text;
 }
 
-double expected_seconds(const ChartStage& stage, const Rung& rung) {
+double expected_seconds(const ChartStage& stage, const ChartRung& rung) {
     Settings settings = settings_of(rung);
     const int samples = settings.pixel.samples;
     settings.pixel.samples = std::min(samples, 4); // edges take more rays from four on
@@ -170,7 +170,8 @@ double expected_seconds(const ChartStage& stage, const Rung& rung) {
     return stats.prepare_seconds + stats.render_seconds * larger * samples / settings.pixel.samples;
 }
 
-MeasuredPoint measure_point(const ChartStage& stage, const Rung& rung, const std::function<void(double)>& progress) {
+MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
+                            const std::function<void(double)>& progress) {
     const Mode& mode = *rung.mode;
     const Settings settings = settings_of(rung);
     MeasuredPoint result;

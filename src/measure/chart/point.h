@@ -27,31 +27,32 @@ struct ChartStage {
 };
 
 // A mode at one of its settings.
-struct Rung {
+struct ChartRung {
     const Mode* mode;
     Candidate candidate;
     int place;
 };
-std::vector<Rung> rungs_of(const ChartJob& job);
+std::vector<ChartRung> rungs_of(const ChartJob& job);
 
 // Whether ambient light, emission and background are left out of the mode's pictures: path would shadow and scatter
 // them, which the reference does not.
 bool lights_only(const Mode& mode);
 
 // The settings of a rung; light scatters once.
-Settings settings_of(const Rung& rung);
+Settings settings_of(const ChartRung& rung);
 
 // What differs from the usual settings, as rows for --set with spaces between.
 std::string rows_of(const Settings& settings);
 
 // About the seconds that a picture will take, from a smaller one with few samples per pixel. Also wakes caches and what
 // belongs to the scene's triangles.
-double expected_seconds(const ChartStage& stage, const Rung& rung);
+double expected_seconds(const ChartStage& stage, const ChartRung& rung);
 
 struct MeasuredPoint {
     ChartPoint point;
     Image<vec3> picture; // to look at
     Image<float> errors; // at each pixel, as a share of the reference's mean
 };
-MeasuredPoint measure_point(const ChartStage& stage, const Rung& rung, const std::function<void(double)>& progress);
+MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
+                            const std::function<void(double)>& progress);
 }

@@ -27,7 +27,7 @@ const ExrOptions exact_colors{{"inscatter"}, true};
 
 RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
     RenderJob job = shot.job;
-    job.mode = "march", job.quality = Quality::reference;
+    job.mode = main_mode().name, job.quality = Quality::reference;
     job.settings = truth_of(job.settings);
     if (samples.count > 0) job.settings.pixel.samples = std::max(samples.count / 2, 1);
     if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
@@ -52,7 +52,7 @@ std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snaps
     options.cancel = shot.cancel;
     const View view = view_of(shot.scene, shot.job, shot.frame);
     const double start = steady_seconds();
-    Choice choice = choose(find_mode("march"), view, snapshot, shot.job.settings, goal, start, options);
+    Choice choice = choose(main_mode(), view, snapshot, shot.job.settings, goal, start, options);
     choice.measured.single = {infinity, infinity};
     choice.measured.prepared = nullptr; // points into the snapshot
     return std::make_shared<const Choice>(std::move(choice));

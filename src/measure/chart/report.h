@@ -30,7 +30,7 @@ std::string need_words(const Advice& advice); // "an error of at most 5 %"
 
 // How a mode is drawn: a colour that colour-blind eyes can tell (Okabe and Ito 2008) and a shape of its own.
 struct MarkStyle {
-    const char* color;
+    std::string color;
     int shape; // 0 to 7
 };
 MarkStyle style_of(const std::string& mode);

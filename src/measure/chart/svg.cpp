@@ -203,7 +203,7 @@ void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawin
         drawing.marks += mark(frame, point, last, fitted);
     }
     if (path.empty()) return;
-    const char* color = style_of(mode).color;
+    const std::string color = style_of(mode).color;
     drawing.labels.push_back({last.x + 11, last.y + 4, mode + (fitted ? ", gain fitted" : ""), color});
     drawing.lines +=
         "<polyline points='" + path + "' class='series" + (fitted ? " fitted" : "") + "' stroke='" + color + "'/>\n";
@@ -242,14 +242,10 @@ std::string placed(std::vector<Label> labels) {
 }
 
 MarkStyle style_of(const std::string& mode) {
-    constexpr const char* colors[] = {"#0072B2", "#E69F00", "#009E73", "#CC79A7",
-                                      "#56B4E9", "#B8A900", "#D55E00", "#000000"};
-    int place = 0;
-    for (const Mode& known : modes()) {
-        if (known.name == mode) break;
-        ++place;
-    }
-    return {colors[place % 8], place % 8};
+    constexpr int marks = 8;
+    const auto row = std::ranges::find(modes(), mode, &Mode::name);
+    if (row == modes().end()) return {"#000000", marks - 1};
+    return {std::string(row->color), static_cast<int>(row - modes().begin()) % marks};
 }
 
 std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what) {

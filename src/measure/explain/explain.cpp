@@ -1,5 +1,7 @@
 // The camera ray from surface to surface, and the deterministic reference on it.
 #include "measure/explain/parts.h"
+#include "modes/mode.h"
+#include "trace/transmittance/light_depth.h"
 #include "volume/medium.h"
 
 #include "base/error.h"
@@ -97,7 +99,7 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
 
 // The ray from surface to surface, as trace_samples() goes.
 void follow(const RayScene& scene, RayStory& story) {
-    const Prepared prepared = prepare_frame(find_mode("march"), scene.view, scene.snapshot, scene.truth, nullptr);
+    const Prepared prepared = prepare_frame(main_mode(), scene.view, scene.snapshot, scene.truth, nullptr);
     Stretches s;
     PixelSample sample;
     start_paths(scene.view, {&story.pixel, 1}, 0, s, {&sample, 1});

@@ -1,7 +1,7 @@
 #include "measure/plan/terms.h"
 
 #include "base/text.h"
-#include "modes/techniques.h"
+#include "modes/mode.h"
 #include "render/adaptive/candidates.h"
 #include "render/adaptive/goal.h"
 #include "scene/light.h"
@@ -23,9 +23,9 @@ struct Variant {
 
 // The march with surfaces and background as bright as without fog before them.
 Mode undimmed_march() {
-    Mode mode = find_mode("march");
+    Mode mode = main_mode();
     mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
-        const ScatterFunction inner = prepare_march(view, snapshot, settings, history);
+        const ScatterFunction inner = main_mode().prepare(view, snapshot, settings, history);
         return ScatterFunction([inner](const RayBatch& batch, std::span<Scatter> results) {
             inner(batch, results);
             for (Scatter& result : results) result.transmittance = 1;
@@ -36,7 +36,7 @@ Mode undimmed_march() {
 
 // Settings at which the march is right enough to tell what a term is worth: its own errors cancel.
 Settings careful(const Settings& settings) {
-    for (const Candidate& candidate : ladder_of(find_mode("march"), settings))
+    for (const Candidate& candidate : ladder_of(main_mode(), settings))
         if (candidate.name == "final") {
             Settings result = candidate.settings;
             result.pixel.samples = settings.pixel.samples;
@@ -57,7 +57,7 @@ struct Terms {
     FrameOptions options() const { return {false, nullptr, control.cancel, {}, {}}; }
 
     Pilot make(const Settings& truth) const {
-        return make_pilot(find_mode("march"), view, snapshot, &truth, options(), [] { return false; });
+        return make_pilot(main_mode(), view, snapshot, &truth, options(), [] { return false; });
     }
     const Pilot& usual() {
         if (!pilot) pilot = make(base);
@@ -109,7 +109,7 @@ struct Terms {
         terms.push_back(std::move(term));
     }
 
-    Variant changed() const { return {&find_mode("march"), snapshot, base}; }
+    Variant changed() const { return {&main_mode(), snapshot, base}; }
 };
 
 void add_shadows(Terms& terms) {

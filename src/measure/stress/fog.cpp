@@ -1,5 +1,6 @@
 // Fog without surfaces: thin, thick, layered, thin sheets, several at once, and what closed forms say of it.
 #include "measure/stress/trial.h"
+#include "modes/shadow_map/settings.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
@@ -155,7 +156,7 @@ double pattern_left(Trial& trial) {
 StressScene jittered(double steps) {
     Light slit = spot_light({0, 2, 0}, {0, -1, 0}, 10, 0.25f, 0.26f);
     StressScene scene = stress_scene({even_medium(0.3f, {vec3(-2), vec3(2)})}, {slit}, camera_from({0, 0, 5}, vec3(0)));
-    scene.settings.shadow_map.steps = static_cast<int>(steps);
+    scene.settings.of<ShadowMapSettings>().steps = static_cast<int>(steps);
     scene.view.jitter = Jitter::spatiotemporal;
     return scene;
 }

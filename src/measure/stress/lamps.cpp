@@ -1,5 +1,6 @@
 // Local lights in even fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
 #include "measure/stress/trial.h"
+#include "modes/cone/settings.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
@@ -86,14 +87,14 @@ StressScene hard_edge(double ratio) { return spot_scene(lamp(static_cast<float>(
 
 StressScene clipped(double radius) {
     StressScene scene = hard_edge(0.7);
-    scene.settings.cone.near_radius = static_cast<float>(radius);
+    scene.settings.of<ConeSettings>().near_radius = static_cast<float>(radius);
     return scene;
 }
 
 // By how much any pixel is brighter than without the clip.
 double brighter_than_whole(Trial& trial) {
     StressScene whole = trial.scene;
-    whole.settings.cone.near_radius = 0;
+    whole.settings.of<ConeSettings>().near_radius = 0;
     const Layers a = trial.render(), b = trial.render(whole);
     float most = 0;
     for (size_t i = 0; i < a.inscatter.pixels.size(); ++i)

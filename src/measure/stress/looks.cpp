@@ -1,5 +1,7 @@
 // The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
 #include "measure/stress/trial.h"
+#include "modes/picture_share.h"
+#include "modes/radial_blur/settings.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -18,7 +20,7 @@ StressScene blur_scene(Light light, Camera camera, std::vector<Mesh> meshes = {}
                        std::vector<Material> materials = {}) {
     StressScene scene =
         stress_scene({even_medium(0.05f, cube)}, {light}, camera, std::move(meshes), std::move(materials));
-    scene.settings.radial_blur.picture = PictureShare::full;
+    scene.settings.of<RadialBlurSettings>().picture = PictureShare::full;
     return scene;
 }
 const Camera ahead = camera_from({0, 0, 6}, vec3(0));
@@ -64,7 +66,7 @@ double smeared_emission(Trial& trial) {
 
 StressScene with_samples(double samples) {
     StressScene scene = sun_aside(5);
-    scene.settings.radial_blur.samples = static_cast<int>(samples);
+    scene.settings.of<RadialBlurSettings>().samples = static_cast<int>(samples);
     return scene;
 }
 double samples_off(Trial& trial) {
@@ -75,7 +77,7 @@ double samples_off(Trial& trial) {
 StressScene disc(double aspect) {
     StressScene scene = blur_scene(point_light(vec3(0), 10), ahead);
     scene.view.size = {static_cast<int>(96 * aspect), 96};
-    scene.settings.radial_blur.density = 0.01f, scene.settings.radial_blur.lamp_size = 0.8f;
+    scene.settings.of<RadialBlurSettings>().density = 0.01f, scene.settings.of<RadialBlurSettings>().lamp_size = 0.8f;
     return scene;
 }
 double eccentricity(Trial& trial) {

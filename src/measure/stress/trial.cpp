@@ -1,5 +1,6 @@
 // Renders the tiny scenes of the stability suite, counts what is no light, and measures.
 #include "measure/stress/trial.h"
+#include "modes/froxel/settings.h"
 
 #include "measure/metrics/halves.h"
 #include "measure/metrics/metrics.h"
@@ -39,7 +40,7 @@ bool is_noise(const Trial& trial) {
     const Snapshot& snapshot = trial.scene.snapshot;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
     return error_is_noise(*trial.mode) ||
-           (trial.mode->name == "march" && shadows && std::ranges::any_of(snapshot.lights, is_soft));
+           (trial.mode->samples_soft_lights && shadows && std::ranges::any_of(snapshot.lights, is_soft));
 }
 
 // Depths that are none; infinite ones are those of the background.
@@ -127,7 +128,7 @@ Layers Trial::truth_of_scene(const StressScene& what) {
     FrameOptions options;
     options.cancel = cancel;
     FrameStats stats;
-    Layers layers = render_frame(find_mode("march"), view, what.snapshot, settings, options, stats);
+    Layers layers = render_frame(main_mode(), view, what.snapshot, settings, options, stats);
     count_faults(layers, stats, faults);
     return layers;
 }
@@ -197,7 +198,7 @@ Camera flat_camera(vec3 position, vec3 target, float height) {
 StressScene stress_scene(std::vector<Medium> media, std::vector<Light> lights, Camera camera, std::vector<Mesh> meshes,
                          std::vector<Material> materials) {
     StressScene result;
-    result.settings.path.orders = 1, result.settings.froxel.tile = 1;
+    result.settings.path.orders = 1, result.settings.of<FroxelSettings>().tile = 1;
     result.view.camera = camera, result.view.size = stress_size;
     result.view.pixel_samples = 1, result.view.filter = PixelFilter::center;
     result.view.jitter = result.settings.pixel.jitter;

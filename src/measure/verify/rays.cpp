@@ -139,7 +139,7 @@ RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int o
     constexpr int batches = 64;
     Settings settings;
     settings.path.orders = orders;
-    const ScatterFunction scatter = find_mode("path").prepare(View{}, snapshot, settings, nullptr);
+    const ScatterFunction scatter = mode_of_all_orders().prepare(View{}, snapshot, settings, nullptr);
     std::vector<double> means(batches, 0);
     parallel_for(batches, [&](int64_t b) {
         const uint32_t batch = static_cast<uint32_t>(b);
@@ -165,8 +165,7 @@ RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int o
 }
 
 Scatter reference_light(const Snapshot& snapshot, const Ray& ray) {
-    const ScatterFunction scatter =
-        find_mode("march").prepare(View{}, snapshot, settings_for(Quality::reference), nullptr);
+    const ScatterFunction scatter = main_mode().prepare(View{}, snapshot, settings_for(Quality::reference), nullptr);
     Scatter result;
     const uint32_t id = 7;
     scatter({{&ray, 1}, {&id, 1}, {}, {}}, {&result, 1});

@@ -27,7 +27,7 @@ struct Shot {
     bool per_light = false;
     int batches = 1;
     ivec2 crop_low{0}, crop_high{0};
-    std::string mode = "march";
+    std::string mode{main_mode().name};
     std::function<void(double)> progress{};
 };
 
@@ -68,7 +68,7 @@ int different_pixels(const Layers& part, const Layers& whole, ivec2 offset) {
 
 void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     const Snapshot snapshot = moment(scene, proof);
-    for (const char* mode : {"march", "path"}) {
+    for (const std::string_view mode : {main_mode().name, mode_of_all_orders().name}) {
         Shot shot{proof, control, checks, settings_for(Quality::preview)};
         shot.mode = mode, shot.settings.path.orders = 2;
         const Layers whole = render(shot, scene, snapshot);
@@ -134,7 +134,7 @@ void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyCont
         medium.optics.extinction *= std::min(1.0f, thick / (across * static_cast<float>(white.media.size())));
     }
     Shot shot{proof, control, checks, settings_for(Quality::preview)};
-    shot.mode = "path", shot.settings.pixel.samples = shot.batches = 64;
+    shot.mode = mode_of_all_orders().name, shot.settings.pixel.samples = shot.batches = 64;
     const Layers layers = render(shot, fog, white);
     double mean = 0, variance = 0;
     const double pixels = static_cast<double>(layers.color.pixels.size());
@@ -161,7 +161,7 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     const Layers reference = render(exact, lit, snapshot);
 
     Shot noisy = exact;
-    noisy.mode = "path", noisy.settings.path.orders = 1, noisy.progress = part(0.4, 1);
+    noisy.mode = mode_of_all_orders().name, noisy.settings.path.orders = 1, noisy.progress = part(0.4, 1);
     noisy.settings.pixel.samples = proof.samples, noisy.batches = 64;
     const Layers layers = render(noisy, lit, snapshot);
     Image<vec3> variance = layers.variance;

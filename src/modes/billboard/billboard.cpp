@@ -1,7 +1,8 @@
 // Beam cards: a look, not light. Cards stand where light leaks in and are drawn as textured quads.
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
 
-#include "modes/techniques.h"
+#include "modes/mode.h"
 #include "scene/light.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -21,7 +22,7 @@ std::vector<Limit> billboard_limits(const View& view, const Snapshot& snapshot, 
     if (std::ranges::any_of(snapshot.media, [](const Medium& medium) { return medium.majorant() > 0; }))
         limits.push_back({Severity::wrong, "billboard", "cards are a look: they are not lit, shadowed or made of fog"});
     std::vector<float> open;
-    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard, &open);
+    const std::vector<BeamCard> cards = place_cards(snapshot, settings.of<BillboardSettings>(), &open);
     std::vector<std::string> around, along;
     for (const BeamCard& card : cards) {
         if (off_axis(card, view.camera.position) < 1) around.push_back(card.name);
@@ -53,5 +54,18 @@ ScatterFunction prepare_billboard(const View& view, const Snapshot& snapshot, co
     return [billboards](const RayBatch& batch, std::span<Scatter> results) {
         billboard_packet(*billboards, batch, results);
     };
+}
+
+Mode billboard_mode() {
+    return {.name = "billboard",
+            .summary = "textured beam cards where light leaks into the scene: a look, not light",
+            .accuracy = Accuracy::look,
+            .surfaces = Surfaces::shared,
+            .limits = billboard_limits,
+            .prepare = prepare_billboard,
+            .append_rows = append_billboard_rows,
+            .rungs = billboard_rungs,
+            .color = "#B8A900",
+            .interactive = true};
 }
 }

@@ -1,5 +1,6 @@
 // Beam cards: where light leaks into the scene, and what is drawn there.
 #pragma once
+#include "modes/billboard/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/camera.h"

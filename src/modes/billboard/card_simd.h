@@ -9,6 +9,7 @@
 
 #include "base/simd/simd.h"
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
 #include "volume/medium_simd.h"
 
 HWY_BEFORE_NAMESPACE();

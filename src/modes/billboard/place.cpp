@@ -1,5 +1,6 @@
 // Cards for the openings that lights shine through.
 #include "modes/billboard/search.h"
+#include "modes/billboard/settings.h"
 
 #include "base/random.h"
 #include "scene/scene.h"

@@ -1,5 +1,6 @@
 // Beam cards as the camera sees them.
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
 
 #include "base/random.h"
 #include "integrate/style.h"
@@ -94,9 +95,10 @@ float off_axis(const BeamCard& card, vec3 point) {
 
 Billboards make_billboards(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Billboards billboards;
-    const std::vector<BeamCard> cards = place_cards(snapshot, settings.billboard, &billboards.veils);
-    for (float& veil : billboards.veils) veil *= settings.billboard.veil * settings.billboard.brightness;
-    billboards.settings = settings.billboard, billboards.style = settings.style;
+    const std::vector<BeamCard> cards = place_cards(snapshot, settings.of<BillboardSettings>(), &billboards.veils);
+    for (float& veil : billboards.veils)
+        veil *= settings.of<BillboardSettings>().veil * settings.of<BillboardSettings>().brightness;
+    billboards.settings = settings.of<BillboardSettings>(), billboards.style = settings.style;
     billboards.snapshot = stylised(snapshot, settings.style);
     billboards.snapshot.media = even_media(billboards.snapshot.media);
     billboards.camera = view.camera;
@@ -109,9 +111,11 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
         const float pace = 0.08f + 0.17f * to_unit(hash(card.seed, 1u)), phase = to_unit(hash(card.seed, 2u));
         const float swing = 0.5f + 0.5f * std::sin(2 * pi * (pace * billboards.seconds + phase));
         const float inside = smooth(0.5f, 4, off_axis(card, view.camera.position));
-        const float share = (1 - settings.billboard.sway * swing) * inside * settings.billboard.brightness;
+        const float share =
+            (1 - settings.of<BillboardSettings>().sway * swing) * inside * settings.of<BillboardSettings>().brightness;
         if (share > 0)
-            add_quads(card, static_cast<int>(i), view.camera, settings.billboard.facing, share, billboards.quads);
+            add_quads(card, static_cast<int>(i), view.camera, settings.of<BillboardSettings>().facing, share,
+                      billboards.quads);
     }
     billboards.groups = grouped(billboards.quads, view.camera);
     return billboards;

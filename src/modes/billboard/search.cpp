@@ -1,4 +1,5 @@
 #include "modes/billboard/search.h"
+#include "modes/billboard/settings.h"
 
 #include <cmath>
 

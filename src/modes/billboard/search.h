@@ -1,6 +1,7 @@
 // The view from a light, and the openings it shines through.
 #pragma once
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
 #include "scene/light.h"
 
 namespace tyndall {

@@ -1,4 +1,5 @@
-// Rows of the beam cards.
+// Settings of the beam cards: rows, presets, and the ladder from quick to careful.
+#include "modes/billboard/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
@@ -7,31 +8,46 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
         rows.push_back(number_row(std::string("billboard.") + name, unit, low, high, doc, field));
     };
     number("cards", "", 0, 256, "most cards found per light, largest openings first; 0 = hand-placed ones only",
-           TYNDALL_FIELD(billboard.cards));
-    number("rays", "", 8, 1024, "rays across the light's view that looks for openings", TYNDALL_FIELD(billboard.rays));
+           TYNDALL_FIELD(of<BillboardSettings>().cards));
+    number("rays", "", 8, 1024, "rays across the light's view that looks for openings",
+           TYNDALL_FIELD(of<BillboardSettings>().rays));
     rows.push_back(
         choice_row("billboard.facing", {"axis", "camera", "cross"},
                    "how cards turn: about their beam towards the eye, square to the view, or not at all, two "
                    "crossed for each beam",
-                   TYNDALL_FIELD(billboard.facing)));
-    number("brightness", "", 0, 1000, "factor on all cards and veils", TYNDALL_FIELD(billboard.brightness));
+                   TYNDALL_FIELD(of<BillboardSettings>().facing)));
+    number("brightness", "", 0, 1000, "factor on all cards and veils",
+           TYNDALL_FIELD(of<BillboardSettings>().brightness));
     number("veil", "", 0, 1, "share of the fog in the open air that a sun lights evenly, before its cards",
-           TYNDALL_FIELD(billboard.veil));
+           TYNDALL_FIELD(of<BillboardSettings>().veil));
     number("gaps", "", 0, 1000, "factor on cards found in gaps in the open air, which have to show before its veil",
-           TYNDALL_FIELD(billboard.gaps));
-    number("streaks", "", 0, 1, "how far stripes along the beam darken it", TYNDALL_FIELD(billboard.streaks));
-    number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(billboard.stripes));
-    number("soft", "", 0.05, 1, "share of a card's half width over which it fades out", TYNDALL_FIELD(billboard.soft));
-    number("scroll", "m/s", -100, 100, "how fast the texture moves along the beam", TYNDALL_FIELD(billboard.scroll));
-    number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(billboard.sway));
-    number("specks", "", 0, 100, "brightness of dust particles in the beam", TYNDALL_FIELD(billboard.specks));
+           TYNDALL_FIELD(of<BillboardSettings>().gaps));
+    number("streaks", "", 0, 1, "how far stripes along the beam darken it",
+           TYNDALL_FIELD(of<BillboardSettings>().streaks));
+    number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(of<BillboardSettings>().stripes));
+    number("soft", "", 0.05, 1, "share of a card's half width over which it fades out",
+           TYNDALL_FIELD(of<BillboardSettings>().soft));
+    number("scroll", "m/s", -100, 100, "how fast the texture moves along the beam",
+           TYNDALL_FIELD(of<BillboardSettings>().scroll));
+    number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(of<BillboardSettings>().sway));
+    number("specks", "", 0, 100, "brightness of dust particles in the beam",
+           TYNDALL_FIELD(of<BillboardSettings>().specks));
     number("near_fade", "m", 0, 1e6, "distance from the eye within which cards fade in",
-           TYNDALL_FIELD(billboard.near_fade));
+           TYNDALL_FIELD(of<BillboardSettings>().near_fade));
     number("far_fade", "m", 0.01, 1e6, "distance from the eye at which cards have faded out, over its last half",
-           TYNDALL_FIELD(billboard.far_fade));
+           TYNDALL_FIELD(of<BillboardSettings>().far_fade));
     number("soft_depth", "m", 0, 1e6, "distance before a surface over which a card fades out",
-           TYNDALL_FIELD(billboard.soft_depth));
+           TYNDALL_FIELD(of<BillboardSettings>().soft_depth));
     rows.push_back(choice_row("billboard.fog", switches, "even fog dims the cards and what is behind them",
-                              TYNDALL_FIELD(billboard.fog)));
+                              TYNDALL_FIELD(of<BillboardSettings>().fog)));
+}
+
+std::vector<Rung> billboard_rungs() {
+    return {{"", "pixel.samples=1 billboard.cards=8 billboard.rays=32"},
+            {"", "pixel.samples=1 billboard.cards=16 billboard.rays=64"},
+            {"", "pixel.samples=1 billboard.cards=64 billboard.rays=128"},
+            {"", "pixel.samples=4 billboard.cards=64 billboard.rays=128"},
+            {"", "pixel.samples=16 billboard.cards=128 billboard.rays=192"},
+            {"", "pixel.samples=64 billboard.cards=256 billboard.rays=256"}};
 }
 }

@@ -1,11 +1,13 @@
 // Analytic volume lights: what of even fog each light reaches, in closed form and without shadows.
 #include "modes/cone/cone.h"
+#include "modes/cone/settings.h"
+#include "modes/picture_share.h"
 
 #include "integrate/style.h"
 #include "modes/fog_picture.h"
 #include "modes/history.h"
 #include "modes/limits.h"
-#include "modes/techniques.h"
+#include "modes/mode.h"
 #include "trace/occlusion/scene.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
@@ -115,8 +117,8 @@ float AnchoredFog::extinction() const {
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Snapshot seen = stylised(snapshot, settings.style);
     Cone cone;
-    cone.settings = settings.cone, cone.style = settings.style, cone.eye = view.camera.position;
-    cone.noise_rise = static_cast<float>(settings.cone.noise_speed * snapshot.seconds);
+    cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
+    cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);
     cone.casts = snapshot.occluders && !snapshot.occluders->empty();
     for (const Medium& medium : seen.media)
         if (medium.kind == DensityKind::bricks) cone.grids.push_back(medium.bricks->bounds);
@@ -156,13 +158,13 @@ std::vector<Limit> cone_limits(const View& view, const Snapshot& snapshot, const
             limits.push_back({Severity::degraded, where, "shadows of surfaces are not seen in its light"});
         if (!sun && light.radius > 0)
             limits.push_back({Severity::info, where, "shines as from a point; its radius only caps the brightness"});
-        if (!sun && settings.cone.attenuation != ConeAttenuation::inverse_square)
+        if (!sun && settings.of<ConeSettings>().attenuation != ConeAttenuation::inverse_square)
             limits.push_back({Severity::degraded, where, "cone.attenuation is not the inverse square: not physical"});
-        if (light.kind == LightKind::spot && settings.cone.edge == ConeEdge::soft)
+        if (light.kind == LightKind::spot && settings.of<ConeSettings>().edge == ConeEdge::soft)
             limits.push_back({Severity::degraded, where, "cone.edge is soft: its own inner cone is not used"});
-        if (light.kind == LightKind::spot && settings.cone.near_radius > 0)
+        if (light.kind == LightKind::spot && settings.of<ConeSettings>().near_radius > 0)
             limits.push_back({Severity::info, where, "cone.near_radius cuts away the light next to it"});
-        if (!sun && settings.cone.noise > 0)
+        if (!sun && settings.of<ConeSettings>().noise > 0)
             limits.push_back({Severity::info, where, "cone.noise modulates its light: a look"});
     }
     for (const Medium& medium : snapshot.media)
@@ -179,7 +181,22 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
         cone_packet(*cone, batch, results);
     };
     if (history) follow(*history, view, snapshot, settings);
-    if (settings.cone.picture == PictureShare::full && !history) return scatter;
-    return from_fog_picture(view, snapshot, {settings.cone.picture}, std::move(scatter), history);
+    if (settings.of<ConeSettings>().picture == PictureShare::full && !history) return scatter;
+    return from_fog_picture(view, snapshot, {settings.of<ConeSettings>().picture}, std::move(scatter), history);
+}
+
+Mode cone_mode() {
+    return {.name = "cone",
+            .summary = "closed forms for the light of spots, points and suns in even fog, without shadows",
+            .accuracy = Accuracy::even_fog,
+            .surfaces = Surfaces::shared,
+            .limits = cone_limits,
+            .prepare = prepare_cone,
+            .append_rows = append_cone_rows,
+            .set_quality = set_cone_quality,
+            .rungs = cone_rungs,
+            .color = "#56B4E9",
+            .remembers = true,
+            .interactive = true};
 }
 }

@@ -1,5 +1,6 @@
 // What the analytic light cones need, made once per frame.
 #pragma once
+#include "modes/cone/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"

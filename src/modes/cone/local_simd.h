@@ -8,6 +8,7 @@
 #endif
 
 #include "modes/cone/packet_simd.h"
+#include "modes/cone/settings.h"
 #include "volume/noise/noise.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,33 +1,49 @@
-// Rows of the analytic light cones.
+// Settings of the analytic light cones: rows, presets, and the ladder from quick to careful.
+#include "modes/cone/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
 void append_cone_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("cone.nodes", "", 2, 32,
                               "quadrature nodes on the widest pieces of a ray; narrow and thin ones take fewer",
-                              TYNDALL_FIELD(cone.nodes)));
+                              TYNDALL_FIELD(of<ConeSettings>().nodes)));
     rows.push_back(number_row("cone.near_radius", "m", 0, 1000,
                               "radius of a spot's lens: its light begins where the cone is that wide",
-                              TYNDALL_FIELD(cone.near_radius)));
+                              TYNDALL_FIELD(of<ConeSettings>().near_radius)));
     rows.push_back(choice_row("cone.attenuation", {"inverse_square", "linear", "none"},
                               "of local lights with distance; linear = from its strength at 1 m to 0 at the light's "
                               "range (or the scene's diagonal), none = as at 1 m everywhere within range",
-                              TYNDALL_FIELD(cone.attenuation)));
+                              TYNDALL_FIELD(of<ConeSettings>().attenuation)));
     rows.push_back(choice_row("cone.edge", {"physical", "soft"},
                               "of spots; physical = the light's inner and outer cone, soft = smooth in the angle from "
                               "cone.inner of the outer cone on",
-                              TYNDALL_FIELD(cone.edge)));
+                              TYNDALL_FIELD(of<ConeSettings>().edge)));
     rows.push_back(number_row("cone.inner", "", 0, 1, "share of the outer cone's angle that a soft edge leaves even",
-                              TYNDALL_FIELD(cone.inner)));
+                              TYNDALL_FIELD(of<ConeSettings>().inner)));
     rows.push_back(number_row("cone.noise", "", 0, 1, "how far drifting noise modulates the light of local lights",
-                              TYNDALL_FIELD(cone.noise)));
+                              TYNDALL_FIELD(of<ConeSettings>().noise)));
     rows.push_back(number_row("cone.noise_size", "m", 0.001, 1e5, "size of the noise's largest shapes",
-                              TYNDALL_FIELD(cone.noise_size)));
+                              TYNDALL_FIELD(of<ConeSettings>().noise_size)));
     rows.push_back(number_row("cone.noise_speed", "m/s", -1000, 1000, "how fast the noise rises",
-                              TYNDALL_FIELD(cone.noise_speed)));
+                              TYNDALL_FIELD(of<ConeSettings>().noise_speed)));
     rows.push_back(choice_row("cone.picture", picture_shares,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
-                              TYNDALL_FIELD(cone.picture)));
+                              TYNDALL_FIELD(of<ConeSettings>().picture)));
+}
+
+void set_cone_quality(Settings& settings, Quality quality) {
+    ConeSettings& cone = settings.of<ConeSettings>();
+    if (quality == Quality::draft) cone.nodes = 6;
+    if (quality == Quality::reference) cone.nodes = 16;
+}
+
+std::vector<Rung> cone_rungs() {
+    return {{"", "pixel.samples=1 cone.nodes=4 cone.picture=third"},
+            {"", "pixel.samples=1 cone.nodes=4 cone.picture=half"},
+            {"", "pixel.samples=1 cone.nodes=6"},
+            {"", "pixel.samples=4 cone.nodes=8"},
+            {"", "pixel.samples=16 cone.nodes=12"},
+            {"", "pixel.samples=64 cone.nodes=16"}};
 }
 }

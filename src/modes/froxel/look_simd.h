@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "modes/froxel/fill.h"
 #include "modes/froxel/light_simd.h"
+#include "modes/froxel/settings.h"
 #include "volume/medium_simd.h"
 
 HWY_BEFORE_NAMESPACE();

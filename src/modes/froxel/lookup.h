@@ -1,6 +1,7 @@
 // Fog along camera rays, found among integrated froxels.
 #pragma once
 #include "modes/froxel/integrate.h"
+#include "modes/froxel/settings.h"
 #include "modes/mode.h"
 
 namespace tyndall {

@@ -1,6 +1,7 @@
 // Froxels near a local light: points spread over them.
 #include "base/random.h"
 #include "modes/froxel/lit.h"
+#include "modes/froxel/settings.h"
 
 namespace tyndall {
 namespace {

@@ -9,6 +9,7 @@
 #include "base/random.h"
 #include "base/simd/reduce_simd.h"
 #include "modes/froxel/lookup.h"
+#include "modes/froxel/settings.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -9,6 +9,7 @@
 #include "integrate/style_simd.h"
 #include "modes/froxel/lit.h"
 #include "modes/froxel/look_simd.h"
+#include "modes/froxel/settings.h"
 #include "trace/fluence/fluence_simd.h"
 #include "trace/transmittance/light_grid_simd.h"
 #include "volume/phase_simd.h"

@@ -1,34 +1,52 @@
-// Rows of the froxel cache.
+// Settings of the froxel cache: rows, presets, and the ladder from quick to careful.
+#include "modes/froxel/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
 void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("froxel.tile", "pixels", 1, 64, "width and height of a froxel in the picture",
-                              TYNDALL_FIELD(froxel.tile)));
+                              TYNDALL_FIELD(of<FroxelSettings>().tile)));
     rows.push_back(number_row("froxel.depth_slices", "", 1, 4096,
                               "froxels in depth, from the nearest fog in view to "
                               "the farthest depth that is needed",
-                              TYNDALL_FIELD(froxel.depth_slices)));
+                              TYNDALL_FIELD(of<FroxelSettings>().depth_slices)));
     rows.push_back(number_row("froxel.depth_growth", "", 0.1, 256,
                               "how many times as thick the last slice is as the first; 1 = all the same",
-                              TYNDALL_FIELD(froxel.depth_growth)));
+                              TYNDALL_FIELD(of<FroxelSettings>().depth_growth)));
     rows.push_back(choice_row("froxel.visibility", {"off", "rays", "slices"},
                               "shadows of surfaces in the fog; rays = sampled in each froxel, slices = the exact lit "
                               "share of the line through its middle",
-                              TYNDALL_FIELD(froxel.visibility)));
+                              TYNDALL_FIELD(of<FroxelSettings>().visibility)));
     rows.push_back(number_row("froxel.shadow_rays", "", 1, 256,
                               "points of each froxel at which light and fog are sampled; with slices, points of a "
                               "soft light",
-                              TYNDALL_FIELD(froxel.shadow_rays)));
+                              TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
     rows.push_back(choice_row("froxel.lookup", {"trilinear", "tricubic", "jittered"},
                               "how pixels are found between froxels; tricubic = smoother, jittered = grain instead of "
                               "cells",
-                              TYNDALL_FIELD(froxel.lookup)));
+                              TYNDALL_FIELD(of<FroxelSettings>().lookup)));
     rows.push_back(number_row("froxel.history", "", 0, 0.99, "weight of the frames before, where there are any",
-                              TYNDALL_FIELD(froxel.history)));
+                              TYNDALL_FIELD(of<FroxelSettings>().history)));
     rows.push_back(choice_row("froxel.amortise", switches,
                               "with a history, light only a quarter of the froxels anew "
                               "in each frame",
-                              TYNDALL_FIELD(froxel.amortise)));
+                              TYNDALL_FIELD(of<FroxelSettings>().amortise)));
+}
+
+void set_froxel_quality(Settings& settings, Quality quality) {
+    FroxelSettings& froxel = settings.of<FroxelSettings>();
+    if (quality == Quality::draft) froxel.tile = 16, froxel.depth_slices = 48;
+    if (quality == Quality::final) froxel.tile = 2, froxel.depth_slices = 160, froxel.shadow_rays = 4;
+    if (quality == Quality::reference) froxel.tile = 1, froxel.depth_slices = 768, froxel.shadow_rays = 16;
+}
+
+std::vector<Rung> froxel_rungs() {
+    return {
+        {"", "pixel.samples=1 froxel.tile=24 froxel.depth_slices=32 froxel.shadow_rays=1 march.light_resolution=32"},
+        {"", "pixel.samples=1 froxel.tile=16 froxel.depth_slices=48 froxel.shadow_rays=1 march.light_resolution=32"},
+        {"", "pixel.samples=1 froxel.tile=8 froxel.depth_slices=64 froxel.shadow_rays=1 march.light_resolution=64"},
+        {"", "pixel.samples=4 froxel.tile=4 froxel.depth_slices=96 froxel.shadow_rays=2 march.light_resolution=96"},
+        {"", "pixel.samples=16 froxel.tile=2 froxel.depth_slices=160 froxel.shadow_rays=4 march.light_resolution=128"},
+        {"", "pixel.samples=32 froxel.tile=2 froxel.depth_slices=256 froxel.shadow_rays=8 march.light_resolution=192"}};
 }
 }

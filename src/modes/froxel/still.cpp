@@ -1,4 +1,5 @@
 #include "modes/froxel/still.h"
+#include "modes/froxel/settings.h"
 
 #include "trace/kept.h"
 #include "trace/view.h"

@@ -1,6 +1,7 @@
 // The march of one packet, apart from its preparation.
 #pragma once
 #include "integrate/march_steps.h"
+#include "integrate/style.h"
 #include "modes/mode.h"
 #include "trace/fluence/fluence.h"
 #include "trace/shadows/intervals/shadow_slices.h"

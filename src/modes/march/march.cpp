@@ -6,8 +6,9 @@
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"
 #include "modes/march/kernel.h"
+#include "modes/march/settings.h"
+#include "modes/mode.h"
 #include "modes/promise.h"
-#include "modes/techniques.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "trace/view.h"
@@ -103,11 +104,25 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     }
     march->steps = march_steps(settings.march, march->snapshot.lights);
     march->fluence = kept_fluence(march->snapshot, settings.fluence, view.seed);
-    if (settings.march.visibility == Visibility::maps)
-        march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
+    if (settings.march.visibility == Visibility::maps) march->maps = make_shadow_maps(view, march->snapshot, settings);
     if (settings.march.visibility != Visibility::exact)
         return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
     if (snapshot.occluders) march->slices = snapshot.occluders->shadow_slices();
     return [march](const RayBatch& batch, std::span<Scatter> results) { march_exact(*march, batch, results); };
+}
+
+Mode march_mode() {
+    return {.name = "march",
+            .summary = "ray march through all fog with shadow rays: the main renderer",
+            .accuracy = Accuracy::single_scattering,
+            .surfaces = Surfaces::shared,
+            .limits = march_limits,
+            .prepare = prepare_march,
+            .append_rows = append_march_rows,
+            .set_quality = set_march_quality,
+            .rungs = march_rungs,
+            .color = "#0072B2",
+            .adds_fluence = true,
+            .samples_soft_lights = true};
 }
 }

@@ -1,4 +1,5 @@
-// Rows of the main renderer.
+// Settings of the main renderer: rows, presets, and the ladder from quick to careful.
+#include "modes/march/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
@@ -53,5 +54,69 @@ void append_march_rows(std::vector<SettingRow>& rows) {
         choice_row("march.emission", switches, "light the fog itself gives off", TYNDALL_FIELD(march.emission)));
     rows.push_back(
         choice_row("march.ambient", switches, "the scene's ambient light in the fog", TYNDALL_FIELD(march.ambient)));
+}
+
+void set_march_quality(Settings& settings, Quality quality) {
+    MarchSettings& march = settings.march;
+    switch (quality) {
+    case Quality::draft:
+        march.step_depth = 0.5f, march.step_voxels = 16, march.step_share = 1.0f / 24, march.near_light = 1;
+        march.min_transmittance = 1e-2f, march.light_resolution = 32, march.light = LightTransmittance::froxel;
+        march.nodes = 3;
+        break;
+    case Quality::preview:
+        break;
+    case Quality::final:
+        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 96, march.near_light = 0.25f;
+        march.max_steps = 4096, march.min_transmittance = 1e-4f, march.light_resolution = 128, march.nodes = 6;
+        break;
+    case Quality::reference:
+        march.step_depth = 0.1f, march.step_voxels = 2, march.step_share = 1.0f / 64, march.near_light = 0.02f;
+        march.max_steps = 65536, march.min_transmittance = 0, march.light = LightTransmittance::marched;
+        march.visibility = Visibility::exact;
+        march.light_resolution = 256, march.nodes = 16;
+        break;
+    }
+}
+
+namespace {
+// What a rung decides.
+constexpr std::array<std::string_view, 10> rung_rows{
+    "march.step_depth",        "march.step_voxels", "march.step_share", "march.near_light", "march.max_steps",
+    "march.min_transmittance", "march.visibility",  "march.light",      "march.nodes",      "march.light_resolution"};
+
+Rung rung_of(std::string name, int samples, const MarchSettings& march) {
+    Settings settings;
+    settings.march = march;
+    Rung rung{std::move(name), "pixel.samples=" + std::to_string(samples)};
+    std::vector<SettingRow> rows;
+    append_march_rows(rows);
+    for (const SettingRow& row : rows)
+        if (std::ranges::count(rung_rows, row.name)) rung.assignments += " " + row.name + "=" + row.get(settings);
+    return rung;
+}
+}
+
+// Steps and light grids get finer together, since neither alone is the whole error; samples grow with care, so that the
+// edges of surfaces do not hide what the fog gains.
+std::vector<Rung> march_rungs() {
+    const auto of = [](Quality quality) {
+        Settings settings;
+        set_march_quality(settings, quality);
+        return settings.march;
+    };
+    MarchSettings fine = of(Quality::preview), finer = of(Quality::final), marched;
+    fine.step_depth = 0.15f, fine.step_voxels = 4, fine.step_share = 1.0f / 56, fine.near_light = 0.35f;
+    fine.max_steps = 2048, fine.min_transmittance = 3e-4f, fine.light_resolution = 96, fine.nodes = 5;
+    finer.step_depth = 0.05f, finer.step_voxels = 1, finer.step_share = 1.0f / 192, finer.near_light = 0.125f;
+    finer.max_steps = 16384, finer.min_transmittance = 1e-5f, finer.light_resolution = 256, finer.nodes = 8;
+    marched = finer, marched.light = LightTransmittance::marched;
+    return {rung_of("draft", 1, of(Quality::draft)),
+            rung_of("preview", 1, of(Quality::preview)),
+            rung_of("fine", 4, fine),
+            rung_of("final", 16, of(Quality::final)),
+            rung_of("finer", 32, finer),
+            rung_of("marched", 64, marched),
+            rung_of("exact", 64, of(Quality::reference))};
 }
 }

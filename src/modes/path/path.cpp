@@ -1,6 +1,7 @@
 // The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
+#include "modes/mode.h"
+#include "modes/path/settings.h"
 #include "modes/path/tracer.h"
-#include "modes/techniques.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -45,5 +46,17 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     if (settings.path.emission) tracer->glow = make_glow(tracer->snapshot);
     tracer->glimmers = glimmers(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
+}
+
+Mode path_mode() {
+    return {.name = "path",
+            .summary = "unbiased path tracing of all scattered light: the truth, with noise",
+            .accuracy = Accuracy::multiple_scattering,
+            .surfaces = Surfaces::own,
+            .limits = path_limits,
+            .prepare = prepare_path,
+            .append_rows = append_path_rows,
+            .rungs = path_rungs,
+            .color = "#000000"};
 }
 }

@@ -1,4 +1,5 @@
-// Rows of the path tracer.
+// Settings of the path tracer: rows, presets, and the ladder from quick to careful.
+#include "modes/path/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
@@ -10,5 +11,10 @@ void append_path_rows(std::vector<SettingRow>& rows) {
         choice_row("path.emission", switches, "light that fog and surfaces give off", TYNDALL_FIELD(path.emission)));
     rows.push_back(choice_row("path.ambient", switches, "the scene's ambient light, as even surroundings far away",
                               TYNDALL_FIELD(path.ambient)));
+}
+
+std::vector<Rung> path_rungs() {
+    return {{"", "pixel.samples=1"},  {"", "pixel.samples=4"},   {"", "pixel.samples=16"},
+            {"", "pixel.samples=64"}, {"", "pixel.samples=256"}, {"", "pixel.samples=1024"}};
 }
 }

@@ -1,5 +1,6 @@
 // What the radial blur smears: the sky around lights, or highlights.
 #include "modes/radial_blur/glow.h"
+#include "modes/radial_blur/settings.h"
 
 #include "base/parallel.h"
 #include "base/shrink.h"

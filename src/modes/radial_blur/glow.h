@@ -1,6 +1,7 @@
 // Pictures of brightness that the radial blur smears.
 #pragma once
 #include "modes/radial_blur/radial_blur.h"
+#include "modes/radial_blur/settings.h"
 
 namespace tyndall {
 // One plane of brightness, or three of colour, in a black frame two pixels wide, so that bilinear look-ups up to a

@@ -1,5 +1,6 @@
 // Where the radial blur sees the lights, and how bright it takes them for.
 #include "modes/radial_blur/radial_blur.h"
+#include "modes/radial_blur/settings.h"
 
 #include "integrate/style.h"
 #include "scene/light.h"

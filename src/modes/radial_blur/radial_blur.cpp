@@ -1,13 +1,14 @@
 // Radial blur: bright places smeared away from the light's place in the picture (Mitchell 2007, GPU Gems 3, chapter
 // 13).
 #include "modes/radial_blur/radial_blur.h"
+#include "modes/radial_blur/settings.h"
 
 #include "integrate/even_fog.h"
 #include "integrate/style.h"
 #include "modes/fog_picture.h"
+#include "modes/mode.h"
 #include "modes/promise.h"
 #include "modes/radial_blur/glow.h"
-#include "modes/techniques.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
@@ -52,11 +53,11 @@ std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot
         {Severity::degraded, "picture",
          "rays are smeared brightness, not light: fog, distance and what is off screen play no part"}};
     for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks && settings.radial_blur.fog)
+        if (medium.kind == DensityKind::bricks && settings.of<RadialBlurSettings>().fog)
             limits.push_back({Severity::degraded, "medium " + medium.name,
                               "dims what is behind it as even fog of its mean density in the grid's bounds "
                               "(radial_blur.fog)"});
-    const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.radial_blur);
+    const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.of<RadialBlurSettings>());
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const auto found = std::ranges::find(seen, i, &BlurLight::index);
         const std::string where = "light " + snapshot.lights[i].name;
@@ -69,15 +70,29 @@ std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot
 }
 
 ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
-    return dimming_only(settings.radial_blur.fog ? even_media(snapshot.media) : std::vector<Medium>{});
+    return dimming_only(settings.of<RadialBlurSettings>().fog ? even_media(snapshot.media) : std::vector<Medium>{});
 }
 
 PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const Settings& settings) {
     auto blur = std::make_shared<RadialBlur>();
-    blur->view = view, blur->settings = settings.radial_blur;
+    blur->view = view, blur->settings = settings.of<RadialBlurSettings>();
     blur->snapshot = stylised(snapshot, settings.style);
-    blur->lights = blur_lights(view, blur->snapshot, settings.radial_blur);
-    blur->line = make_line(settings.radial_blur);
+    blur->lights = blur_lights(view, blur->snapshot, settings.of<RadialBlurSettings>());
+    blur->line = make_line(settings.of<RadialBlurSettings>());
     return [blur](const PlainPicture& picture) { return added_rays(*blur, picture); };
+}
+
+Mode radial_blur_mode() {
+    return {.name = "radial-blur",
+            .summary = "brightness smeared away from the lights in the finished picture",
+            .accuracy = Accuracy::look,
+            .surfaces = Surfaces::post,
+            .limits = radial_blur_limits,
+            .prepare = prepare_radial_blur,
+            .prepare_post = post_radial_blur,
+            .append_rows = append_radial_blur_rows,
+            .rungs = radial_blur_rungs,
+            .color = "#D55E00",
+            .interactive = true};
 }
 }

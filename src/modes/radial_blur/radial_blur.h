@@ -1,6 +1,7 @@
 // Where the radial blur sees the lights.
 #pragma once
 #include "modes/mode.h"
+#include "modes/radial_blur/settings.h"
 #include "modes/settings.h"
 
 namespace tyndall {

@@ -2,6 +2,7 @@
 #pragma once
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shadow_map/settings.h"
 #include "trace/shadows/kept_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"

@@ -9,6 +9,7 @@
 
 #include "base/simd/angles_simd.h"
 #include "modes/shadow_map/packet_simd.h"
+#include "modes/shadow_map/settings.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

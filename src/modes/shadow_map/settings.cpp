@@ -1,38 +1,61 @@
-// Rows of the march with shadow maps.
+// Settings of the march with shadow maps: rows, presets, and the ladder from quick to careful.
+#include "modes/shadow_map/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
 void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.steps", "", 1, 1024,
                               "steps along each ray through the fog, and as many along what each local light reaches",
-                              TYNDALL_FIELD(shadow_map.steps)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().steps)));
     rows.push_back(number_row("shadow_map.lookups", "", 1, 64,
                               "points of each step whose shadows are looked up: narrow shafts need more than fog does",
-                              TYNDALL_FIELD(shadow_map.lookups)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().lookups)));
     rows.push_back(choice_row("shadow_map.spacing", {"angle", "distance"},
                               "steps of local lights: even in the angle around the light, or even along the ray",
-                              TYNDALL_FIELD(shadow_map.spacing)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().spacing)));
     rows.push_back(number_row("shadow_map.resolution", "texels", 16, 8192,
                               "texels across each shadow map (also of march.visibility=maps, as the rows below)",
-                              TYNDALL_FIELD(shadow_map.resolution)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().resolution)));
     rows.push_back(number_row("shadow_map.cascades", "", 1, 4,
                               "most shadow maps of a sun, one behind the other; fewer where the scene gains nothing",
-                              TYNDALL_FIELD(shadow_map.cascades)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().cascades)));
     rows.push_back(number_row("shadow_map.pcf", "", 0, 2,
                               "smoothing of shadow edges: 0 nearest texel, 1 the four around, 2 sixteen",
-                              TYNDALL_FIELD(shadow_map.pcf)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().pcf)));
     rows.push_back(number_row("shadow_map.bias", "texels", 0, 64,
                               "moves surfaces away from the light; fog needs none, and light leaks by as much",
-                              TYNDALL_FIELD(shadow_map.bias)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().bias)));
     rows.push_back(choice_row("shadow_map.light", {"off", "average", "froxel", "grid", "marched"},
                               "fog between light and fog, as march.light; cells: march.light_resolution",
-                              TYNDALL_FIELD(shadow_map.light)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().light)));
     rows.push_back(choice_row("shadow_map.picture", picture_shares,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
-                              TYNDALL_FIELD(shadow_map.picture)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().picture)));
     rows.push_back(choice_row("shadow_map.blur", switches,
                               "smooths the jitter's pattern over 4x4 pixels of like depth (of one ray per pixel)",
-                              TYNDALL_FIELD(shadow_map.blur)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().blur)));
+}
+
+void set_shadow_map_quality(Settings& settings, Quality quality) {
+    ShadowMapSettings& shadow_map = settings.of<ShadowMapSettings>();
+    if (quality == Quality::draft) shadow_map.steps = 16, shadow_map.resolution = 256;
+    if (quality == Quality::final) shadow_map.steps = 64, shadow_map.resolution = 2048, shadow_map.pcf = 1;
+    if (quality == Quality::reference)
+        shadow_map.steps = 256, shadow_map.resolution = 4096, shadow_map.pcf = 1,
+        shadow_map.light = LightTransmittance::marched;
+}
+
+std::vector<Rung> shadow_map_rungs() {
+    return {
+        {"", "pixel.samples=1 shadow_map.steps=8 shadow_map.resolution=256 march.light_resolution=32"},
+        {"", "pixel.samples=1 shadow_map.steps=16 shadow_map.resolution=256 march.light_resolution=32"},
+        {"", "pixel.samples=2 shadow_map.steps=24 shadow_map.resolution=512 march.light_resolution=64"},
+        {"",
+         "pixel.samples=4 shadow_map.steps=48 shadow_map.resolution=1024 shadow_map.pcf=1 march.light_resolution=64"},
+        {"",
+         "pixel.samples=16 shadow_map.steps=64 shadow_map.resolution=2048 shadow_map.pcf=1 march.light_resolution=128"},
+        {"", "pixel.samples=64 shadow_map.steps=128 shadow_map.resolution=4096 shadow_map.pcf=1 "
+             "march.light_resolution=192"}};
 }
 }

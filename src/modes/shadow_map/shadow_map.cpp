@@ -4,8 +4,10 @@
 #include "modes/history.h"
 #include "modes/limits.h"
 #include "modes/map_shadows.h"
+#include "modes/mode.h"
+#include "modes/picture_share.h"
 #include "modes/shadow_map/kernel.h"
-#include "modes/techniques.h"
+#include "modes/shadow_map/settings.h"
 #include "scene/scene.h"
 #include "volume/medium.h"
 
@@ -49,14 +51,14 @@ std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot,
     Settings like = settings;
     like.fluence.orders = 1;
     like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
-    std::vector<Limit> limits = march_limits(view, snapshot, like);
+    std::vector<Limit> limits = main_mode().limits(view, snapshot, like);
     for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
-    add_step_limits(view, snapshot, settings.shadow_map.steps, "shadow_map.steps", true, limits);
-    append_edge_limits(view, snapshot, settings.shadow_map, limits);
-    if (!snapshot.media.empty() && settings.shadow_map.light == LightTransmittance::off)
+    add_step_limits(view, snapshot, settings.of<ShadowMapSettings>().steps, "shadow_map.steps", true, limits);
+    append_edge_limits(view, snapshot, settings.of<ShadowMapSettings>(), limits);
+    if (!snapshot.media.empty() && settings.of<ShadowMapSettings>().light == LightTransmittance::off)
         limits.push_back(
             {Severity::degraded, "lights", "shadow_map.light is off: fog does not dim the light that crosses it"});
-    if (!snapshot.media.empty() && settings.shadow_map.light == LightTransmittance::average)
+    if (!snapshot.media.empty() && settings.of<ShadowMapSettings>().light == LightTransmittance::average)
         limits.push_back({Severity::degraded, "lights", "shadow_map.light is average: every point is dimmed the same"});
     return limits;
 }
@@ -65,11 +67,11 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
     march->snapshot = march_snapshot(snapshot, settings.march, settings.style);
-    march->settings = settings.shadow_map, march->style = settings.style, march->camera = view.camera;
+    march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
-    march->maps = make_shadow_maps(view, march->snapshot, settings.shadow_map);
+    march->maps = make_shadow_maps(view, march->snapshot, settings);
     for (const Light& light : march->snapshot.lights) {
-        march->depths.push_back(make_light_depth(march->snapshot, light, settings.shadow_map.light,
+        march->depths.push_back(make_light_depth(march->snapshot, light, settings.of<ShadowMapSettings>().light,
                                                  settings.march.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
@@ -77,9 +79,24 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
         march_shadow_maps(*march, batch, results);
     };
-    const FogPictureOptions picture{settings.shadow_map.picture, settings.shadow_map.blur};
+    const FogPictureOptions picture{settings.of<ShadowMapSettings>().picture, settings.of<ShadowMapSettings>().blur};
     if (history) follow(*history, view, snapshot, settings);
     if (picture.share == PictureShare::full && !picture.blur && !history) return scatter;
     return from_fog_picture(view, snapshot, picture, std::move(scatter), history);
+}
+
+Mode shadow_map_mode() {
+    return {.name = "shadow-map",
+            .summary = "ray march in a fixed number of steps with shadow maps",
+            .accuracy = Accuracy::single_scattering,
+            .surfaces = Surfaces::shared,
+            .limits = shadow_map_limits,
+            .prepare = prepare_shadow_map,
+            .append_rows = append_shadow_map_rows,
+            .set_quality = set_shadow_map_quality,
+            .rungs = shadow_map_rungs,
+            .color = "#009E73",
+            .remembers = true,
+            .interactive = true};
 }
 }

@@ -1,28 +1,48 @@
-// Rows of shadow volumes.
+// Settings of shadow volumes: rows, presets, and the ladder from quick to careful.
+#include "modes/shadow_volume/settings.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {
 void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("shadow_volume.draw", {"exact", "shells"},
                               "exact = fog light integrated between the volumes; shells = their sides as bright sheets",
-                              TYNDALL_FIELD(shadow_volume.draw)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().draw)));
     rows.push_back(choice_row("shadow_volume.fog", {"auto", "even", "sampled"},
                               "even = every medium at its mean density, in closed form; sampled = true densities in "
                               "steps; auto = sampled where there is a grid",
-                              TYNDALL_FIELD(shadow_volume.fog)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().fog)));
     rows.push_back(number_row("shadow_volume.nodes", "", 1, 32, "Gauss-Legendre nodes on each lit stretch of even fog",
-                              TYNDALL_FIELD(shadow_volume.nodes)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().nodes)));
     rows.push_back(number_row("shadow_volume.steps", "", 1, 4096, "steps along a ray where fog is sampled",
-                              TYNDALL_FIELD(shadow_volume.steps)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().steps)));
     rows.push_back(number_row("shadow_volume.light_resolution", "cells", 4, 1024,
                               "cells across the fog in the light's grid where fog is sampled",
-                              TYNDALL_FIELD(shadow_volume.light_resolution)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().light_resolution)));
     rows.push_back(number_row("shadow_volume.shell_length", "m", 0, 1e6,
                               "distance behind the occluder at which a shell has faded out; 0 = half the scene's "
                               "diagonal",
-                              TYNDALL_FIELD(shadow_volume.shell_length)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_length)));
     rows.push_back(number_row("shadow_volume.shell_intensity", "", 0, 1e3,
                               "a shell is as bright as this share of shell_length of lit fog",
-                              TYNDALL_FIELD(shadow_volume.shell_intensity)));
+                              TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_intensity)));
+}
+
+void set_shadow_volume_quality(Settings& settings, Quality quality) {
+    ShadowVolumeSettings& shadow_volume = settings.of<ShadowVolumeSettings>();
+    if (quality == Quality::draft)
+        shadow_volume.nodes = 3, shadow_volume.steps = 16, shadow_volume.light_resolution = 32;
+    if (quality == Quality::final)
+        shadow_volume.nodes = 6, shadow_volume.steps = 128, shadow_volume.light_resolution = 128;
+    if (quality == Quality::reference)
+        shadow_volume.nodes = 16, shadow_volume.steps = 1024, shadow_volume.light_resolution = 256;
+}
+
+std::vector<Rung> shadow_volume_rungs() {
+    return {{"", "pixel.samples=1 shadow_volume.nodes=2 shadow_volume.steps=8 shadow_volume.light_resolution=32"},
+            {"", "pixel.samples=1 shadow_volume.nodes=3 shadow_volume.steps=16 shadow_volume.light_resolution=32"},
+            {"", "pixel.samples=2 shadow_volume.nodes=4 shadow_volume.steps=24 shadow_volume.light_resolution=64"},
+            {"", "pixel.samples=4 shadow_volume.nodes=4 shadow_volume.steps=48 shadow_volume.light_resolution=64"},
+            {"", "pixel.samples=16 shadow_volume.nodes=6 shadow_volume.steps=128 shadow_volume.light_resolution=128"},
+            {"", "pixel.samples=64 shadow_volume.nodes=8 shadow_volume.steps=256 shadow_volume.light_resolution=192"}};
 }
 }

@@ -2,7 +2,8 @@
 #include "integrate/lit_fog.h"
 #include "integrate/style.h"
 #include "modes/limits.h"
-#include "modes/techniques.h"
+#include "modes/mode.h"
+#include "modes/shadow_volume/settings.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -17,15 +18,16 @@ float half_diagonal(const Box& scene) {
 }
 
 void add_fog_limits(const View& view, const Snapshot& snapshot, const Settings& settings, std::vector<Limit>& limits) {
-    const bool sampled = samples_fog(snapshot, settings.shadow_volume);
+    const bool sampled = samples_fog(snapshot, settings.of<ShadowVolumeSettings>());
     for (const Medium& medium : snapshot.media) {
         const std::string where = "medium " + medium.name;
         if (medium.kind == DensityKind::bricks && !sampled)
             limits.push_back({Severity::wrong, where, "shadow_volume.fog is even: drawn at its mean density"});
     }
     if (sampled) {
-        add_step_limits(view, snapshot, settings.shadow_volume.steps, "shadow_volume.steps", false, limits);
-        add_light_grid_limits(snapshot, settings.shadow_volume.light_resolution, limits);
+        add_step_limits(view, snapshot, settings.of<ShadowVolumeSettings>().steps, "shadow_volume.steps", false,
+                        limits);
+        add_light_grid_limits(snapshot, settings.of<ShadowVolumeSettings>().light_resolution, limits);
     }
     add_single_scattering_limits(view, snapshot, limits);
 }
@@ -33,7 +35,7 @@ void add_fog_limits(const View& view, const Snapshot& snapshot, const Settings& 
 
 std::vector<Limit> shadow_volume_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
     std::vector<Limit> limits;
-    if (settings.shadow_volume.draw == ShadowDraw::shells)
+    if (settings.of<ShadowVolumeSettings>().draw == ShadowDraw::shells)
         limits.push_back({Severity::wrong, "shadow_volume.draw",
                           "shells are a look: bright sheets where light meets shadow, not light scattered by fog"});
     add_fog_limits(view, snapshot, settings, limits);
@@ -58,7 +60,7 @@ std::vector<Limit> shadow_volume_limits(const View& view, const Snapshot& snapsh
 
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto frame = std::make_shared<LitFog>();
-    const ShadowVolumeSettings& own = settings.shadow_volume;
+    const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     frame->snapshot = stylised(snapshot, settings.style), frame->style = settings.style;
     frame->nodes = own.nodes, frame->steps = own.steps;
     if (own.draw == ShadowDraw::shells)
@@ -72,5 +74,19 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     const auto by = [](const Light&) { return ShadowsBy::volumes; };
     add_lights(view, LightTransmittance::grid, own.light_resolution, by, *frame);
     return [frame](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*frame, batch, results); };
+}
+
+Mode shadow_volume_mode() {
+    return {.name = "shadow-volume",
+            .summary = "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
+            .accuracy = Accuracy::even_fog,
+            .surfaces = Surfaces::shared,
+            .limits = shadow_volume_limits,
+            .prepare = prepare_shadow_volume,
+            .append_rows = append_shadow_volume_rows,
+            .set_quality = set_shadow_volume_quality,
+            .rungs = shadow_volume_rungs,
+            .color = "#CC79A7",
+            .interactive = true};
 }
 }

@@ -66,7 +66,7 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
-        if (error_can_be_told(mode) && (settings.fluence.orders < 2 || has_fluence(mode)))
+        if (error_can_be_told(mode) && (settings.fluence.orders < 2 || mode.adds_fluence))
             runners.push_back({&mode, candidates_of(mode, settings, quality)});
     return runners;
 }
@@ -82,7 +82,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     assert(goal.error > 0 || goal.seconds > 0);
     const double start = goal.clock();
     const Settings truth = truth_of(wanted);
-    const Pilot pilot = make_pilot(find_mode("march"), view, snapshot, &truth, options, [] { return false; });
+    const Pilot pilot = make_pilot(main_mode(), view, snapshot, &truth, options, [] { return false; });
 
     Contest contest;
     double edge_power = 0; // of samples by which the noise of edges falls; 0 = not yet known

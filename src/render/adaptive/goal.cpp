@@ -35,9 +35,8 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
     const auto spent = [&] { return goal.clock() - start; };
     const Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
-    const Pilot pilot =
-        make_pilot(systematic ? find_mode("march") : mode, view, snapshot, systematic ? &truth : nullptr, options,
-                   [&] { return timed && spent() > truth_share * goal.seconds; });
+    const Pilot pilot = make_pilot(systematic ? main_mode() : mode, view, snapshot, systematic ? &truth : nullptr,
+                                   options, [&] { return timed && spent() > truth_share * goal.seconds; });
 
     // Noise falls alike for all candidates: it is mostly that of edges.
     double power = 0;

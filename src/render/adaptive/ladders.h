@@ -17,8 +17,8 @@ struct Candidate {
 std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings);
 
 // The rows that the rungs of a mode decide, but for pixel.samples.
-std::vector<std::string_view> ladder_rows(const Mode& mode);
+std::vector<std::string> ladder_rows(const Mode& mode);
 
 // Copies rows by name.
-void take_rows(std::span<const std::string_view> names, const Settings& from, Settings& to);
+void take_rows(std::span<const std::string> names, const Settings& from, Settings& to);
 }

@@ -1,5 +1,6 @@
 // Frames to be rendered to files: of what, how, and where to.
 #pragma once
+#include "modes/mode.h"
 #include "modes/settings.h"
 #include "render/image/exr.h"
 #include "scene/load_options.h"
@@ -18,7 +19,7 @@ struct RenderJob {
     std::filesystem::path scene_file;
     std::string output; // pattern
     std::vector<int> frames;
-    std::string mode = "march";
+    std::string mode{main_mode().name};
     Quality quality = Quality::preview;
     Settings settings;   // quality and --set already applied
     std::string camera;  // empty = the scene's

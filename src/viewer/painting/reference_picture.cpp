@@ -25,7 +25,7 @@ std::string bits_of(const Camera& camera) {
 std::string key_of(const Request& request, const Settings& settings) {
     std::string key = formatted("%d %d %d %u %d ", request.frame, request.size.x, request.size.y, request.seed,
                                 static_cast<int>(request.missing));
-    for (const SettingGroup& group : setting_groups(find_mode("march")))
+    for (const SettingGroup& group : setting_groups(main_mode()))
         for (const SettingRow* row : group.rows) key += row->get(settings) + " ";
     return key + bits_of(request.camera);
 }
@@ -57,7 +57,7 @@ double mean_of(const Image<vec3>& image) { return measure_errors(image, image).m
 
 Settings final_march(const Settings& settings) {
     Settings result = settings;
-    take_rows(ladder_rows(find_mode("march")), settings_for(Quality::final), result);
+    take_rows(ladder_rows(main_mode()), settings_for(Quality::final), result);
     return result;
 }
 
@@ -91,7 +91,7 @@ void make_exact(ReferencePicture& reference, const Request& request, const Snaps
                 std::atomic<bool>& cancel) {
     Rounds one;
     const Layers exact =
-        render_round(one, find_mode("march"), request, truth_of(request.settings), snapshot, 1, cancel).layers;
+        render_round(one, main_mode(), request, truth_of(request.settings), snapshot, 1, cancel).layers;
     const ColorLayers& look = reference.look;
     Layers result = reference.rounds.layers;
     add_difference(exact.color, look.color, result.color);
@@ -108,7 +108,7 @@ void paint_reference(ReferencePicture& reference, const Request& request, const 
     Rounds& rounds = reference.rounds;
     if (rounds.samples >= request.most_samples) return make_exact(reference, request, snapshot, cancel);
     const int samples = round_samples(rounds, request, &like);
-    Round round = render_round(rounds, find_mode("march"), request, reference.settings, snapshot, samples, cancel);
+    Round round = render_round(rounds, main_mode(), request, reference.settings, snapshot, samples, cancel);
     if (rounds.rounds == 0) reference.look = {round.layers.color, round.layers.inscatter};
     add_round(std::move(round), request, rounds);
 }

@@ -1,5 +1,6 @@
 #include "viewer/painting/request.h"
 
+#include "modes/mode.h"
 #include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
 #include "trace/view.h"
@@ -7,8 +8,7 @@
 
 namespace tyndall {
 const std::string& quick_mode(const Request& request) {
-    const bool slow = request.mode == "march" || request.mode == "path";
-    return slow && !request.stand_in.empty() ? request.stand_in : request.mode;
+    return !find_mode(request.mode).interactive && !request.stand_in.empty() ? request.stand_in : request.mode;
 }
 
 RenderJob job_of(const Request& request) {

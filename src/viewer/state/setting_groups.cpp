@@ -28,7 +28,7 @@ std::vector<SettingGroup> setting_groups(const Mode& mode) {
     std::ranges::replace(prefix, '-', '_');
     std::vector<SettingGroup> groups{group_of(std::string(mode.name), prefix)};
     if (honours_style(mode)) groups.push_back(group_of("style", "style"));
-    if (has_fluence(mode)) groups.push_back(group_of("light scattered before", "fluence"));
+    if (mode.adds_fluence) groups.push_back(group_of("light scattered before", "fluence"));
     if (mode.surfaces != Surfaces::own && prefix != "march") groups.push_back(group_of("terms of the light", "march"));
     groups.push_back(group_of("pixels", "pixel"));
     return groups;

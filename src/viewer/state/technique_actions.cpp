@@ -28,7 +28,7 @@ void set_orders(ViewState& state, const Action& action) {
     const std::string& text = action.words[0];
     const Mode& mode = find_mode(state.mode);
     const std::string row = mode.surfaces == Surfaces::own ? "path.orders" : "fluence.orders";
-    if (!has_fluence(mode) && mode.surfaces != Surfaces::own)
+    if (!mode.adds_fluence && mode.surfaces != Surfaces::own)
         fail(ExitCode::usage, "orders", state.mode + " scatters light once only; march, froxel and path take more");
     apply_setting(state.settings, row + "=" + (text == "all" ? std::to_string(all_orders) : text));
     ++state.revision;

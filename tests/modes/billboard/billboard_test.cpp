@@ -1,5 +1,6 @@
 // Beam cards: where they are placed, and what they do to a picture.
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
@@ -73,7 +74,7 @@ double mean(const std::vector<Scatter>& results) {
 
 TEST(Billboard, FindsTheHoleInAWall) {
     const HoleInWall hole;
-    const std::vector<BeamCard> cards = place_cards(hole.snapshot, Settings{}.billboard);
+    const std::vector<BeamCard> cards = place_cards(hole.snapshot, BillboardSettings{});
     ASSERT_FALSE(cards.empty());
     double area = 0;
     for (const BeamCard& card : cards) {
@@ -92,7 +93,7 @@ TEST(Billboard, ClosedHolesHaveNoCards) {
     HoleInWall hole;
     add_quad(hole.scene, {-0.01f, 1, -1}, {0, 2, 0}, {0, 0, 2});
     hole.snapshot.occluders = Occluders::make(hole.scene, 0, nullptr);
-    EXPECT_TRUE(place_cards(hole.snapshot, Settings{}.billboard).empty());
+    EXPECT_TRUE(place_cards(hole.snapshot, BillboardSettings{}).empty());
 }
 
 TEST(Billboard, DrawsTheBeamAndNothingBeside) {
@@ -108,7 +109,7 @@ TEST(Billboard, DrawsTheBeamAndNothingBeside) {
     EXPECT_EQ(beside.radiance.x, 0);
     EXPECT_LT(beside.transmittance, 1);
     Settings clear;
-    clear.billboard.fog = false;
+    clear.of<BillboardSettings>().fog = false;
     const Ray ray{view.camera.position, glm::normalize(vec3(3.5f, 2.5f, 0) - view.camera.position), 12};
     EXPECT_EQ(run_mode("billboard", view, hole.snapshot, clear, {ray})[0].transmittance, 1);
 }
@@ -127,7 +128,7 @@ TEST(Billboard, DoesNotPopOnAnOrbit) {
     const HoleInWall hole;
     for (const CardFacing facing : {CardFacing::axis, CardFacing::camera, CardFacing::cross}) {
         Settings settings;
-        settings.billboard.facing = facing;
+        settings.of<BillboardSettings>().facing = facing;
         double before = 0;
         for (int step = 0; step < 40; ++step) {
             const float turn = 0.2f + static_cast<float>(step) * 0.5f * pi / 180;
@@ -168,7 +169,7 @@ TEST(Billboard, InTheOpenCardsStandInGapsBeforeAVeil) {
     const OpenPosts posts;
     const Snapshot& snapshot = posts.snapshot;
     std::vector<float> open;
-    const std::vector<BeamCard> cards = place_cards(snapshot, Settings{}.billboard, &open);
+    const std::vector<BeamCard> cards = place_cards(snapshot, BillboardSettings{}, &open);
     EXPECT_GT(open[0], 0.3f);
     ASSERT_FALSE(cards.empty());
     // Beams begin in the plane of the posts and end on the floor. Rays some 50 m long are counted in floats.
@@ -190,14 +191,16 @@ TEST(Billboard, InTheOpenCardsStandInGapsBeforeAVeil) {
 TEST(Billboard, GapsAndVeilAreSetApart) {
     const HoleInWall hole;
     Settings settings;
-    settings.billboard.gaps = 7, settings.billboard.veil = 0;
-    for (const BeamCard& card : place_cards(hole.snapshot, settings.billboard)) EXPECT_EQ(card.tint, vec3(1));
+    settings.of<BillboardSettings>().gaps = 7, settings.of<BillboardSettings>().veil = 0;
+    for (const BeamCard& card : place_cards(hole.snapshot, settings.of<BillboardSettings>()))
+        EXPECT_EQ(card.tint, vec3(1));
     const OpenPosts posts;
-    for (const BeamCard& card : place_cards(posts.snapshot, settings.billboard)) EXPECT_EQ(card.tint, vec3(7));
+    for (const BeamCard& card : place_cards(posts.snapshot, settings.of<BillboardSettings>()))
+        EXPECT_EQ(card.tint, vec3(7));
     EXPECT_EQ(posts.beside_all_cards(settings), 0);
-    settings.billboard.veil = 0.25f;
+    settings.of<BillboardSettings>().veil = 0.25f;
     const float quarter = posts.beside_all_cards(settings);
-    settings.billboard.veil = 0.5f;
+    settings.of<BillboardSettings>().veil = 0.5f;
     EXPECT_NEAR(posts.beside_all_cards(settings) / quarter, 2, 1e-5);
 }
 
@@ -206,7 +209,7 @@ TEST(Billboard, SpotsWithNothingBeforeThemHaveOneCard) {
     Light lamp = point_light({3, 4, 0}, 50);
     lamp.kind = LightKind::spot, lamp.direction = {0, -1, 0}, lamp.inner_cone = 0.1f, lamp.outer_cone = 0.2f;
     hole.snapshot.lights = {lamp};
-    const std::vector<BeamCard> cards = place_cards(hole.snapshot, Settings{}.billboard);
+    const std::vector<BeamCard> cards = place_cards(hole.snapshot, BillboardSettings{});
     ASSERT_EQ(cards.size(), 1u);
     EXPECT_NEAR(cards[0].to.y, 0, 0.15);
     EXPECT_NEAR(cards[0].half_to.x, 4 * std::tan(0.17f), 0.05);
@@ -219,7 +222,8 @@ TEST(Billboard, HandPlacedCardsAreDrawn) {
     card.width_from = card.width_to = 1, card.tint = vec3(1, 0.5f, 0), card.intensity = 2;
     hole.scene.billboards = {card};
     Settings settings;
-    settings.billboard.cards = 0, settings.billboard.streaks = 0, settings.billboard.specks = 0;
+    settings.of<BillboardSettings>().cards = 0, settings.of<BillboardSettings>().streaks = 0,
+    settings.of<BillboardSettings>().specks = 0;
     const View view = view_from({4, 3, 7}, {4, 3, 0});
     const Ray ray{{4, 3, 7}, {0, 0, -1}, 20};
     const vec3 light = run_mode("billboard", view, hole.snapshot, settings, {ray})[0].radiance;

@@ -1,5 +1,6 @@
 // Analytic light cones against adaptive quadrature in double, closed forms and geometry.
 #include "modes/cone/cone_integral.h"
+#include "modes/cone/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
@@ -102,7 +103,7 @@ Case random_case(uint32_t number, int rays) {
 // Largest errors over max(truth, peak/1000) of all rays of many scenes, in ascending order.
 std::vector<double> errors(int scenes, int rays, int nodes) {
     Settings settings;
-    settings.cone.nodes = nodes;
+    settings.of<ConeSettings>().nodes = nodes;
     std::vector<std::vector<double>> found(scenes);
     parallel_for(scenes, [&](int64_t number) {
         const Case c = random_case(static_cast<uint32_t>(number), rays);
@@ -123,7 +124,7 @@ std::vector<double> errors(int scenes, int rays, int nodes) {
 
 // 999 of 1000 rays within 1e-4, with the most nodes and with as many as by default; all finite.
 void expect_exact(int scenes, int rays) {
-    for (const int nodes : {most_gauss_nodes, Settings{}.cone.nodes}) {
+    for (const int nodes : {most_gauss_nodes, ConeSettings{}.nodes}) {
         const std::vector<double> sorted = errors(scenes, rays, nodes);
         EXPECT_LE(sorted[static_cast<size_t>(0.999 * static_cast<double>(sorted.size()))], 1e-4) << nodes << " nodes";
         EXPECT_TRUE(std::isfinite(sorted.back()));
@@ -170,7 +171,7 @@ TEST(Cone, NinetyDegreesIsHalfOfAPointLight) {
 TEST(Cone, TheLensOnlyCutsAway) {
     // A lens of 0.2 m in a cone of 45 degrees: no light before 0.2 m along the axis, the same light behind.
     Settings lens;
-    lens.cone.near_radius = 0.2f;
+    lens.of<ConeSettings>().near_radius = 0.2f;
     const Snapshot snapshot = scene_of({even_fog(0.3f)}, {spot(vec3(0), {0, 0, -1}, 30, 45)});
     const Ray near{{-4, 0, -0.19f}, {1, 0, 0}, 8}, far{{-4, 0, -0.21f}, {1, 0, 0}, 8};
     EXPECT_EQ(coned(snapshot, near, lens).radiance.x, 0);
@@ -241,15 +242,17 @@ TEST(Cone, EveryControlDoesWhatItSays) {
         return coned(snapshot, ray, settings).radiance.x;
     };
     // Inverse square at 2 m and more is less than a quarter of none.
-    EXPECT_GT(with([](Settings& s) { s.cone.attenuation = ConeAttenuation::none; }), 3.9f * plain);
-    const float none = with([](Settings& s) { s.cone.attenuation = ConeAttenuation::none; });
-    EXPECT_LT(with([](Settings& s) { s.cone.attenuation = ConeAttenuation::linear; }), none);
-    EXPECT_GT(with([](Settings& s) { s.cone.edge = ConeEdge::soft, s.cone.inner = 1; }), 1.2f * plain);
-    EXPECT_LT(with([](Settings& s) { s.cone.edge = ConeEdge::soft, s.cone.inner = 0; }), plain);
-    const float noisy = with([](Settings& s) { s.cone.noise = 1; });
+    EXPECT_GT(with([](Settings& s) { s.of<ConeSettings>().attenuation = ConeAttenuation::none; }), 3.9f * plain);
+    const float none = with([](Settings& s) { s.of<ConeSettings>().attenuation = ConeAttenuation::none; });
+    EXPECT_LT(with([](Settings& s) { s.of<ConeSettings>().attenuation = ConeAttenuation::linear; }), none);
+    EXPECT_GT(with([](Settings& s) { s.of<ConeSettings>().edge = ConeEdge::soft, s.of<ConeSettings>().inner = 1; }),
+              1.2f * plain);
+    EXPECT_LT(with([](Settings& s) { s.of<ConeSettings>().edge = ConeEdge::soft, s.of<ConeSettings>().inner = 0; }),
+              plain);
+    const float noisy = with([](Settings& s) { s.of<ConeSettings>().noise = 1; });
     EXPECT_NE(noisy, plain);
     EXPECT_NEAR(noisy / plain, 1, 0.9);
-    EXPECT_EQ(with([](Settings& s) { s.cone.noise = 1; }), noisy);
+    EXPECT_EQ(with([](Settings& s) { s.of<ConeSettings>().noise = 1; }), noisy);
     EXPECT_EQ(with([](Settings& s) { s.style.range = 1; }), 0);
     EXPECT_NEAR(with([](Settings& s) { s.style.tint = vec3(0.5f); }) / plain, 0.5, 1e-6);
     EXPECT_GT(with([](Settings& s) { s.style.light_depth = 0; }), 1.5f * plain);
@@ -264,7 +267,7 @@ TEST(Cone, NamesWhatItDoesNotSee) {
     EXPECT_EQ(coned(snapshot, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).validity, 0.5f);
     EXPECT_EQ(coned(snapshot, {{5, 5, 3}, {0, 0, -1}, 10}).validity, 1.0f);
     Settings settings;
-    settings.cone.attenuation = ConeAttenuation::none;
+    settings.of<ConeSettings>().attenuation = ConeAttenuation::none;
     EXPECT_TRUE(std::ranges::any_of(mode.limits({}, snapshot, settings), [](const Limit& l) {
         return l.where == "light point" && l.severity == Severity::degraded;
     }));

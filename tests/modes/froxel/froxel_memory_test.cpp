@@ -1,5 +1,6 @@
 // What froxels remember of the frames before.
 #include "modes/froxel/memory.h"
+#include "modes/froxel/settings.h"
 
 #include "modes/froxel/froxel_fixtures.h"
 #include "modes/history.h"
@@ -29,8 +30,9 @@ class FroxelHistory : public testing::TestWithParam<std::tuple<bool, FroxelVisib
 protected:
     Settings settings() const {
         Settings result;
-        result.froxel.tile = 2;
-        result.froxel.amortise = std::get<0>(GetParam()), result.froxel.visibility = std::get<1>(GetParam());
+        result.of<FroxelSettings>().tile = 2;
+        result.of<FroxelSettings>().amortise = std::get<0>(GetParam()),
+        result.of<FroxelSettings>().visibility = std::get<1>(GetParam());
         return result;
     }
 };

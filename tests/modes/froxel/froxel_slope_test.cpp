@@ -1,5 +1,6 @@
 // How the froxels' error falls as tiles and slices shrink together.
 #include "modes/froxel/froxel_fixtures.h"
+#include "modes/froxel/settings.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,8 @@ TEST(Froxel, ErrorFallsAtLeastAsTheRootOfTheRefinement) {
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (int refinement = 1; refinement <= 8; refinement *= 2) {
         Settings settings;
-        settings.froxel.tile = 8 / refinement, settings.froxel.depth_slices = 8 * refinement;
+        settings.of<FroxelSettings>().tile = 8 / refinement,
+        settings.of<FroxelSettings>().depth_slices = 8 * refinement;
         const double error = relative_rmse(scattered(froxels(view, stage.snapshot, settings), rays), truth);
         const double u = std::log(refinement), v = std::log(error);
         n += 1, x += u, y += v, xx += u * u, xy += u * v;

@@ -1,5 +1,6 @@
 // What froxels keep while camera, surfaces and fog stand still.
 #include "modes/froxel/memory.h"
+#include "modes/froxel/settings.h"
 
 #include "modes/froxel/froxel_fixtures.h"
 #include "modes/history.h"
@@ -95,7 +96,7 @@ TEST(FroxelStill, SettledFogIsAsGoodAsFogFoundAnew) {
         Stage here = stage();
         const Snapshot still = here.snapshot;
         Settings settings;
-        settings.froxel.tile = 4, settings.froxel.amortise = amortise;
+        settings.of<FroxelSettings>().tile = 4, settings.of<FroxelSettings>().amortise = amortise;
         History history;
         std::vector<Scatter> results;
         for (int frame = 0; frame < 24; ++frame) {

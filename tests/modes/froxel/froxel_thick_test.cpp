@@ -1,5 +1,6 @@
 // Froxels of some optical depth, and scenes of any size.
 #include "modes/froxel/froxel_fixtures.h"
+#include "modes/froxel/settings.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,8 @@ TEST(Froxel, ASliceIsSeenThroughItsOwnFog) {
     // in a slice is exact: L = p E (e^-σa - e^-σb).
     constexpr float extinction = 0.5f;
     Settings settings;
-    settings.froxel.tile = 1, settings.froxel.depth_slices = 4, settings.froxel.depth_growth = 1;
+    settings.of<FroxelSettings>().tile = 1, settings.of<FroxelSettings>().depth_slices = 4,
+    settings.of<FroxelSettings>().depth_growth = 1;
     settings.march.light = LightTransmittance::off;
     const View view = view_of({0, 0, 4}, {0, 0, 0}, {65, 37});
     for (const float edge : {0.2f, 0.75f, 1.4f, 3.1f, 4.4f, 5.9f})
@@ -47,7 +49,7 @@ TEST(Froxel, ALampInThickFogShinesAsFarAsTheReferenceSays) {
     const View view = view_of({0, 0, 6}, {0, 0, 0}, {48, 27});
     const std::vector<Ray> rays = picture_rays(view, snapshot);
     Settings settings;
-    settings.froxel.tile = 1;
+    settings.of<FroxelSettings>().tile = 1;
     const std::vector<Scatter> results = scattered(froxels(view, snapshot, settings), rays);
     EXPECT_LT(relative_rmse(results, marched(snapshot, exact_settings(), rays)), 0.04);
 }

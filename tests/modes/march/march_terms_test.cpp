@@ -1,5 +1,6 @@
 // All kinds of visibility with all kinds of light-side transmittance, and how far they may differ.
 #include "modes/froxel/froxel_fixtures.h"
+#include "modes/shadow_map/settings.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ TEST(MarchTerms, AllCombinationsAgree) {
             settings.march.step_share = 1.0f / 128, settings.march.step_voxels = 0.25f;
             // Cells of a thirtieth of the fog: the picture shows four times as much as the fog fills.
             settings.march.light_resolution = transmittances[t] == LightTransmittance::froxel ? 128 : 32;
-            settings.shadow_map.resolution = 1024;
+            settings.of<ShadowMapSettings>().resolution = 1024;
             results[v][t] = scattered(find_mode("march").prepare(view, stage.snapshot, settings, nullptr), rays);
             for (const Scatter& result : results[v][t])
                 ASSERT_TRUE(is_finite(result.radiance) && result.radiance.x >= 0) << v << t;

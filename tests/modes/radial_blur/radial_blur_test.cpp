@@ -1,7 +1,9 @@
 // The radial blur: what it must leave alone, how it fades, and that its sum does not depend on how many samples it has.
+#include "modes/mode.h"
+#include "modes/picture_share.h"
 #include "modes/radial_blur/radial_blur.h"
+#include "modes/radial_blur/settings.h"
 #include "modes/settings.h"
-#include "modes/techniques.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -22,7 +24,7 @@ View view_towards(vec3 direction, ivec2 size = {160, 90}) {
 Addition blur(const View& view, const Snapshot& snapshot, const Settings& settings, vec3 color = vec3(0)) {
     const Image<vec3> colors(view.size, color);
     const Image<float> alpha(view.size, 0.0f), depth(view.size, infinity);
-    return post_radial_blur(view, snapshot, settings)({colors, alpha, depth});
+    return find_mode("radial-blur").prepare_post(view, snapshot, settings)({colors, alpha, depth});
 }
 
 double mean(const Image<vec3>& image) {
@@ -54,7 +56,7 @@ TEST(RadialBlur, FadesMonotonouslyAsTheLightLeaves) {
     const View view = view_towards({0, 0, -1});
     for (const BlurSource source : {BlurSource::occlusion, BlurSource::highlights}) {
         Settings settings;
-        settings.radial_blur.source = source, settings.radial_blur.threshold = 0.5f;
+        settings.of<RadialBlurSettings>().source = source, settings.of<RadialBlurSettings>().threshold = 0.5f;
         double before = infinity;
         const float edge = std::atan(std::tan(0.4f) * 16 / 9); // of the picture
         for (float angle = edge; angle < 1.55f; angle += 0.02f) {
@@ -71,10 +73,10 @@ TEST(RadialBlur, ItsBrightnessDoesNotDependOnTheNumberOfSamples) {
     const View view = view_towards({0, 0, -1});
     for (const float decay : {0.9f, 0.97f, 1.0f}) {
         Settings settings;
-        settings.radial_blur.decay = decay, settings.radial_blur.size = 0.3f;
-        settings.radial_blur.samples = 32;
+        settings.of<RadialBlurSettings>().decay = decay, settings.of<RadialBlurSettings>().size = 0.3f;
+        settings.of<RadialBlurSettings>().samples = 32;
         const double few = mean(blur(view, sun_at(0.2f), settings).radiance);
-        settings.radial_blur.samples = 256;
+        settings.of<RadialBlurSettings>().samples = 256;
         const double many = mean(blur(view, sun_at(0.2f), settings).radiance);
         EXPECT_NEAR(many / few, 1, 0.01) << decay;
     }
@@ -84,7 +86,7 @@ TEST(RadialBlur, ItsBrightnessDoesNotDependOnTheNumberOfSamples) {
 TEST(RadialBlur, SumsAsPublished) {
     const View view = view_towards({0, 0, -1}, {64, 64});
     Settings settings;
-    RadialBlurSettings& blur_settings = settings.radial_blur;
+    RadialBlurSettings& blur_settings = settings.of<RadialBlurSettings>();
     blur_settings.source = BlurSource::highlights, blur_settings.threshold = 0;
     blur_settings.decay = 0.9f, blur_settings.weight = 2, blur_settings.exposure = 0.5f;
     blur_settings.picture = PictureShare::full;
@@ -102,10 +104,10 @@ TEST(RadialBlur, SumsAsPublished) {
 TEST(RadialBlur, TakesHighlightsAboveTheThreshold) {
     const View view = view_towards({0, 0, -1}, {32, 32});
     Settings settings;
-    settings.radial_blur.source = BlurSource::highlights, settings.radial_blur.threshold = 2;
+    settings.of<RadialBlurSettings>().source = BlurSource::highlights, settings.of<RadialBlurSettings>().threshold = 2;
     EXPECT_EQ(mean(blur(view, sun_at(0), settings, vec3(2)).radiance), 0);
     const double above = mean(blur(view, sun_at(0), settings, vec3(4)).radiance);
-    settings.radial_blur.threshold = 0;
+    settings.of<RadialBlurSettings>().threshold = 0;
     EXPECT_NEAR(above / mean(blur(view, sun_at(0), settings, vec3(4)).radiance), 0.5, 1e-5);
 }
 
@@ -114,8 +116,8 @@ TEST(RadialBlur, ItsDiscIsRound) {
     for (const ivec2 size : {ivec2(200, 100), ivec2(100, 200), ivec2(150, 150)}) {
         const View view = view_towards({0, 0, -1}, size);
         Settings settings;
-        settings.radial_blur.size = 0.4f, settings.radial_blur.picture = PictureShare::full;
-        settings.radial_blur.samples = 256;
+        settings.of<RadialBlurSettings>().size = 0.4f, settings.of<RadialBlurSettings>().picture = PictureShare::full;
+        settings.of<RadialBlurSettings>().samples = 256;
         View still = view;
         still.jitter = Jitter::none;
         const Addition addition = blur(still, sun_at(0), settings);
@@ -145,7 +147,7 @@ TEST(RadialBlur, SaysWhichLightsMakeNoRays) {
     const View view = view_towards({0, 0, -1});
     const auto worst = [&](float angle) {
         Severity severity = Severity::info;
-        for (const Limit& limit : radial_blur_limits(view, sun_at(angle), Settings{}))
+        for (const Limit& limit : find_mode("radial-blur").limits(view, sun_at(angle), Settings{}))
             if (limit.where == "light sun") severity = std::max(severity, limit.severity);
         return severity;
     };

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shadow_map/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/integral.h"
@@ -103,7 +104,7 @@ TEST(ShadowMapMarch, LocalLightsInEvenFogMatchQuadratureAtEveryDepth) {
         for (const Spacing spacing : {Spacing::angle, Spacing::distance})
             for (const float depth : {1.9f, 2.1f, 3.0f, 6.0f}) {
                 Settings settings;
-                settings.shadow_map.spacing = spacing;
+                settings.of<ShadowMapSettings>().spacing = spacing;
                 const Snapshot snapshot = scene_of({even_fog(extinction)}, {light});
                 const Ray ray{{0, 0, 0}, {0, 0, -1}, depth};
                 const auto integrand = [&](double t) {
@@ -143,8 +144,9 @@ TEST(ShadowMapMarch, HalfShadowedBoxConvergesToTheReference) {
         double error[3];
         for (int level = 0; level < 3; ++level) {
             Settings settings;
-            settings.shadow_map.steps = 8 << (2 * level), settings.shadow_map.resolution = 128 << (2 * level);
-            settings.shadow_map.light = LightTransmittance::marched;
+            settings.of<ShadowMapSettings>().steps = 8 << (2 * level),
+            settings.of<ShadowMapSettings>().resolution = 128 << (2 * level);
+            settings.of<ShadowMapSettings>().light = LightTransmittance::marched;
             error[level] = rmse_rel(run("shadow-map", box.snapshot, settings, rays), reference);
         }
         // Slope -1/2 or steeper of the error over the steps.
@@ -164,8 +166,8 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
                                                        LightTransmittance::grid, LightTransmittance::marched}) {
             const HalfShadowed box(light);
             Settings settings;
-            settings.march.light = transmittance, settings.shadow_map.resolution = 512;
-            settings.shadow_map.pcf = 1;
+            settings.march.light = transmittance, settings.of<ShadowMapSettings>().resolution = 512;
+            settings.of<ShadowMapSettings>().pcf = 1;
             settings.march.visibility = Visibility::rays;
             const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
             settings.march.visibility = Visibility::maps;
@@ -183,9 +185,9 @@ TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
         Settings settings;
         const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
         settings.march.visibility = Visibility::maps;
-        settings.shadow_map.resolution = 64;
+        settings.of<ShadowMapSettings>().resolution = 64;
         const double coarse = rmse_rel(run("march", box.snapshot, settings, rays), traced);
-        settings.shadow_map.resolution = 1024;
+        settings.of<ShadowMapSettings>().resolution = 1024;
         EXPECT_LT(rmse_rel(run("march", box.snapshot, settings, rays), traced), 0.5 * coarse)
             << static_cast<int>(light.kind);
     }
@@ -257,11 +259,11 @@ TEST(ShadowMapMarch, LimitsNameWhatMapsCannotDo) {
 
     EXPECT_FALSE(says("shadow-map", Settings{}, "detail"));
     box.snapshot.media = {grid_fog(1, unit_grid(64, [](vec3) { return 1.0f; }))};
-    settings.shadow_map.steps = 2;
+    settings.of<ShadowMapSettings>().steps = 2;
     EXPECT_TRUE(says("shadow-map", settings, "detail"));
     const Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 10};
     EXPECT_NEAR(run(box.snapshot, settings, ray).validity, 4.0f / 64 / 0.5f, 0.02f);
-    settings.shadow_map.steps = 64;
+    settings.of<ShadowMapSettings>().steps = 64;
     EXPECT_EQ(run(box.snapshot, settings, ray).validity, 1);
 }
 

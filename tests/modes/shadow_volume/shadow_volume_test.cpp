@@ -2,6 +2,7 @@
 #include "integrate/lit_fog.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shadow_volume/settings.h"
 #include "scene/light.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
@@ -220,7 +221,7 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     }
     EXPECT_LT(before, 0.01); // what the light's grid of 128 cells leaves
     Settings even;
-    even.shadow_volume.fog = ShadowFog::even;
+    even.of<ShadowVolumeSettings>().fog = ShadowFog::even;
     EXPECT_EQ(drawn("shadow-volume", picture, stage.snapshot, even)[500].validity, 0);
     EXPECT_TRUE(std::ranges::any_of(find_mode("shadow-volume").limits(picture.view, stage.snapshot, even),
                                     [](const Limit& limit) { return limit.severity == Severity::wrong; }));
@@ -248,8 +249,8 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, brighter;
-    shells.shadow_volume.draw = brighter.shadow_volume.draw = ShadowDraw::shells;
-    brighter.shadow_volume.shell_intensity *= 2;
+    shells.of<ShadowVolumeSettings>().draw = brighter.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
+    brighter.of<ShadowVolumeSettings>().shell_intensity *= 2;
     const std::vector<Scatter> one = drawn("shadow-volume", picture, stage.snapshot, shells);
     const std::vector<Scatter> two = drawn("shadow-volume", picture, stage.snapshot, brighter);
     EXPECT_GT(mean_of(one), 0);
@@ -257,7 +258,7 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     EXPECT_EQ(one[100].validity, 0);
     const auto limits = find_mode("shadow-volume").limits(picture.view, stage.snapshot, shells);
     EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "shadow_volume.draw"; }));
-    shells.shadow_volume.shell_length = 1e-3f; // nothing shows that near its occluder
+    shells.of<ShadowVolumeSettings>().shell_length = 1e-3f; // nothing shows that near its occluder
     EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
 }
 
@@ -266,13 +267,13 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, measured;
-    shells.shadow_volume.draw = measured.shadow_volume.draw = ShadowDraw::shells;
+    shells.of<ShadowVolumeSettings>().draw = measured.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
     const Box& bounds = stage.snapshot.bounds;
-    measured.shadow_volume.shell_length = 0.5f * glm::distance(bounds.low, bounds.high);
+    measured.of<ShadowVolumeSettings>().shell_length = 0.5f * glm::distance(bounds.low, bounds.high);
     const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, shells);
     EXPECT_EQ(rmse(found, drawn("shadow-volume", picture, stage.snapshot, measured)), 0);
 
-    shells.shadow_volume.shell_intensity = 0;
+    shells.of<ShadowVolumeSettings>().shell_intensity = 0;
     const std::vector<Scatter> dark = drawn("shadow-volume", picture, stage.snapshot, shells);
     for (size_t i = 0; i < dark.size(); ++i) // albedo 1: what the fog takes away, of the ambient light
         EXPECT_NEAR(dark[i].radiance.z, ambient.z * (1 - dark[i].transmittance), 1e-6f);

@@ -8,7 +8,7 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
-#include "modes/techniques.h"
+#include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ Mode bright_beside(vec3 place) {
     wrong = place;
     Mode mode = find_mode("march");
     mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
-        const ScatterFunction right = prepare_march(view, snapshot, settings, history);
+        const ScatterFunction right = main_mode().prepare(view, snapshot, settings, history);
         return ScatterFunction([right](const RayBatch& batch, std::span<Scatter> results) {
             right(batch, results);
             for (size_t i = 0; i < results.size(); ++i) {

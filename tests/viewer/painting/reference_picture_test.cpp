@@ -1,4 +1,5 @@
 #include "base/parallel.h"
+#include "modes/froxel/settings.h"
 #include "modes/mode.h"
 #include "render/adaptive/candidates.h"
 #include "render/frame/frame.h"
@@ -120,7 +121,7 @@ TEST(ReferencePicture, StaysWhileTheTechniqueChangesAndBeginsAnewWithTheCamera) 
     Painter painter;
     Request request = error_request("cone");
     last_picture(painter, request);
-    ++request.revision, request.mode = "shadow-map", request.settings.froxel.depth_slices = 16;
+    ++request.revision, request.mode = "shadow-map", request.settings.of<FroxelSettings>().depth_slices = 16;
     const auto first = paint(painter, request, never);
     ASSERT_TRUE(first && first->reference);
     EXPECT_TRUE(first->reference->finished);

@@ -1,0 +1,26 @@
+// Settings of the froxel cache.
+#pragma once
+#include "modes/mode.h"
+#include "modes/settings.h"
+
+namespace tyndall {
+enum class FroxelVisibility { off, rays, slices };
+enum class FroxelLookup { trilinear, tricubic, jittered };
+
+// Terms of the light (phase, heterogeneity, emission, ambient, light-side transmittance) are those of the march.
+struct FroxelSettings {
+    int tile = 8; // pixels
+    int depth_slices = 64;
+    float depth_growth = 4; // thickness of the last slice over that of the first
+    FroxelVisibility visibility = FroxelVisibility::slices;
+    int shadow_rays = 1; // per froxel and frame
+    FroxelLookup lookup = FroxelLookup::trilinear;
+    float history = 0.9f; // weight of the frames before
+    bool amortise = false;
+};
+
+// For its row of the table.
+void append_froxel_rows(std::vector<SettingRow>& rows);
+void set_froxel_quality(Settings& settings, Quality quality);
+std::vector<Rung> froxel_rungs();
+}

@@ -1,0 +1,27 @@
+// Settings of the march with shadow maps.
+#pragma once
+#include "modes/mode.h"
+#include "modes/picture_share.h"
+#include "modes/settings.h"
+
+namespace tyndall {
+enum class Spacing { angle, distance };
+
+struct ShadowMapSettings {
+    int steps = 24;  // per ray, and per local light on what it reaches
+    int lookups = 4; // in the maps, per step
+    Spacing spacing = Spacing::angle;
+    int resolution = 512; // texels across each map
+    int cascades = 3;     // most maps of a sun
+    int pcf = 0;          // 0 nearest texel, 1 the four around, 2 sixteen
+    float bias = 0;       // texels
+    LightTransmittance light = LightTransmittance::grid;
+    PictureShare picture = PictureShare::full;
+    bool blur = false; // of the jitter's pattern
+};
+
+// For its row of the table.
+void append_shadow_map_rows(std::vector<SettingRow>& rows);
+void set_shadow_map_quality(Settings& settings, Quality quality);
+std::vector<Rung> shadow_map_rungs();
+}

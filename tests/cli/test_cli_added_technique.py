@@ -1,0 +1,47 @@
+"""A technique that the tests add to the table (tests/added) is found wherever the others are."""
+import json
+import os
+import pathlib
+import unittest
+
+from program import ProgramTest, scene
+import program
+
+WITH_MIST = os.environ.get("TYNDALL_WITH_MIST", str(pathlib.Path(program.TYNDALL).parent / "tests/tyndall_with_mist"))
+
+
+class Added(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        fog = {"type": "homogeneous", "extinction": 0.1, "bounds": {"low": [-2, -1, -2], "high": [2, 2, 2]}}
+        self.scene = self.write("scene.json", scene(media=[fog]))
+        usual, program.TYNDALL = program.TYNDALL, WITH_MIST
+        self.addCleanup(setattr, program, "TYNDALL", usual)
+
+    def test_the_table_and_its_settings_are_listed(self):
+        told = self.succeed("modes").stdout
+        self.assertRegex(told, r"mist +even fog +fog of one brightness")
+        rows = {row["name"]: row for row in json.loads(self.succeed("modes", "--json").stdout)["settings"]}
+        self.assertEqual(rows["mist.brightness"]["values"]["draft"], "0.5")
+        self.refuse(2, ["mist"], "render", self.scene, "-o", self.path("a.exr"), "--mode", "fogg")
+
+    def test_it_renders_with_its_settings_and_beside_all_others(self):
+        said = self.succeed("render", self.scene, "-o", self.path("a.exr"), "--mode", "mist", "--frames", 1,
+                            "--set", "mist.brightness=3").stderr
+        self.assertIn("no light is looked at", said)
+        self.assertIn("mist.brightness=3", self.succeed("info", "--json", self.path("a.exr")).stdout)
+        self.succeed("render", self.scene, "-o", self.path("b.exr"), "--mode", "all", "--frames", 1, "--quality", "draft")
+        self.assertTrue(self.path("b.mist.exr").exists())
+
+    def test_charts_plans_and_explanations_know_it(self):
+        self.succeed("chart", self.scene, "-o", self.path("chart"), "--modes", "march,mist", "--quick", "--res", "32x18",
+                     timeout=120)
+        chart = json.loads(self.path("chart/chart.json").read_text())
+        self.assertEqual([mode["name"] for mode in chart["modes"]], ["march", "mist"])
+        self.assertTrue("#888888" in self.path("chart/chart.html").read_text())
+        self.assertIn("mist", self.succeed("plan", self.scene, "--target-error", "0.05").stdout)
+        self.assertIn("mist", self.succeed("explain", self.scene, "--pixel", "10,10").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
