@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 #include "trace/fog.h"
 #include "trace/kept.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
 namespace tyndall {

@@ -1,7 +1,7 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
 #include "trace/light_ray.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 

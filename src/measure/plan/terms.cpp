@@ -6,7 +6,7 @@
 #include "render/adaptive/goal.h"
 #include "scene/light.h"
 #include "trace/fluence/scattering_orders.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

@@ -9,7 +9,7 @@
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
 #include "volume/phase.h"

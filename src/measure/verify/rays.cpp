@@ -7,7 +7,7 @@
 #include "modes/mode.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/bricks/bricks.h"

@@ -5,7 +5,7 @@
 #include "base/random.h"
 #include "scene/scene.h"
 #include "trace/kept.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "modes/billboard/search.h"
 
 #include "base/parallel.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
 namespace tyndall {

@@ -8,7 +8,7 @@
 #include "modes/history.h"
 #include "modes/limits.h"
 #include "modes/mode.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 

@@ -13,7 +13,7 @@
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/moving_nodes.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/shadows/kept_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -1,7 +1,7 @@
 #include "modes/froxel/tiles.h"
 
 #include "base/parallel.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

@@ -3,7 +3,7 @@
 
 #include "scene/light.h"
 #include "trace/light_ray.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
 namespace tyndall {

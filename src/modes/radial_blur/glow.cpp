@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/shrink.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

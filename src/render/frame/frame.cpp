@@ -8,7 +8,7 @@
 #include "render/frame/noise.h"
 #include "render/frame/pixel_sum.h"
 #include "scene/scene.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "trace/fluence/light_paths.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"

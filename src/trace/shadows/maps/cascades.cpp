@@ -1,5 +1,5 @@
 // Where the orthographic pictures of a sun lie.
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/seen_space.h"
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/snapshot.h"

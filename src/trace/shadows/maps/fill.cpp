@@ -1,7 +1,7 @@
 // Fills shadow maps with the first surface of rays from the light, a block of texels at a time.
 #include "base/parallel.h"
 #include "scene/light.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/seen_space.h"
 #include "trace/shadows/maps/shadow_blocks.h"
 #include "trace/snapshot.h"

@@ -6,7 +6,7 @@
 #include "trace/shadows/maps/shadow_map.h"
 
 #include "scene/light.h"
-#include "trace/occlusion/scene.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/shadows/maps/shadow_map_simd.h"
 #include "trace/snapshot.h"
 
