@@ -13,8 +13,8 @@
 namespace tyndall {
 namespace {
 struct Texts {
-    std::string scene, mode{main_mode().name}, stand_in{interactive_mode().name}, quality = "preview", camera,
-                                                                                  resolution, samples, script, window;
+    std::string scene, mode = main_mode_name(), stand_in = interactive_mode_name(), quality = "preview", camera,
+                       resolution, samples, script, window;
     std::string rate, threads, seed, units = "spec", missing = "error", exposure;
     std::vector<std::string> settings;
     bool stats = false;

@@ -12,7 +12,6 @@
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <algorithm>
 #include <optional>

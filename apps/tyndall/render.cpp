@@ -16,7 +16,6 @@
 #include "scene/scene.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
-#include "volume/medium.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,12 +1,13 @@
 // The command line of tyndall render, as text and as a job.
 #pragma once
 #include "common.h"
-#include "modes/mode.h"
+#include "modes/settings.h"
 #include "render/sequence/job.h"
 
 namespace tyndall {
+struct Mode;
 struct RenderOptions {
-    std::string scene, output, frames, mode{main_mode().name}, quality = "preview", camera, resolution, crop, samples;
+    std::string scene, output, frames, mode = main_mode_name(), quality = "preview", camera, resolution, crop, samples;
     std::string exposure, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
     std::string orders, target_error, time_budget, history;
     std::vector<std::string> settings;

@@ -1,9 +1,15 @@
 // Limits that several modes share.
 #pragma once
-#include "modes/mode.h"
+#include "base/math.h"
+#include "modes/promise.h"
 #include "trace/fluence/settings.h"
 
+#include <vector>
+
 namespace tyndall {
+struct Snapshot;
+struct View;
+
 // Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places
 // so far from the origin that floats do not resolve them.
 void add_single_scattering_limits(const View& view, const Snapshot& snapshot, std::vector<Limit>& limits);

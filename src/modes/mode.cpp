@@ -1,6 +1,7 @@
 #include "modes/mode.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "modes/settings.h"
 
 #include <algorithm>
 
@@ -8,6 +9,9 @@ namespace tyndall {
 const Mode& mode_of_all_orders() { return *std::ranges::find(modes(), Accuracy::multiple_scattering, &Mode::accuracy); }
 
 const Mode& interactive_mode() { return *std::ranges::find(modes(), true, &Mode::interactive); }
+
+std::string main_mode_name() { return std::string(main_mode().name); }
+std::string interactive_mode_name() { return std::string(interactive_mode().name); }
 
 const Mode& find_mode(std::string_view name) {
     std::vector<std::string> names;

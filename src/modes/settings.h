@@ -76,6 +76,11 @@ const std::vector<SettingRow>& setting_rows();
 // "march.step_depth=0.1". Throws Error (usage): an unknown row names the nearest one.
 void apply_setting(Settings& settings, std::string_view assignment);
 
+// Names of the modes that are taken unless said otherwise (modes/mode.h): for pictures, and for those in between while
+// things move.
+std::string main_mode_name();
+std::string interactive_mode_name();
+
 std::string_view name_of(Quality quality);
 Quality quality_named(std::string_view name); // throws Error (usage)
 }

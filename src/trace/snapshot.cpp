@@ -79,6 +79,13 @@ Box scene_bounds(const Snapshot& snapshot) {
 }
 }
 
+Snapshot::Snapshot() = default;
+Snapshot::Snapshot(const Snapshot&) = default;
+Snapshot::Snapshot(Snapshot&&) noexcept = default;
+Snapshot& Snapshot::operator=(const Snapshot&) = default;
+Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
+Snapshot::~Snapshot() = default;
+
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing) {
     Snapshot snapshot;
     snapshot.scene = &scene;

@@ -48,6 +48,14 @@ struct Snapshot {
     std::vector<FogSource> fog_sources; // one per medium of the scene: what the next frame can use again
     std::shared_ptr<Kept> kept;         // made for this frame so far; null in snapshots made by hand
     std::shared_ptr<Kept> kept_before;  // for the frame before; null of the first
+
+    // Not inline: who only holds a snapshot needs neither lights nor media.
+    Snapshot();
+    Snapshot(const Snapshot&);
+    Snapshot(Snapshot&&) noexcept;
+    Snapshot& operator=(const Snapshot&);
+    Snapshot& operator=(Snapshot&&) noexcept;
+    ~Snapshot();
 };
 
 // Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since

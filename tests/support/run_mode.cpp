@@ -2,7 +2,6 @@
 
 #include "scene/light.h"
 #include "trace/snapshot.h"
-#include "volume/medium.h"
 
 namespace tyndall::test {
 namespace {

@@ -12,7 +12,6 @@
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <algorithm>
 #include <chrono>

@@ -14,7 +14,6 @@
 #include "trace/kept.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <algorithm>
 

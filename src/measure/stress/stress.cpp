@@ -5,10 +5,8 @@
 #include "measure/stress/trial.h"
 #include "modes/mode.h"
 #include "modes/promise.h"
-#include "scene/light.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
-#include "volume/medium.h"
 #include "volume/phase.h"
 
 #include <chrono>

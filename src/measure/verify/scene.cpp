@@ -27,7 +27,7 @@ struct Shot {
     bool per_light = false;
     int batches = 1;
     ivec2 crop_low{0}, crop_high{0};
-    std::string mode{main_mode().name};
+    std::string mode = main_mode_name();
     std::function<void(double)> progress{};
 };
 

@@ -1,7 +1,7 @@
 // Beam cards: where light leaks into the scene, and what is drawn there.
 #pragma once
+#include "integrate/ray_batch.h"
 #include "modes/billboard/settings.h"
-#include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
 #include "trace/snapshot.h"
@@ -10,6 +10,9 @@
 #include <vector>
 
 namespace tyndall {
+struct View;
+struct Snapshot;
+struct Settings;
 // A beam with an elliptic cross-section that widens evenly from one end to the other.
 struct BeamCard {
     std::string name;

@@ -1,5 +1,6 @@
 // Settings of the beam cards: rows, presets, and the ladder from quick to careful.
 #include "modes/billboard/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

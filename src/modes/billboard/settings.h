@@ -1,9 +1,10 @@
 // Settings of the beam cards.
 #pragma once
-#include "modes/mode.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 enum class CardFacing { axis, camera, cross };
 
 struct BillboardSettings {

@@ -1,7 +1,7 @@
 // What the analytic light cones need, made once per frame.
 #pragma once
+#include "integrate/ray_batch.h"
 #include "modes/cone/settings.h"
-#include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "volume/medium.h"
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace tyndall {
+struct View;
+struct Snapshot;
 // Even fog in coordinates that count from a point: rays near it keep all their digits however far the origin is.
 struct AnchoredFog {
     dvec3 anchor{0};

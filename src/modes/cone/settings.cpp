@@ -1,5 +1,6 @@
 // Settings of the analytic light cones: rows, presets, and the ladder from quick to careful.
 #include "modes/cone/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

@@ -1,10 +1,11 @@
 // Settings of the analytic light cones.
 #pragma once
-#include "modes/mode.h"
 #include "modes/picture_share.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 enum class ConeAttenuation { inverse_square, linear, none };
 enum class ConeEdge { physical, soft };
 

@@ -1,8 +1,8 @@
 // Fog along camera rays, found among integrated froxels.
 #pragma once
+#include "integrate/ray_batch.h"
 #include "modes/froxel/integrate.h"
 #include "modes/froxel/settings.h"
-#include "modes/mode.h"
 
 namespace tyndall {
 struct FroxelPicture {

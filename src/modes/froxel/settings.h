@@ -1,9 +1,10 @@
 // Settings of the froxel cache.
 #pragma once
-#include "modes/mode.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 enum class FroxelVisibility { off, rays, slices };
 enum class FroxelLookup { trilinear, tricubic, jittered };
 

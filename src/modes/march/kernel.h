@@ -1,8 +1,8 @@
 // The march of one packet, apart from its preparation.
 #pragma once
 #include "integrate/march_steps.h"
+#include "integrate/ray_batch.h"
 #include "integrate/style.h"
-#include "modes/mode.h"
 #include "trace/fluence/fluence.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 #include "trace/shadows/kept_shadows.h"

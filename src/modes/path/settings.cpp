@@ -1,5 +1,6 @@
 // Settings of the path tracer: rows, presets, and the ladder from quick to careful.
 #include "modes/path/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

@@ -2,7 +2,6 @@
 #include "modes/path/tracer.h"
 
 #include "modes/path/line.h"
-#include "volume/medium.h"
 
 namespace tyndall {
 namespace {

@@ -5,7 +5,7 @@
 // collide with fog; and from every surface met, dimmed by ratio tracking. The first two cover the same light and share
 // it by multiple importance sampling. Where the path collided or met a surface it turns into its next line.
 #pragma once
-#include "modes/mode.h"
+#include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
 #include "trace/glow.h"

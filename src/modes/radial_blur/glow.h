@@ -1,5 +1,6 @@
 // Pictures of brightness that the radial blur smears.
 #pragma once
+#include "base/image.h"
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
 

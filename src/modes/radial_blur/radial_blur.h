@@ -1,10 +1,12 @@
 // Where the radial blur sees the lights.
 #pragma once
-#include "modes/mode.h"
+#include "integrate/ray_batch.h"
 #include "modes/radial_blur/settings.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct View;
+struct Snapshot;
 struct BlurLight {
     size_t index = 0; // in the snapshot
     vec2 position{0}; // in the picture, pixels

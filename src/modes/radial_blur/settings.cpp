@@ -1,5 +1,6 @@
 // Settings of the radial blur, by their published names: rows, presets, and the ladder from quick to careful.
 #include "modes/radial_blur/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

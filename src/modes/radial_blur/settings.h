@@ -1,10 +1,11 @@
 // Settings of the radial blur.
 #pragma once
-#include "modes/mode.h"
 #include "modes/picture_share.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 enum class BlurSource { occlusion, highlights };
 
 struct RadialBlurSettings {

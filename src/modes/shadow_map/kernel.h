@@ -1,6 +1,6 @@
 // The march with shadow maps of one packet, apart from its preparation.
 #pragma once
-#include "modes/mode.h"
+#include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "modes/shadow_map/settings.h"
 #include "trace/shadows/kept_shadows.h"

@@ -1,5 +1,6 @@
 // Settings of the march with shadow maps: rows, presets, and the ladder from quick to careful.
 #include "modes/shadow_map/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

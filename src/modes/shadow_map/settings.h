@@ -1,10 +1,11 @@
 // Settings of the march with shadow maps.
 #pragma once
-#include "modes/mode.h"
 #include "modes/picture_share.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 enum class Spacing { angle, distance };
 
 struct ShadowMapSettings {

@@ -1,5 +1,6 @@
 // Settings of shadow volumes: rows, presets, and the ladder from quick to careful.
 #include "modes/shadow_volume/settings.h"
+#include "modes/mode.h"
 #include "modes/settings_rows.h"
 
 namespace tyndall {

@@ -1,9 +1,10 @@
 // Settings of shadow volumes.
 #pragma once
-#include "modes/mode.h"
 #include "modes/settings.h"
 
 namespace tyndall {
+struct Rung;
+
 // What shadow volumes are drawn as: the light between them, or their sides themselves as bright sheets.
 enum class ShadowDraw { exact, shells };
 // The fog that is integrated: every medium at its mean density in closed form, or the true densities in short steps.

@@ -1,6 +1,5 @@
 // Frames to be rendered to files: of what, how, and where to.
 #pragma once
-#include "modes/mode.h"
 #include "modes/settings.h"
 #include "render/image/exr.h"
 #include "scene/load_options.h"
@@ -19,7 +18,7 @@ struct RenderJob {
     std::filesystem::path scene_file;
     std::string output; // pattern
     std::vector<int> frames;
-    std::string mode{main_mode().name};
+    std::string mode = main_mode_name();
     Quality quality = Quality::preview;
     Settings settings;   // quality and --set already applied
     std::string camera;  // empty = the scene's

@@ -14,7 +14,6 @@
 #include "render/sequence/resume.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "volume/medium.h"
 
 #include <sys/resource.h>
 

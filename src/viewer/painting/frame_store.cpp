@@ -1,9 +1,7 @@
 #include "viewer/painting/frame_store.h"
 
 #include "base/error.h"
-#include "scene/light.h"
 #include "trace/kept.h"
-#include "volume/medium.h"
 
 #include <unistd.h>
 

@@ -4,10 +4,8 @@
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
-#include "scene/light.h"
 #include "trace/kept.h"
 #include "viewer/painting/painter_show.h"
-#include "volume/medium.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,9 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "modes/history.h"
-#include "scene/light.h"
 #include "viewer/painting/painter.h"
-#include "volume/medium.h"
 
 #include <chrono>
 #include <new>

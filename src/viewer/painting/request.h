@@ -1,6 +1,5 @@
 // What the interface asks for, and the pictures it gets.
 #pragma once
-#include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
 #include "viewer/painting/tone.h"
@@ -36,8 +35,8 @@ struct Request {
     std::optional<int> next_frame; // that will be asked for, while playing
     Camera camera;
     ivec2 size{640, 360};
-    std::string mode{main_mode().name};
-    std::string stand_in{interactive_mode().name}; // mode of quick pictures when `mode` is slow; empty = the same
+    std::string mode = main_mode_name();
+    std::string stand_in = interactive_mode_name(); // mode of quick pictures when `mode` is slow; empty = the same
     std::string beside; // mode of the right part of still pictures, or reference; empty = none
     Settings settings;
     uint32_t seed = 0;

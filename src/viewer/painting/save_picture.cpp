@@ -11,7 +11,6 @@
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 namespace tyndall {
 void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,

@@ -1,6 +1,6 @@
 // All that the viewer shows and edits, and how actions change it. The window only draws this and passes actions on.
 #pragma once
-#include "modes/mode.h"
+#include "modes/settings.h"
 #include "viewer/editing/scene_edit.h"
 #include "viewer/painting/request.h"
 #include "viewer/state/action.h"
@@ -33,7 +33,7 @@ struct ViewState {
     std::shared_ptr<Scene> stage;               // what is rendered: the render thread's own, without the edits ...
     std::shared_ptr<const EditableParts> parts; // ... and they
 
-    std::string mode{main_mode().name}, stand_in{interactive_mode().name}, beside;
+    std::string mode = main_mode_name(), stand_in = interactive_mode_name(), beside;
     Quality quality = Quality::preview;
     Settings settings = settings_for(Quality::preview);
     uint32_t seed = 0;

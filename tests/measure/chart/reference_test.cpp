@@ -3,7 +3,6 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,6 @@
 #include "support/random_points.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 namespace tyndall::test {
 std::vector<Ray> lines_through(vec3 center, float radius, int count) {

@@ -8,7 +8,6 @@
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 namespace tyndall::test {
 Estimate estimate(const ScatterFunction& scatter, const Ray& ray, int samples,

@@ -5,10 +5,8 @@
 #include "render/adaptive/allotment.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/noise_fixtures.h"
-#include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

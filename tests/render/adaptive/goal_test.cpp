@@ -9,7 +9,6 @@
 #include "scene/file/scene_file.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

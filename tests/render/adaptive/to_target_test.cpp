@@ -5,12 +5,10 @@
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/noise_fixtures.h"
-#include "scene/light.h"
 #include "scene/scene.h"
 #include "support/expect_error.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

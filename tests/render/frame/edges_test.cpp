@@ -3,11 +3,9 @@
 #include "modes/promise.h"
 #include "render/fixtures.h"
 #include "render/frame/edges.h"
-#include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

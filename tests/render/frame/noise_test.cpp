@@ -9,7 +9,6 @@
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

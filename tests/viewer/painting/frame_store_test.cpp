@@ -1,4 +1,3 @@
-#include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/kept.h"
 #include "viewer/editing/missing_frames.h"

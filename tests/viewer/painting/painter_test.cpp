@@ -8,7 +8,6 @@
 #include "scene/scene.h"
 #include "viewer/painting/painting.h"
 #include "viewer/painting/save_picture.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

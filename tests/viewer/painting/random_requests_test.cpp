@@ -3,11 +3,9 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "modes/mode.h"
-#include "scene/light.h"
 #include "viewer/fixtures.h"
 #include "viewer/painting/painter.h"
 #include "viewer/state/view_state.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

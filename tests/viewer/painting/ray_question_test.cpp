@@ -4,7 +4,6 @@
 #include "scene/light.h"
 #include "viewer/painting/painting.h"
 #include "viewer/state/view_state.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,6 @@
 #include "render/frame/frame.h"
 #include "scene/light.h"
 #include "viewer/painting/painting.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 
