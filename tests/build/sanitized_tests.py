@@ -16,6 +16,7 @@ BATCH = 4.0  # seconds in release that one process is given
 PATIENCE = 60  # how much slower than in release a process may be before it is ended
 LEAST_PATIENCE = 300  # seconds
 SHOWN_LINES = 60
+STABILITY = ("measure.stress", "measure.stress_mutation")  # minutes of whole pictures: with the slow ones
 
 
 def seconds_in_release(build):
@@ -23,6 +24,7 @@ def seconds_in_release(build):
     reports = list((build / "test_times").glob("*.json"))
     if not reports:
         sys.exit(f"sanitized_tests: {build}/test_times is missing: run the tests of {build} first")
+    reports = [report for report in reports if report.stem not in STABILITY]
     return {(report.name.split(".")[0], f"{suite['name']}.{test['name']}"): float(test["time"].removesuffix("s"))
             for report in reports for suite in json.loads(report.read_text())["testsuites"]
             for test in suite["testsuite"]}
