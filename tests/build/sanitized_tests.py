@@ -51,7 +51,7 @@ def batches(program, seconds, slow):
         if (cost is None or cost >= QUICK) != slow:
             continue
         batch.append(name)
-        sum_of_batch += cost or QUICK
+        sum_of_batch += QUICK if cost is None else cost
         if slow or sum_of_batch >= BATCH:
             yield program, batch, sum_of_batch
             batch, sum_of_batch = [], 0
