@@ -40,10 +40,10 @@ bool has_blend(const Snapshot& snapshot) {
                return material.alpha_mode == AlphaMode::blend;
            });
 }
-}
 
 ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
     return {settings.resolution, settings.cascades, settings.pcf, settings.bias};
+}
 }
 
 ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings) {

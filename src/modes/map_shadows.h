@@ -7,13 +7,11 @@
 namespace tyndall {
 struct Limit;
 struct Settings;
-struct ShadowMapSettings;
 struct Snapshot;
 struct View;
 
 // Shadow maps of all lights, as the settings ask for them.
 ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings);
-ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings);
 
 // What shadow maps make wrong, whoever looks them up.
 std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings);
