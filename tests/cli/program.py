@@ -10,7 +10,7 @@ import unittest
 
 TYNDALL = os.environ.get("TYNDALL", "tyndall")
 SOURCE = pathlib.Path(os.environ.get("TYNDALL_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
-SHARED = pathlib.Path(os.environ.get("TYNDALL_SHARED_DATA", SOURCE / "../shared/data"))
+CORPORA = [SOURCE / "tests/data", pathlib.Path(os.environ.get("TYNDALL_SHARED_DATA", SOURCE / "../shared/data"))]
 
 SANITIZED = "asan" in TYNDALL  # sanitizers make everything several times slower
 
@@ -20,6 +20,14 @@ def run(*arguments, timeout=60, **options):
     options.setdefault("stdout", subprocess.PIPE)
     options.setdefault("stderr", subprocess.PIPE)
     return subprocess.run([TYNDALL, *map(str, arguments)], text=True, errors="replace", timeout=timeout, **options)
+
+
+def corpus(*patterns):
+    """Files by others below tests/data, and below the larger collection where there is one: each name once."""
+    found = {path.relative_to(folder): path for folder in reversed(CORPORA) for pattern in patterns
+             for path in folder.glob(pattern) if path.is_file()}
+    assert found, f"no files {patterns}"
+    return [found[name] for name in sorted(found)]
 
 
 def recipe(**changes):

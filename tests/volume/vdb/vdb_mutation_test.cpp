@@ -1,5 +1,6 @@
 // Random damage: every file ends as fog or as an Error, in bounded time and memory. Each is read in a process of its
 // own.
+#include "support/corpus.h"
 #include "volume/vdb/vdb.h"
 #include "volume/vdb/vdb_fixtures.h"
 
@@ -92,9 +93,9 @@ std::vector<std::string> originals() {
             ball.tiles = {{ivec3(64), 1, 0.5f}, {ivec3(256), 2, 0.5f}, {ivec3(8192), 3, 0.5f}};
             files.push_back(authored({ball, second}, packing, offsets));
         }
-    const std::filesystem::path corpus = std::filesystem::path(TYNDALL_SHARED_DATA) / "vdb";
-    for (const char* name : {"vpt/dragon.vdb", "openusd/smoke_000001.vdb", "arnold/grids.vdb"})
-        if (std::filesystem::exists(corpus / name)) files.push_back(bytes_of(corpus / name));
+    for (const std::filesystem::path& file :
+         test::corpus_files_named({"vdb/vpt/dragon.vdb", "vdb/openusd/smoke_000001.vdb", "vdb/arnold/grids.vdb"}))
+        files.push_back(bytes_of(file));
     return files;
 }
 
@@ -113,6 +114,7 @@ void mutate(int count, uint32_t seed) {
         ADD_FAILURE() << verdict.why << ", see " << kept;
     }
     EXPECT_GT(outcomes[refused], count / 2);
+    EXPECT_GT(outcomes[loaded], 0);
     ::testing::Test::RecordProperty("loaded", outcomes[loaded]);
     ::testing::Test::RecordProperty("refused", outcomes[refused]);
     std::printf("%d files: %d loaded, %d refused, %d wrong\n", count, outcomes[loaded], outcomes[refused],
