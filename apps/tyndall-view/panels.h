@@ -10,7 +10,7 @@ namespace tyndall {
 // What the panels show besides the state.
 struct Shelf {
     std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
-    std::vector<Limit> limits;                   // of the mode, as far as they are known
+    std::vector<LimitationGroup> limitations;    // of the mode, as far as they are known
     std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
     double saving = -1;                          // share of a file that is being written
     std::string news;                            // of work that goes on beside the interface

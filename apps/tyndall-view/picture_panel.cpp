@@ -154,16 +154,18 @@ void draw_errors(const PicturePlace& place, float bottom, const ViewState& state
     }
 }
 
-ImVec4 severity_color(const std::vector<Limit>& limits) {
-    if (limits.empty() || limits[0].severity == Severity::info) return good;
-    return limits[0].severity == Severity::degraded ? caution : trouble;
+ImVec4 severity_color(const std::vector<LimitationGroup>& limitations) {
+    if (limitations.empty() || limitations[0].worst.severity == Severity::info) return good;
+    return limitations[0].worst.severity == Severity::degraded ? caution : trouble;
 }
 
 // "degraded: ambient light, and 1 more"
-std::string wrongs(const std::vector<Limit>& limits) {
-    if (limits.empty() || limits[0].severity == Severity::info) return "nothing known to be wrong";
-    const auto alike = std::ranges::count(limits, limits[0].severity, &Limit::severity);
-    std::string text = std::string(name_of(limits[0].severity)) + ": " + printable(limits[0].where, 40);
+std::string wrongs(const std::vector<LimitationGroup>& limitations) {
+    if (limitations.empty() || limitations[0].worst.severity == Severity::info) return "nothing known to be wrong";
+    const Severity severity = limitations[0].worst.severity;
+    const auto alike =
+        std::ranges::count(limitations, severity, [](const auto& group) { return group.worst.severity; });
+    std::string text = std::string(name_of(severity)) + ": " + printable(where_of(limitations[0]), 40);
     if (alike > 1) text += formatted(", and %d more", static_cast<int>(alike) - 1);
     return text;
 }
@@ -224,7 +226,8 @@ void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const
         // Always on the picture: what it is, how good it is, what is wrong with it.
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
-        if (shelf.picture->mode == state.mode) words.push_back({wrongs(shelf.limits), severity_color(shelf.limits)});
+        if (shelf.picture->mode == state.mode)
+            words.push_back({wrongs(shelf.limitations), severity_color(shelf.limitations)});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
         draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);

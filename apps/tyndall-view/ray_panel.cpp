@@ -188,12 +188,12 @@ void draw_answer(const Answer& answer, const Answer* reference, const ViewState&
         ImGui::TextColored(accent, "%s", answer.mode.c_str());
     else if (ImGui::Selectable(answer.mode.c_str(), answer.mode == state.mode, ImGuiSelectableFlags_SpanAllColumns))
         act({Verb::mode, {answer.mode}, {}, {}});
-    if (ImGui::IsItemHovered() && (!answer.remark.empty() || !answer.limits.empty())) {
+    if (ImGui::IsItemHovered() && (!answer.remark.empty() || !answer.limitations.empty())) {
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
         if (!answer.remark.empty()) ImGui::TextUnformatted(answer.remark.c_str());
-        for (const Limit& limit : answer.limits)
-            ImGui::TextUnformatted((std::string(name_of(limit.severity)) + ": " + limit.why).c_str());
+        for (const LimitationGroup& group : groups_of(answer.limitations))
+            ImGui::TextUnformatted(line_of(group).c_str());
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
     }

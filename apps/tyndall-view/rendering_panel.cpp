@@ -121,11 +121,10 @@ void remark(const ImVec4& color, const std::string& where, const std::string& wh
 void draw_remarks(const ViewState& state, const Shelf& shelf) {
     if (!ImGui::CollapsingHeader("what it gets wrong", ImGuiTreeNodeFlags_DefaultOpen)) return;
     bool none = true;
-    for (const Limit& limit : shelf.limits) {
-        const ImVec4 color = limit.severity == Severity::wrong      ? trouble
-                             : limit.severity == Severity::degraded ? caution
-                                                                    : quiet;
-        remark(color, std::string(name_of(limit.severity)) + "  " + limit.where, limit.why);
+    for (const LimitationGroup& group : shelf.limitations) {
+        const Severity severity = group.worst.severity;
+        const ImVec4 color = severity == Severity::wrong ? trouble : severity == Severity::degraded ? caution : quiet;
+        remark(color, std::string(name_of(severity)) + "  " + where_of(group), sentence_of(group.worst));
         none = false;
     }
     if (state.scene)

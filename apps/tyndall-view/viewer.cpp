@@ -65,7 +65,7 @@ void take_pictures(Viewer& viewer) {
             announce(viewer, picture->error, true);
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
-            if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limits = picture->limits;
+            if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limitations = picture->limitations;
             if (picture->ray) viewer.shelf.ray = picture->ray;
             if (picture->volume && picture->volume != viewer.shelf.volume)
                 viewer.shelf.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();

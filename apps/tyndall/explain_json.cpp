@@ -58,11 +58,6 @@ Json step_json(const RayStep& step) {
                         {"glow", json_of(step.glow)}});
 }
 
-Json limit_json(const Limit& limit) {
-    return json_object(
-        {{"severity", json_of(name_of(limit.severity))}, {"where", json_of(limit.where)}, {"why", json_of(limit.why)}});
-}
-
 Json answer_json(const Answer& answer, const Answer* reference) {
     Json json = json_object({{"mode", json_of(answer.mode)},
                              {"accuracy", json_of(name_of(answer.accuracy))},
@@ -77,7 +72,7 @@ Json answer_json(const Answer& answer, const Answer* reference) {
     if (answer.standard_error) json.members.emplace_back("standard_error", json_of(*answer.standard_error));
     if (answer.picture.x > 0) json.members.emplace_back("picture", pair_json(answer.picture));
     if (!answer.remark.empty()) json.members.emplace_back("remark", json_of(answer.remark));
-    if (reference) json.members.emplace_back("limits", list(answer.limits, limit_json));
+    if (reference) json.members.emplace_back("limitations", json_of(answer.limitations));
     return json;
 }
 }

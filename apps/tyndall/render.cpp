@@ -5,8 +5,8 @@
 #include "base/io/frames.h"
 #include "base/io/output.h"
 #include "common.h"
+#include "modes/limitation.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/contact_sheet.h"
 #include "render/sequence/loaded_frame.h"
@@ -28,25 +28,21 @@ void choose_frames(const Scene& scene, RenderJob& job) {
 }
 
 // Where the mode fails on this scene, from the first frame, with the settings it begins with.
-std::vector<Limit> limits_of(const Scene& scene, const RenderJob& job, const Snapshot& snapshot) {
+Limitations limitations_of(const Scene& scene, const RenderJob& job, const Snapshot& snapshot) {
     View view;
     view.camera = camera_at(scene, find_camera(scene, job.camera), snapshot.seconds);
     view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
-    return find_mode(job.mode).limits(view, snapshot, job.choice ? job.choice->candidate.settings : job.settings);
+    return find_mode(job.mode).limitations(view, snapshot, job.choice ? job.choice->candidate.settings : job.settings);
 }
 
-std::string limit_line(const Limit& limit) {
-    return std::string(name_of(limit.severity)) + ": " + printable(limit.where) + ": " + printable(limit.why, 240);
-}
-
-// What the picture will not show: warnings of the files, then limits of the mode; mere remarks only when verbose.
-void say_limits(const Scene& scene, const std::vector<Limit>& limits, const Globals& globals) {
+// What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
+void say_limitations(const Scene& scene, const Limitations& limitations, const Globals& globals) {
     if (globals.quiet) return;
     if (globals.verbose)
         for (const auto& input : scene.inputs) say("reads " + printable(input.string(), 460));
     for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
-    for (const Limit& limit : limits)
-        if (globals.verbose || limit.severity != Severity::info) say(limit_line(limit));
+    for (const LimitationGroup& group : groups_of(limitations))
+        if (globals.verbose || group.worst.severity != Severity::info) say(line_of(group));
 }
 
 void say_rounding(const RenderJob& job, const Globals& globals) {
@@ -109,12 +105,12 @@ struct Rendered {
     RenderReport report;
 };
 
-void say_before(const Scene& scene, const std::vector<Limit>& limits, const RenderOptions& texts, const RenderJob& job,
+void say_before(const Scene& scene, const Limitations& limitations, const RenderOptions& texts, const RenderJob& job,
                 const Globals& globals) {
     say_idle_settings(texts.settings, job, globals);
     if (job.history > 0 && !find_mode(job.mode).remembers && !globals.quiet)
         say("note: --history changes nothing: " + job.mode + " has no memory");
-    say_limits(scene, limits, globals);
+    say_limitations(scene, limitations, globals);
 }
 
 // Renders a job's frames and reports on them; json is the statistics file's name, empty for none. The first frame of a
@@ -126,14 +122,14 @@ Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& text
     settle_noise(job, globals);
     shared = job.frames.size() == 1 ? first.snapshot : Snapshot{};
     shared.kept = nullptr; // the time that a mode takes must not depend on the one before it
-    const std::vector<Limit> limits = limits_of(scene, job, first.snapshot);
-    say_before(scene, limits, texts, job, globals);
+    const Limitations limitations = limitations_of(scene, job, first.snapshot);
+    say_before(scene, limitations, texts, job, globals);
 
     Progress progress(globals.progress, label, static_cast<double>(job.frames.size()), globals.json);
     RenderReport report = render_sequence(scene, job, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
-    for (const Limit& limit : limits) job.limits_said.push_back(limit_line(limit));
+    job.limitations = limitations;
     if (!json.empty()) write_file_atomically(json, stats_json(report, job));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));

@@ -3,9 +3,8 @@
 #include "scene/light.h"
 
 #include "base/text.h"
-#include "modes/limits.h"
-#include "modes/promise.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -15,8 +14,8 @@ namespace {
 constexpr float sharp_pixels = 4; // a texel that covers more of the picture shows
 
 // The largest texel of a light's map at the ends of the rays: its size, and its share of a pixel there.
-void append_resolution_limit(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
-                             std::vector<Limit>& limits) {
+void add_texels(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
+                Limitations& limitations) {
     float largest = 0, pixels = 0;
     for (const Ray& ray : rays) {
         const vec3 end = ray.at(ray.t_max);
@@ -28,11 +27,11 @@ void append_resolution_limit(const View& view, const ShadowMap& map, const Light
         pixels = std::max(pixels, texel * static_cast<float>(view.size.y) / height);
     }
     if (largest > 0)
-        limits.push_back({pixels > sharp_pixels ? Severity::degraded : Severity::info, "light " + light.name,
-                          "texels of its shadow map are up to " + number_text("%.2g", largest) + " m wide (" +
-                              number_text("%.2g", pixels) +
-                              " pixels) at the end of the view; edges are as coarse, thinner things and gaps can be "
-                              "missed"});
+        limitations.push_back({pixels > sharp_pixels ? Severity::degraded : Severity::info,
+                               &limitation::coarse_texels,
+                               Subject::light,
+                               light.name,
+                               {pixels, largest}});
 }
 
 bool has_blend(const Snapshot& snapshot) {
@@ -53,22 +52,16 @@ ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Se
     return maps;
 }
 
-std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<Limit> limits;
+void add_map_shadows(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
+    const ShadowMapOptions options = shadow_map_options(settings.of<ShadowMapSettings>());
     for (const Light& light : snapshot.lights) {
         if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) continue;
         if (is_soft(light))
-            limits.push_back({Severity::degraded, "light " + light.name,
-                              "shadow maps see it from one point: its soft shadows have hard edges in the fog"});
-        append_resolution_limit(
-            view, fitted_shadow_map(view, snapshot, light, shadow_map_options(settings.of<ShadowMapSettings>())), light,
-            rays, limits);
+            limitations.push_back({Severity::degraded, &limitation::hard_shadows, Subject::light, light.name});
+        add_texels(view, fitted_shadow_map(view, snapshot, light, options), light, rays, limitations);
     }
     if (snapshot.occluders && snapshot.occluders->has_alpha() && has_blend(snapshot))
-        limits.push_back({Severity::degraded, "BLEND surfaces",
-                          "shadow maps know no half shadows: surfaces of alpha 1/2 and more block all light in the "
-                          "fog, others none"});
-    return limits;
+        limitations.push_back({Severity::degraded, &limitation::no_partial_shadows, Subject::surfaces});
 }
 }

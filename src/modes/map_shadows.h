@@ -1,18 +1,27 @@
 // Shadow maps as a visibility of modes.
 #pragma once
+#include "modes/limitation.h"
 #include "trace/shadows/kept_shadows.h"
 
-#include <vector>
-
 namespace tyndall {
-struct Limit;
 struct Settings;
 struct Snapshot;
 struct View;
+
+namespace limitation {
+inline constexpr LimitationKind coarse_texels{
+    "coarse_texels",
+    "texels of its shadow map are up to {} pixels wide ({} m) at the end of the view: shadow edges are "
+    "no finer, and thinner occluders and gaps can be missed"};
+inline constexpr LimitationKind no_partial_shadows{
+    "no_partial_shadows",
+    "shadow maps hold no partial shadows: BLEND surfaces of alpha 1/2 and more block all light in "
+    "the fog, others none"};
+}
 
 // Shadow maps of all lights, as the settings ask for them.
 ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings);
 
 // What shadow maps make wrong, whoever looks them up.
-std::vector<Limit> map_limits(const View& view, const Snapshot& snapshot, const Settings& settings);
+void add_map_shadows(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations);
 }

@@ -32,9 +32,4 @@ std::string_view name_of(Accuracy accuracy) {
     constexpr std::string_view names[] = {"look", "even fog", "single scattering", "multiple scattering"};
     return names[static_cast<size_t>(accuracy)];
 }
-
-std::string_view name_of(Severity severity) {
-    constexpr std::string_view names[] = {"info", "degraded", "wrong"};
-    return names[static_cast<size_t>(severity)];
-}
 }

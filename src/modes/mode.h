@@ -2,7 +2,7 @@
 #pragma once
 #include "base/image.h"
 #include "integrate/ray_batch.h"
-#include "modes/promise.h"
+#include "modes/limitation.h"
 
 #include <string>
 #include <string_view>
@@ -15,6 +15,14 @@ struct Settings;
 struct Snapshot;
 struct View;
 enum class Quality;
+
+// What a technique promises of its images.
+enum class Accuracy { look, even_fog, single_scattering, multiple_scattering };
+std::string_view name_of(Accuracy accuracy);
+
+// Who shades what lies behind the fog: the renderer; the mode, which then gets whole camera rays, follows them through
+// BLEND surfaces and adds surfaces and background itself; or nobody, because the mode works on the finished picture.
+enum class Surfaces { shared, own, post };
 
 // A picture without fog, and what a mode with Surfaces::post adds to it. All images cover the full picture.
 struct PlainPicture {
@@ -39,7 +47,7 @@ struct Mode {
     std::string_view name, summary;
     Accuracy accuracy;
     Surfaces surfaces;
-    std::vector<Limit> (*limits)(const View&, const Snapshot&, const Settings&);
+    Limitations (*limitations)(const View&, const Snapshot&, const Settings&);
     // History may be null. Of Surfaces::post: the fog of the picture it works on.
     ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*);
     PostFunction (*prepare_post)(const View&, const Snapshot&, const Settings&) = nullptr; // for Surfaces::post only

@@ -12,8 +12,10 @@ struct MistSettings {
     float brightness = 1; // radiance of fog that nothing shines through
 };
 
-std::vector<Limit> limits(const View&, const Snapshot&, const Settings&) {
-    return {{Severity::wrong, "mist", "no light is looked at"}};
+constexpr LimitationKind blind{"mist_blind", "no light is looked at"};
+
+Limitations limitations(const View&, const Snapshot&, const Settings&) {
+    return {{Severity::wrong, &blind, Subject::image}};
 }
 
 ScatterFunction prepare(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
@@ -46,7 +48,7 @@ Mode mist_mode() {
             .summary = "fog of one brightness",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,
-            .limits = limits,
+            .limitations = limitations,
             .prepare = prepare,
             .append_rows = append_rows,
             .set_quality = set_quality,

@@ -7,10 +7,12 @@
 #include "modes/path/path_rays.h"
 #include "modes/path/path_scenes.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/integral.h"
+#include "support/limitations.h"
 #include "support/meshes.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
@@ -232,17 +234,16 @@ TEST(Fluence, LooksTheSameInFroxels) {
 TEST(Fluence, SaysWhatItLeavesOut) {
     const Snapshot snapshot = scene_of({even_fog(4, unit_box)}, {sun({0, -1, 0})}, vec3(1));
     for (const char* name : {"march", "froxel"}) {
-        const auto texts = [&](int orders) {
-            std::string all;
-            for (const Limit& limit : find_mode(name).limits(View{}, snapshot, with_orders(Settings{}, orders)))
-                all += limit.why + "\n";
-            return all;
+        const auto said = [&](int orders) {
+            return find_mode(name).limitations(View{}, snapshot, with_orders(Settings{}, orders));
         };
-        EXPECT_NE(texts(1).find("light scatters once only"), std::string::npos) << name;
-        EXPECT_EQ(texts(3).find("light scatters once only"), std::string::npos) << name;
-        EXPECT_NE(texts(3).find("more than 3 times is left out"), std::string::npos) << name;
-        EXPECT_NE(texts(all_orders).find("cells of 0.042 m"), std::string::npos) << texts(all_orders);
-        EXPECT_NE(texts(all_orders).find("ambient light is not shadowed"), std::string::npos) << name;
+        EXPECT_TRUE(says(said(1), limitation::single_scattering_only)) << name;
+        EXPECT_FALSE(says(said(3), limitation::single_scattering_only)) << name;
+        const Limitations three = said(3), all = said(all_orders);
+        EXPECT_EQ(std::ranges::find(three, &limitation::orders_left_out, &Limitation::kind)->amounts[0], 3) << name;
+        EXPECT_NEAR(std::ranges::find(all, &limitation::cached_fluence, &Limitation::kind)->amounts[0], 1 / 24.0, 1e-6);
+        EXPECT_FALSE(says(all, limitation::orders_left_out)) << name;
+        EXPECT_TRUE(says(all, limitation::unshadowed_ambient)) << name;
     }
 }
 

@@ -1,8 +1,8 @@
 #include "render/fixtures.h"
 
 #include "base/random.h"
+#include "modes/limitation.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
@@ -58,10 +58,10 @@ Medium even_medium(float extinction, Box box) {
     return medium;
 }
 
-std::vector<Limit> no_limits(const View&, const Snapshot&, const Settings&) { return {}; }
+Limitations no_limitations(const View&, const Snapshot&, const Settings&) { return {}; }
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*)) {
-    return {"test", "a mode of the tests", Accuracy::look, Surfaces::shared, no_limits, prepare};
+    return {"test", "a mode of the tests", Accuracy::look, Surfaces::shared, no_limitations, prepare};
 }
 
 ScatterFunction prepare_glow(const View&, const Snapshot& snapshot, const Settings&, History*) {

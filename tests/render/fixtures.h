@@ -8,7 +8,7 @@
 namespace tyndall {
 struct Camera;
 struct History;
-struct Limit;
+struct Limitation;
 struct Medium;
 struct Mode;
 struct Scene;
@@ -32,7 +32,7 @@ Snapshot snapshot_of(const Scene& scene, std::vector<Medium> media);
 
 Medium even_medium(float extinction, Box box = everywhere());
 
-std::vector<Limit> no_limits(const View&, const Snapshot&, const Settings&);
+std::vector<Limitation> no_limitations(const View&, const Snapshot&, const Settings&);
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*));
 

@@ -168,7 +168,7 @@ std::vector<ChartedMode> charted_modes(const ChartStage& stage) {
         const View view = view_of(stage.scene, job.render, job.frame);
         const Settings settings = settings_of({mode, {"", job.render.settings}, 0});
         result.push_back({std::string(mode->name), std::string(mode->summary), mode->accuracy,
-                          mode->limits(view, fresh(stage.snapshot), settings)});
+                          mode->limitations(view, fresh(stage.snapshot), settings)});
     }
     return result;
 }

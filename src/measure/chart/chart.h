@@ -1,7 +1,7 @@
 // Every mode's error against its time, on one scene: each at several settings, all against one reference.
 #pragma once
 #include "measure/chart/errors.h"
-#include "modes/promise.h"
+#include "modes/mode.h"
 #include "render/adaptive/ladders.h"
 
 #include <cstdint>
@@ -65,7 +65,7 @@ struct LeftOut {
 struct ChartedMode {
     std::string name, summary;
     Accuracy accuracy = Accuracy::look;
-    std::vector<Limit> limits;
+    Limitations limitations;
 };
 
 struct Chart {

@@ -121,12 +121,10 @@ std::string gallery(const Chart& chart) {
     for (const ChartedMode& mode : chart.modes) {
         html += element("h3", xml_text(mode.name) + " <span class=\"quiet\">(" + std::string(name_of(mode.accuracy)) +
                                   ") " + xml_text(mode.summary) + "</span>");
-        std::string limits;
-        for (const Limit& limit : mode.limits)
-            if (limit.severity != Severity::info)
-                limits += element("li", std::string(name_of(limit.severity)) + ": " + xml_text(limit.where) + ": " +
-                                            xml_text(limit.why));
-        if (!limits.empty()) html += element("ul class=\"quiet\"", limits);
+        std::string lines;
+        for (const LimitationGroup& group : groups_of(mode.limitations))
+            if (group.worst.severity != Severity::info) lines += element("li", xml_text(line_of(group)));
+        if (!lines.empty()) html += element("ul class=\"quiet\"", lines);
         for (const ChartPoint& point : chart.points) {
             if (point.mode != mode.name) continue;
             const PointFiles files = files_of(point);

@@ -30,14 +30,9 @@ Json size_json(ivec2 size) { return report::array({report::number(size.x), repor
 Json modes_json(const Chart& chart) {
     std::vector<Json> modes;
     for (const ChartedMode& mode : chart.modes) {
-        std::vector<Json> limits;
-        for (const Limit& limit : mode.limits)
-            limits.push_back(report::object({{"severity", report::text(name_of(limit.severity))},
-                                             {"where", report::text(limit.where)},
-                                             {"why", report::text(limit.why)}}));
         modes.push_back(report::object({{"name", report::text(mode.name)},
                                         {"promise", report::text(name_of(mode.accuracy))},
-                                        {"limits", report::array(std::move(limits))}}));
+                                        {"limitations", json_of(mode.limitations)}}));
     }
     return report::array(std::move(modes));
 }

@@ -4,7 +4,7 @@
 // Distances are metres along the ray from its start, radiances linear Rec.709 in nits.
 #pragma once
 #include "base/math.h"
-#include "modes/promise.h"
+#include "modes/mode.h"
 #include "scene/light_kind.h"
 
 #include <atomic>
@@ -86,7 +86,7 @@ struct Answer {
     int samples = 1;                    // averaged; more than one where the mode is noisy
     std::optional<vec3> standard_error; // of the fog light, then
     ivec2 picture{0};                   // of a mode that works on pictures: the size of the one it was asked for
-    std::vector<Limit> limits;          // what the mode says of itself, as far as it concerns this ray
+    Limitations limitations;            // what the mode says of itself, as far as it concerns this ray
     std::string remark;                 // how it was asked, where that matters
     bool finite = true;
 };

@@ -95,17 +95,15 @@ void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& a
 }
 
 // Whether a light gets to the ray, or a medium lies on it.
-bool concerns(const Limit& limit, const RayStory& story) {
-    constexpr std::string_view light = "light ", medium = "medium ";
-    const std::string_view where = limit.where;
+bool concerns(const Limitation& limitation, const RayStory& story) {
     const auto reaches = [](const LightStretch& stretch) { return stretch.state != Lighting::out_of_reach; };
-    if (where.starts_with(light))
+    if (limitation.subject == Subject::light)
         return std::ranges::any_of(story.lights, [&](const LightOnRay& on) {
-            return on.name == where.substr(light.size()) && std::ranges::any_of(on.stretches, reaches);
+            return on.name == limitation.name && std::ranges::any_of(on.stretches, reaches);
         });
-    if (where.starts_with(medium))
-        return std::ranges::any_of(
-            story.media, [&](const MediumOnRay& on) { return on.name == where.substr(medium.size()) && on.depth > 0; });
+    if (limitation.subject == Subject::medium)
+        return std::ranges::any_of(story.media,
+                                   [&](const MediumOnRay& on) { return on.name == limitation.name && on.depth > 0; });
     return true;
 }
 }
@@ -113,8 +111,8 @@ bool concerns(const Limit& limit, const RayStory& story) {
 Answer answer_of(const Mode& mode, const RayScene& scene, const RayStory& story) {
     Answer answer;
     answer.mode = mode.name, answer.accuracy = mode.accuracy;
-    for (Limit& limit : mode.limits(scene.view, scene.snapshot, scene.settings))
-        if (concerns(limit, story)) answer.limits.push_back(std::move(limit));
+    for (Limitation& limitation : mode.limitations(scene.view, scene.snapshot, scene.settings))
+        if (concerns(limitation, story)) answer.limitations.push_back(std::move(limitation));
     if (mode.surfaces == Surfaces::post)
         ask_picture(mode, scene, story.pixel, answer);
     else

@@ -156,7 +156,7 @@ std::string title_line(const RayStory& story, const StoryTitle& title) {
 std::string explain_text(const RayStory& story, const StoryTitle& title) {
     std::string text = wrapped(title_line(story, title), 2);
     for (const std::string& part : {ray_text(story), lights_text(story), stretches_text(story), steps_text(story),
-                                    modes_text(story), limits_text(story)})
+                                    modes_text(story), limitations_text(story)})
         if (!part.empty()) text += "\n" + part;
     // Empty cells leave no blanks at the ends of lines.
     std::string result;

@@ -13,7 +13,7 @@ std::string cut(std::string text, size_t most);
 // Words in lines of up to 100 columns; those after the first begin `indent` columns in.
 std::string wrapped(const std::string& text, size_t indent);
 
-std::string steps_text(const RayStory& story);  // the table of steps, put together to a few rows
-std::string modes_text(const RayStory& story);  // the modes' answers beside the reference
-std::string limits_text(const RayStory& story); // what modes say of themselves
+std::string steps_text(const RayStory& story);       // the table of steps, put together to a few rows
+std::string modes_text(const RayStory& story);       // the modes' answers beside the reference
+std::string limitations_text(const RayStory& story); // what modes say of themselves
 }

@@ -15,51 +15,26 @@ std::string answer_text(const Answer& answer, const Answer* reference) {
                      answer.steps);
 }
 
-// The same words of one or more modes, about one or more lights or media.
+// What one or more modes say alike of one or more lights or media.
 struct Said {
-    std::vector<std::string> modes, where;
-    Severity severity;
-    std::string why;
+    std::vector<std::string> modes;
+    LimitationGroup group;
 };
-
-std::vector<Said> said_by(const Answer& answer) {
-    std::vector<Said> all;
-    for (const Limit& limit : answer.limits) {
-        if (limit.severity == Severity::info) continue;
-        const auto known = std::ranges::find_if(
-            all, [&](const Said& said) { return said.severity == limit.severity && said.why == limit.why; });
-        if (known != all.end())
-            known->where.push_back(printable(limit.where));
-        else
-            all.push_back({{answer.mode}, {printable(limit.where)}, limit.severity, limit.why});
-    }
-    return all;
-}
 }
 
-std::string limits_text(const RayStory& story) {
-    constexpr size_t most_named = 5;
+std::string limitations_text(const RayStory& story) {
     std::vector<Said> all;
     for (const Answer& answer : story.answers)
-        for (Said& said : said_by(answer)) {
-            const auto known = std::ranges::find_if(all, [&](const Said& other) {
-                return other.severity == said.severity && other.why == said.why && other.where == said.where;
-            });
+        for (LimitationGroup& group : groups_of(answer.limitations)) {
+            if (group.worst.severity == Severity::info) continue;
+            const auto known = std::ranges::find(all, group, &Said::group);
             if (known != all.end())
                 known->modes.push_back(answer.mode);
             else
-                all.push_back(std::move(said));
+                all.push_back({{answer.mode}, std::move(group)});
         }
     std::string text;
-    for (Said& said : all) {
-        const size_t more = said.where.size() > most_named ? said.where.size() - most_named : 0;
-        said.where.resize(said.where.size() - more);
-        std::string where = joined(said.where, ", ");
-        if (more > 0) where += formatted(" and %zu more", more);
-        text += wrapped("  " + joined(said.modes, ", ") + ": " + std::string(name_of(said.severity)) + ": " + where +
-                            ": " + printable(said.why, 240),
-                        6);
-    }
+    for (const Said& said : all) text += wrapped("  " + joined(said.modes, ", ") + ": " + line_of(said.group), 6);
     return text.empty() ? text : "What modes say of themselves here\n" + text;
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/text.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
+#include "modes/shared_limitations.h"
 #include "render/adaptive/to_target.h"
 #include "trace/snapshot.h"
 
@@ -28,18 +28,18 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     return term;
 }
 
-// The worst limit that may be why a mode is off. What the reference leaves out as well is not.
-const Limit* worst_limit(const std::vector<Limit>& limits) {
-    const Limit* worst = nullptr;
-    for (const Limit& limit : limits)
-        if (!limit.why.starts_with("light scatters once only") && limit.severity != Severity::info &&
-            (!worst || limit.severity > worst->severity))
-            worst = &limit;
+// The worst limitations that may be why a mode is off. What the reference leaves out as well is not.
+std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
+    std::optional<LimitationGroup> worst;
+    for (const LimitationGroup& group : groups_of(limitations))
+        if (!group.worst.is(limitation::single_scattering_only) && group.worst.severity != Severity::info &&
+            (!worst || group.worst.severity > worst->worst.severity))
+            worst = group;
     return worst;
 }
 
 // Why a mode that was measured lost, given its best candidate and the winner.
-std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const std::vector<Limit>& limits) {
+std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
     if (best.gets_there() && goal.error > 0)
         return "gets there in " + seconds_text(best.seconds) +
                formatted(", %.2g times as long", best.seconds / winner.seconds);
@@ -49,7 +49,7 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
         text = "too noisy: " + formatted("%.0f", 1.0 * most_target_samples) + " samples would not do";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
-    if (const Limit* limit = worst_limit(limits)) text += "; " + limit->where + ": " + limit->why;
+    if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
     return text;
 }
 
@@ -68,8 +68,8 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;
         if (standing.best) {
-            const std::vector<Limit> limits = mode.limits(view, snapshot, standing.best->choice.candidate.settings);
-            standing.why = &mode == winner.mode ? "" : loss(*standing.best, winner, goal, limits);
+            const Limitations limitations = mode.limitations(view, snapshot, standing.best->choice.candidate.settings);
+            standing.why = &mode == winner.mode ? "" : loss(*standing.best, winner, goal, limitations);
         }
         standings.push_back(std::move(standing));
     }

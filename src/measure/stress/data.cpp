@@ -1,5 +1,8 @@
 // Fog from grids: odd transforms and sizes, sheets and single voxels, detail that gets fine or thick.
 #include "measure/stress/volumes.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shadow_map/limitations.h"
+#include "modes/shared_limitations.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
@@ -14,10 +17,18 @@ constexpr std::string_view all = "march froxel shadow-map shadow-volume cone pat
 // Within a step or cell the fog is one sample of what spreads by 0.95 of its mean (`roughness`), less where that is
 // smoothed. The light of wisps has a root mean square of 2.7 of its mean: spread evenly it is off by
 // sqrt(2.7 * 2.7 - 1) = 2.5.
-constexpr Excuse grain{"longer than the detail", 0.9}, as_even{"drawn as even fog", 2.5};
-const std::vector<Excuse> detail{grain, {"optical depths deep", 0.9}, as_even};
-const std::vector<Excuse> shafts{
-    grain, {"optical depths deep"}, {"shafts are as coarse"}, {"their edges show", grain.up_to}};
+constexpr Excuse noise{&limitation::long_steps, 0.9}, homogeneous{&limitation::drawn_as_homogeneous, 2.5};
+const std::vector<Excuse> detail{noise,
+                                 homogeneous,
+                                 {&limitation::light_grid_cells, 0.9},
+                                 {&limitation::deep_steps, 0.9},
+                                 {&limitation::deep_froxels, 0.9}};
+const std::vector<Excuse> shafts{noise,
+                                 {&limitation::light_grid_cells},
+                                 {&limitation::deep_steps},
+                                 {&limitation::deep_froxels},
+                                 {&limitation::coarse_shafts},
+                                 {&limitation::grainy_edges, noise.up_to}};
 
 // A round cloud, scaled (1, 2, 5) and sheared; a mirror for negative values.
 dmat4 skew(double shear) {

@@ -1,6 +1,9 @@
 // Fog without surfaces: thin, thick, layered, thin sheets, several at once, and what closed forms say of it.
 #include "measure/stress/trial.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
@@ -15,9 +18,11 @@ constexpr std::string_view all = "march froxel shadow-map shadow-volume cone pat
 constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
 // The sun comes at a slant, so that its light fades six times as fast as a step is deep: over 5 depths where the limit
 // says 0.9. One place in it is off by sqrt(2.5 coth(2.5) - 1) = 1.2 of the light.
-const std::vector<Excuse> thick{{"optical depths deep", 1.2}};
+const std::vector<Excuse> thick{
+    {&limitation::light_grid_cells, 1.2}, {&limitation::deep_steps, 1.2}, {&limitation::deep_froxels, 1.2}};
 // Straight on, it fades by 2.5 depths over the deepest step: in its middle is 1.25 / sinh(1.25) = 0.78 of the mean.
-const std::vector<Excuse> straight{{"optical depths deep", 0.25}};
+const std::vector<Excuse> straight{
+    {&limitation::light_grid_cells, 0.25}, {&limitation::deep_steps, 0.25}, {&limitation::deep_froxels, 0.25}};
 
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 6}, vec3(0));
@@ -189,7 +194,7 @@ std::vector<StressCase> stress_fog() {
         StressCase("eye-in-fog", group, "the eye stands in thick fog", "extinction", "1/m", {0.1, 1, 4, 20}, all, thick,
                    eye_in_fog),
         StressCase("endless-fog", group, "fog without bounds", "extinction", "1/m", {0.5, 0.1, 0.01, 1e-3}, all,
-                   {{"few for its glow"}}, endless),
+                   {{&limitation::few_steps_for_glow}}, endless),
         StressCase("endless-thick-fog", group, "the same, thick", "extinction", "1/m", {1, 2},
                    "march froxel shadow-volume cone", {}, endless),
         StressCase("far-plane", group, "the far plane moves through the fog", "distance", "m",

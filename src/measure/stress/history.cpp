@@ -1,6 +1,9 @@
 // Modes that look back at the frames before: lights that move, dim and go out, cuts, a bad frame; and the voxels of
 // the view that hold this light.
 #include "measure/stress/trial.h"
+#include "modes/cone/limitations.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shared_limitations.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "volume/bricks/sparse_volume.h"
@@ -16,12 +19,13 @@ namespace {
 constexpr std::string_view remembering = "froxel shadow-map cone";
 constexpr int long_enough = 8; // frames until a history has settled
 // The light of eight frames lies along a way nearly as long as the beam is wide: half of it elsewhere.
-const std::vector<Excuse> trail_of_froxels{{"leaves a trail", 0.5}};
-const std::vector<Excuse> blur_of_froxels{{"blurred by a third of a froxel", 0.1}};
+const std::vector<Excuse> trail_of_froxels{{&limitation::moving_light, 0.5}};
+const std::vector<Excuse> blur_of_froxels{{&limitation::moving_camera, 0.1}};
 // The eye moves by 0.2 optical depths, and light within a froxel is one value: it may jump by that.
-const std::vector<Excuse> blurred{{"optical depths deep", 0.22}};
+const std::vector<Excuse> blurred{
+    {&limitation::light_grid_cells, 0.22}, {&limitation::deep_steps, 0.22}, {&limitation::deep_froxels, 0.22}};
 const std::vector<Excuse> unseen{
-    {"shafts are as coarse as froxels"}, {"shadows are not seen"}, {"shadows of surfaces are not seen"}};
+    {&limitation::coarse_shafts}, {&limitation::sun_without_shadows}, {&limitation::no_shadows}};
 
 Medium dust(float extinction = 0.3f) { return even_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f)); }
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);

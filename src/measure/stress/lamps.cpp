@@ -1,6 +1,9 @@
 // Local lights in even fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
 #include "measure/stress/trial.h"
 #include "modes/cone/settings.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shadow_map/limitations.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
@@ -11,7 +14,10 @@ namespace tyndall {
 namespace {
 constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 // One place in a step is looked at. Where light fills a fifth of it, that is off by sqrt(1 / 0.2 - 1) = 2 of the light.
-const std::vector<Excuse> glow{{"few for its glow", 2}, {"optical depths deep"}};
+const std::vector<Excuse> glow{{&limitation::few_steps_for_glow, 2},
+                               {&limitation::light_grid_cells},
+                               {&limitation::deep_steps},
+                               {&limitation::deep_froxels}};
 // Froxels spread what a lamp sends through them, so that only their mean is light.
 constexpr std::string_view rays = "march shadow-map shadow-volume cone path";
 constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";

@@ -1,6 +1,8 @@
 // The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
 #include "measure/stress/trial.h"
+#include "modes/billboard/limitations.h"
 #include "modes/picture_share.h"
+#include "modes/radial_blur/limitations.h"
 #include "modes/radial_blur/settings.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
@@ -13,8 +15,8 @@ namespace tyndall {
 namespace {
 const Box cube{vec3(-8), vec3(8)};
 // Smears promise no light at all.
-const std::vector<Excuse> no_light{{"rays are smeared brightness", infinity}};
-const std::vector<Excuse> faded{{"where a card is thin"}, {"the camera is inside"}};
+const std::vector<Excuse> no_light{{&limitation::screen_space, infinity}};
+const std::vector<Excuse> faded{{&limitation::card_edge_on}, {&limitation::camera_in_card}};
 
 StressScene blur_scene(Light light, Camera camera, std::vector<Mesh> meshes = {},
                        std::vector<Material> materials = {}) {

@@ -1,6 +1,7 @@
 // Light that scatters more than once: left out, added by a grid of fluence, and kept out by walls.
 #include "measure/stress/trial.h"
 #include "modes/mode.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
@@ -15,7 +16,7 @@ constexpr std::string_view all = "march froxel shadow-map shadow-volume cone pat
 constexpr std::string_view adding = "march froxel"; // modes that have the grid
 
 // Of the light of the thickest fog here, more than a tenth has scattered once only.
-const std::vector<Excuse> once{{"light scatters once only", 0.9}};
+const std::vector<Excuse> once{{&limitation::single_scattering_only, 0.9}};
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 4}, vec3(0));
 

@@ -1,5 +1,9 @@
 // What all modes stand on: numbers near the ends of their range, threads, crops, phase functions, noise, metrics.
 #include "measure/stress/trial.h"
+#include "modes/cone/limitations.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shadow_map/limitations.h"
+#include "modes/shared_limitations.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
@@ -20,11 +24,11 @@ constexpr std::string_view every = "march froxel shadow-map shadow-volume cone b
 constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
 // Places are known to 4 m at most, the gap is 1 m: what is lit may lie anywhere. Lit floors have a root mean square of
 // 3.4 of the picture's mean.
-const std::vector<Excuse> anywhere{{"lies so far from the origin", 4}};
-const std::vector<Excuse> coarse{{"shafts are as coarse as froxels"},
-                                 {"their edges show as grain"},
-                                 {"shadows are not seen"},
-                                 {"shadows of surfaces are not seen"}};
+const std::vector<Excuse> anywhere{{&limitation::float_precision, 4}};
+const std::vector<Excuse> coarse{{&limitation::coarse_shafts},
+                                 {&limitation::grainy_edges},
+                                 {&limitation::sun_without_shadows},
+                                 {&limitation::no_shadows}};
 
 // A roof with a gap over fog, the sun and a spot; at a place and of a size.
 StressScene room_at(vec3 place, float size) {

@@ -1,6 +1,12 @@
 // Surfaces in the way of the light: slits, wires, rooms, meshes of every quality, eyes in shadow.
 #include "measure/stress/trial.h"
+#include "modes/cone/limitations.h"
+#include "modes/froxel/limitations.h"
+#include "modes/map_shadows.h"
 #include "modes/mode.h"
+#include "modes/shadow_map/limitations.h"
+#include "modes/shadow_volume/limitations.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -12,17 +18,17 @@ namespace tyndall {
 namespace {
 constexpr std::string_view shadowed = "march froxel shadow-map shadow-volume path";
 constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
-const Excuse as_froxels{"shafts are as coarse as froxels"}, as_grain{"their edges show as grain"};
+const Excuse as_froxels{&limitation::coarse_shafts}, as_noise{&limitation::grainy_edges};
 // A spot's light is three times as much as its shadows leave of it.
-const Excuse sun_unseen{"shadows are not seen"}, unseen{"shadows of surfaces are not seen", 3};
+const Excuse sun_unseen{&limitation::sun_without_shadows}, unseen{&limitation::no_shadows, 3};
 // Four places in each of 24 steps are looked at. Light that fills a third of the way between them, as that of the
 // narrowest shafts here, is off by sqrt(1 / 0.3 - 1) = 1.5 of itself.
-const std::vector<Excuse> narrow{as_froxels, {as_grain.phrase, 1.5}, sun_unseen};
+const std::vector<Excuse> narrow{as_froxels, {as_noise.kind, 1.5}, sun_unseen};
 // Of shadows much wider than froxels, steps and texels.
 const StressMeasure sharp{0.03, to_truth, nullptr, 1e-3, "march shadow-volume"};
 const StressMeasure fine{-1, to_truth, nullptr, 1e-3, "march shadow-volume"};
 // Half shadows as wide as the gap: up to half of its light lies elsewhere.
-const std::vector<Excuse> hard{{"soft shadows have hard edges", 0.5}, {"no soft edges", 0.5}, as_froxels};
+const std::vector<Excuse> hard{{&limitation::hard_shadows, 0.5}, as_froxels};
 
 Medium dust(float extinction = 0.15f) { return even_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f)); }
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
@@ -247,7 +253,7 @@ std::vector<StressCase> stress_shadows() {
         StressCase("against-the-sun", group, "rays become parallel to the sun's", "ray to sun", "degrees",
                    {30, 5, 1, 0.01, 0}, all, {sun_unseen}, along_the_sun, sharp),
         StressCase("fence", group, "wires get thinner than texels and froxels", "wire", "m", {0.12, 0.03, 0.008, 0.002},
-                   all, {as_froxels, as_grain, sun_unseen, unseen}, fence, fine),
+                   all, {as_froxels, as_noise, sun_unseen, unseen}, fence, fine),
         StressCase("holed-sheet", group, "one hole: whole, in pieces, turned, half turned, doubled", "mesh", "",
                    {0, 1, 2, 3, 4}, shadowed, {}, holed, fine),
         StressCase("sun-in-a-face", group, "the sun lies in the plane of a face", "angle", "radians",
@@ -268,11 +274,11 @@ std::vector<StressCase> stress_shadows() {
         StressCase("soft-lamp", group, "a lamp gets large", "radius", "m", {0, 0.02, 0.1, 0.3}, shadowed, hard,
                    soft_lamp),
         StressCase("glass", group, "a pane that takes a part of the light", "alpha", "", {1, 0.8, 0.4, 0.1}, shadowed,
-                   {{"MASK and BLEND"}, {"half shadows"}, as_froxels}, glass),
+                   {{&limitation::no_alpha_shadows}, {&limitation::no_partial_shadows}, as_froxels}, glass),
         StressCase("cut-out", group, "a sheet with a hole in its texture", "hole", "", {0.5, 0.1, 0.02, 0.9}, shadowed,
-                   {{"MASK and BLEND"}, as_froxels, as_grain}, cut_out),
+                   {{&limitation::no_alpha_shadows}, as_froxels, as_noise}, cut_out),
         StressCase("shade-at-lamp", group, "a slit comes close to its lamp", "lamp to slit", "m", {1, 0.3, 0.03, 0.003},
-                   all, {as_froxels, as_grain, unseen}, lamp_in_holes, fine),
+                   all, {as_froxels, as_noise, unseen}, lamp_in_holes, fine),
         StressCase("short-rays", group, "rays that end where they start", "length", "m", {1e-5, 1e-9, 0},
                    "march froxel shadow-map shadow-volume cone billboard path", {}, short_rays,
                    {1e-3, "most light scattered or taken away", short_rays_off}),

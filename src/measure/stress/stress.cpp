@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "measure/stress/trial.h"
+#include "modes/limitation.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
@@ -44,25 +44,25 @@ double allowed_to(const Mode* mode, const StressMeasure& measure) {
     return measure.allowed >= 0 || !mode ? measure.allowed : promised(*mode);
 }
 
-// The largest error that a limit excuses; below 0: none.
-double excused_by(const Limit& limit, const StressCase& stress, double allowed) {
+// The largest error that a limitation excuses; below 0: none.
+double excused_by(const Limitation& limitation, const StressCase& stress, double allowed) {
     double most = -1;
     for (const Excuse& excuse : stress.excuses) {
-        if (limit.severity == Severity::info || limit.why.find(excuse.phrase) == std::string::npos) continue;
-        if (limit.severity == Severity::wrong) return infinity;
+        if (limitation.severity == Severity::info || !limitation.is(*excuse.kind)) continue;
+        if (limitation.severity == Severity::wrong) return infinity;
         most = std::max({most, degraded_times * allowed, excuse.up_to});
     }
     return most;
 }
 
 // What the mode says of the scene before it renders.
-void ask_limits(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
-    for (const Limit& limit : mode.limits(scene.view, scene.snapshot, scene.settings)) {
-        point.wrong |= limit.severity == Severity::wrong;
-        const double excused = excused_by(limit, stress, point.allowed);
+void ask_limitations(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
+    for (const Limitation& limitation : mode.limitations(scene.view, scene.snapshot, scene.settings)) {
+        point.wrong |= limitation.severity == Severity::wrong;
+        const double excused = excused_by(limitation, stress, point.allowed);
         if (excused <= point.excused_up_to) continue;
         point.excused_up_to = excused;
-        point.warning = std::string(name_of(limit.severity)) + ": " + limit.where + ": " + limit.why;
+        point.warning = line_of({limitation, {limitation.name}});
     }
 }
 
@@ -73,7 +73,7 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
     point.value = value;
     point.allowed = allowed_to(mode, stress.measure);
     Trial trial{mode, value, point.allowed, scene, truth, control.cancel};
-    if (mode) ask_limits(stress, *mode, scene, point);
+    if (mode) ask_limitations(stress, *mode, scene, point);
     point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
     if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;
     if (std::isnan(point.error)) point.error = infinity;

@@ -11,6 +11,7 @@
 #include <vector>
 
 namespace tyndall {
+class LimitationKind;
 struct Mode;
 struct StressScene;
 struct Trial; // both of measure/stress/trial.h
@@ -24,10 +25,10 @@ struct StressMeasure {
     std::string_view exact_modes{};          // names between spaces
 };
 
-// A limit that may excuse an error. `wrong` excuses any. `degraded` says that the picture is coarse, not that it is
-// another one: it excuses three times what is allowed, or so much as what it says amounts to in the case.
+// A limitation that may excuse an error. `wrong` excuses any. `degraded` says that the image is coarse, not that it is
+// another one: it excuses three times what is allowed, or what the limitation amounts to in the case.
 struct Excuse {
-    std::string_view phrase; // a part of the limit
+    const LimitationKind* kind;
     double up_to = 0;
 };
 
@@ -53,9 +54,9 @@ struct StressPoint {
     double value = 0;
     double error = 0, allowed = 0;
     double measured = -1;                  // relative RMSE where the mode called itself wrong; else -1
-    bool wrong = false;                    // some limit says so
-    std::string warning;                   // the worst limit that may excuse the error, in words; empty = none
-    double excused_up_to = -1;             // the largest error that is excused; below 0 without such a limit
+    bool wrong = false;                    // some limitation says so
+    std::string warning;                   // the limitation that excuses most, as a line; empty = none
+    double excused_up_to = -1;             // the largest error that is excused; below 0 without one
     uint64_t non_finite = 0, negative = 0; // samples dropped and values that are no number; values below 0, or shares
                                            // above 1; of the truth as well
 

@@ -1,12 +1,12 @@
 // Analytic volume lights: what of even fog each light reaches, in closed form and without shadows.
 #include "modes/cone/cone.h"
+#include "modes/cone/limitations.h"
 #include "modes/cone/settings.h"
 #include "modes/picture_share.h"
 
 #include "integrate/style.h"
 #include "modes/fog_picture.h"
 #include "modes/history.h"
-#include "modes/limits.h"
 #include "modes/mode.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -129,52 +129,6 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
     return cone;
 }
 
-// Whether surfaces keep a light from fog that the picture shows.
-bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
-    constexpr int points = 16; // on each ray
-    for (Ray& ray : probing_rays(view, snapshot)) {
-        Hits hits;
-        snapshot.occluders->closest({&ray, 1}, 0, hits);
-        ray.t_max = std::min(ray.t_max, hits.t[0]);
-        for (int i = 0; i < points; ++i) {
-            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
-            const Arrival at = arrival(light, point);
-            if (max_component(at.irradiance) <= 0) continue;
-            if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
-        }
-    }
-    return false;
-}
-
-std::vector<Limit> cone_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<Limit> limits;
-    const bool casts = snapshot.occluders && !snapshot.occluders->empty();
-    for (const Light& light : snapshot.lights) {
-        const std::string where = "light " + light.name;
-        const bool sun = light.kind == LightKind::sun;
-        if (casts && light.shadows && sun && is_shadowed(view, snapshot, light))
-            limits.push_back({Severity::wrong, where, "a sun has no cone and shadows are not seen: no shafts"});
-        else if (casts && light.shadows)
-            limits.push_back({Severity::degraded, where, "shadows of surfaces are not seen in its light"});
-        if (!sun && light.radius > 0)
-            limits.push_back({Severity::info, where, "shines as from a point; its radius only caps the brightness"});
-        if (!sun && settings.of<ConeSettings>().attenuation != ConeAttenuation::inverse_square)
-            limits.push_back({Severity::degraded, where, "cone.attenuation is not the inverse square: not physical"});
-        if (light.kind == LightKind::spot && settings.of<ConeSettings>().edge == ConeEdge::soft)
-            limits.push_back({Severity::degraded, where, "cone.edge is soft: its own inner cone is not used"});
-        if (light.kind == LightKind::spot && settings.of<ConeSettings>().near_radius > 0)
-            limits.push_back({Severity::info, where, "cone.near_radius cuts away the light next to it"});
-        if (!sun && settings.of<ConeSettings>().noise > 0)
-            limits.push_back({Severity::info, where, "cone.noise modulates its light: a look"});
-    }
-    for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks)
-            limits.push_back({Severity::degraded, "medium " + medium.name,
-                              "drawn as even fog of its mean density in the grid's bounds"});
-    add_single_scattering_limits(view, snapshot, limits);
-    return limits;
-}
-
 ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
     const auto cone = std::make_shared<const Cone>(make_cone(view, snapshot, settings));
     ScatterFunction scatter = [cone](const RayBatch& batch, std::span<Scatter> results) {
@@ -190,7 +144,7 @@ Mode cone_mode() {
             .summary = "closed forms for the light of spots, points and suns in even fog, without shadows",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,
-            .limits = cone_limits,
+            .limitations = cone_limitations,
             .prepare = prepare_cone,
             .append_rows = append_cone_rows,
             .set_quality = set_cone_quality,

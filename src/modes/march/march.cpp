@@ -1,15 +1,14 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
-#include "integrate/lit_fog.h"
+#include "modes/march/march.h"
+
 #include "integrate/style.h"
-#include "modes/limits.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"
 #include "modes/march/kernel.h"
+#include "modes/march/limitations.h"
 #include "modes/march/settings.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
-#include "scene/mesh.h"
 #include "scene/scene.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -20,54 +19,12 @@ namespace {
 // scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
 // once.
 constexpr uint64_t most_sliced = 200'000, most_with_volumes = 2'000'000;
+}
 
-// How march.visibility=slices finds the shadows of a light that casts some.
 ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
     const uint64_t most = is_soft(light) ? most_sliced : most_with_volumes;
     if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
     return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
-}
-}
-
-std::vector<Limit> march_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    const MarchSettings& march = settings.march;
-    std::vector<Limit> limits;
-    if (settings.fluence.orders < 2)
-        add_single_scattering_limits(view, snapshot, limits);
-    else
-        add_fluence_limits(view, snapshot, settings.fluence, limits);
-    if (march.light == LightTransmittance::grid) add_light_grid_limits(snapshot, march.light_resolution, limits);
-    for (const Medium& medium : snapshot.media)
-        if (!march.heterogeneity && medium.kind == DensityKind::bricks)
-            limits.push_back(
-                {Severity::wrong, "medium " + medium.name, "march.heterogeneity is off: drawn as even fog"});
-    for (const Light& light : snapshot.lights)
-        if (march.visibility == Visibility::off && light.shadows)
-            limits.push_back({Severity::wrong, "light " + light.name, "march.visibility is off: no shafts"});
-    const bool sliced = march.visibility == Visibility::slices || march.visibility == Visibility::exact;
-    const bool alpha = snapshot.occluders && snapshot.occluders->has_alpha();
-    if (sliced && alpha)
-        limits.push_back({Severity::info, "march.visibility",
-                          "shadows of MASK and BLEND surfaces are sampled by rays, not cut out exactly"});
-    for (const Light& light : snapshot.lights)
-        if (march.visibility == Visibility::slices && !alpha && casts(light, snapshot) &&
-            shadows_by(light, *snapshot.occluders) == ShadowsBy::rays)
-            limits.push_back({Severity::info, "light " + light.name,
-                              std::to_string(snapshot.occluders->triangle_count()) +
-                                  " triangles: its shadows are sampled by rays, not cut out exactly"});
-    if (march.visibility == Visibility::maps)
-        for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
-    if (!snapshot.media.empty() && march.light == LightTransmittance::off)
-        limits.push_back(
-            {Severity::degraded, "lights", "march.light is off: fog does not dim the light that crosses it"});
-    if (!snapshot.media.empty() && march.light == LightTransmittance::average)
-        limits.push_back({Severity::degraded, "lights", "march.light is average: every point is dimmed the same"});
-    for (const Material& material : snapshot.scene ? snapshot.scene->materials : std::vector<Material>{})
-        if (max_component(material.emission) > 0) {
-            limits.push_back({Severity::info, "material " + material.name, "glows, but lights nothing else"});
-            break;
-        }
-    return limits;
 }
 
 namespace {
@@ -116,7 +73,7 @@ Mode march_mode() {
             .summary = "ray march through all fog with shadow rays: the main renderer",
             .accuracy = Accuracy::single_scattering,
             .surfaces = Surfaces::shared,
-            .limits = march_limits,
+            .limitations = march_limitations,
             .prepare = prepare_march,
             .append_rows = append_march_rows,
             .set_quality = set_march_quality,

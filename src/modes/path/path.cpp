@@ -1,5 +1,6 @@
 // The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
 #include "modes/mode.h"
+#include "modes/path/limitations.h"
 #include "modes/path/settings.h"
 #include "modes/path/tracer.h"
 #include "scene/light.h"
@@ -21,20 +22,6 @@ bool glimmers(const PathTracer& tracer) {
 }
 }
 
-std::vector<Limit> path_limits(const View&, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<Limit> limits;
-    for (const Medium& medium : snapshot.media)
-        if (!is_finite(medium.world_bounds.size()) && max_component(medium.optics.albedo) > 0.995f)
-            limits.push_back(
-                {Severity::info, "medium " + medium.name,
-                 "has no bounds and takes hardly any light: paths are very long; bounds or --orders help"});
-    if (settings.path.orders < all_orders)
-        limits.push_back({Severity::info, "path.orders",
-                          "light that scatters more than " + std::to_string(settings.path.orders) +
-                              (settings.path.orders == 1 ? " time" : " times") + " is left out"});
-    return limits;
-}
-
 ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto tracer = std::make_shared<PathTracer>();
     tracer->snapshot = snapshot;
@@ -53,7 +40,7 @@ Mode path_mode() {
             .summary = "unbiased path tracing of all scattered light: the truth, with noise",
             .accuracy = Accuracy::multiple_scattering,
             .surfaces = Surfaces::own,
-            .limits = path_limits,
+            .limitations = path_limitations,
             .prepare = prepare_path,
             .append_rows = append_path_rows,
             .rungs = path_rungs,

@@ -1,13 +1,13 @@
 // Radial blur: bright places smeared away from the light's place in the picture (Mitchell 2007, GPU Gems 3, chapter
 // 13).
 #include "modes/radial_blur/radial_blur.h"
+#include "modes/radial_blur/limitations.h"
 #include "modes/radial_blur/settings.h"
 
 #include "integrate/even_fog.h"
 #include "integrate/style.h"
 #include "modes/fog_picture.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "modes/radial_blur/glow.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
@@ -48,27 +48,6 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
 }
 }
 
-std::vector<Limit> radial_blur_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<Limit> limits{
-        {Severity::degraded, "picture",
-         "rays are smeared brightness, not light: fog, distance and what is off screen play no part"}};
-    for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks && settings.of<RadialBlurSettings>().fog)
-            limits.push_back({Severity::degraded, "medium " + medium.name,
-                              "dims what is behind it as even fog of its mean density in the grid's bounds "
-                              "(radial_blur.fog)"});
-    const std::vector<BlurLight> seen = blur_lights(view, snapshot, settings.of<RadialBlurSettings>());
-    for (size_t i = 0; i < snapshot.lights.size(); ++i) {
-        const auto found = std::ranges::find(seen, i, &BlurLight::index);
-        const std::string where = "light " + snapshot.lights[i].name;
-        if (found == seen.end())
-            limits.push_back({Severity::wrong, where, "behind the camera or far off screen: it makes no rays"});
-        else if (found->fade < 1)
-            limits.push_back({Severity::degraded, where, "off screen: its rays are fading out"});
-    }
-    return limits;
-}
-
 ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
     return dimming_only(settings.of<RadialBlurSettings>().fog ? even_media(snapshot.media) : std::vector<Medium>{});
 }
@@ -87,7 +66,7 @@ Mode radial_blur_mode() {
             .summary = "brightness smeared away from the lights in the finished picture",
             .accuracy = Accuracy::look,
             .surfaces = Surfaces::post,
-            .limits = radial_blur_limits,
+            .limitations = radial_blur_limitations,
             .prepare = prepare_radial_blur,
             .prepare_post = post_radial_blur,
             .append_rows = append_radial_blur_rows,

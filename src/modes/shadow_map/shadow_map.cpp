@@ -2,11 +2,11 @@
 #include "integrate/style.h"
 #include "modes/fog_picture.h"
 #include "modes/history.h"
-#include "modes/limits.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
 #include "modes/picture_share.h"
 #include "modes/shadow_map/kernel.h"
+#include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
 #include "scene/scene.h"
 #include "volume/medium.h"
@@ -14,26 +14,6 @@
 namespace tyndall {
 namespace {
 constexpr float detail_voxels = 4; // of the finest detail of a noise
-
-// Edges of light that fall between steps: of shafts, and of the glow of lamps that the picture shows.
-void append_edge_limits(const View& view, const Snapshot& snapshot, const ShadowMapSettings& settings,
-                        std::vector<Limit>& limits) {
-    constexpr int fine = 64; // steps
-    if (settings.steps >= fine || snapshot.media.empty()) return;
-    for (const Light& light : snapshot.lights) {
-        const std::string where = "light " + light.name, steps = std::to_string(settings.steps) + " steps a ray";
-        if (casts(light, snapshot))
-            limits.push_back(
-                {Severity::degraded, where,
-                 "shafts begin and end within one of " + steps + ": their edges show as grain (shadow_map.steps)"});
-        if (light.kind == LightKind::sun) continue;
-        const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
-        if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))
-            limits.push_back({Severity::degraded, where,
-                              "is in the picture: " + steps + " are few for its glow" +
-                                  (light.kind == LightKind::spot ? " and the edges of its cone" : "")});
-    }
-}
 }
 
 float fog_detail(std::span<const Medium> media) {
@@ -44,23 +24,6 @@ float fog_detail(std::span<const Medium> media) {
         detail = std::min(detail, detail_voxels * std::min(voxel.x, std::min(voxel.y, voxel.z)));
     }
     return detail;
-}
-
-std::vector<Limit> shadow_map_limits(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    // What a march cannot do this one cannot either.
-    Settings like = settings;
-    like.fluence.orders = 1;
-    like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
-    std::vector<Limit> limits = main_mode().limits(view, snapshot, like);
-    for (Limit& limit : map_limits(view, snapshot, settings)) limits.push_back(std::move(limit));
-    add_step_limits(view, snapshot, settings.of<ShadowMapSettings>().steps, "shadow_map.steps", true, limits);
-    append_edge_limits(view, snapshot, settings.of<ShadowMapSettings>(), limits);
-    if (!snapshot.media.empty() && settings.of<ShadowMapSettings>().light == LightTransmittance::off)
-        limits.push_back(
-            {Severity::degraded, "lights", "shadow_map.light is off: fog does not dim the light that crosses it"});
-    if (!snapshot.media.empty() && settings.of<ShadowMapSettings>().light == LightTransmittance::average)
-        limits.push_back({Severity::degraded, "lights", "shadow_map.light is average: every point is dimmed the same"});
-    return limits;
 }
 
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -90,7 +53,7 @@ Mode shadow_map_mode() {
             .summary = "ray march in a fixed number of steps with shadow maps",
             .accuracy = Accuracy::single_scattering,
             .surfaces = Surfaces::shared,
-            .limits = shadow_map_limits,
+            .limitations = shadow_map_limitations,
             .prepare = prepare_shadow_map,
             .append_rows = append_shadow_map_rows,
             .set_quality = set_shadow_map_quality,

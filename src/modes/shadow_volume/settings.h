@@ -4,6 +4,7 @@
 
 namespace tyndall {
 struct Rung;
+struct Snapshot;
 
 // What shadow volumes are drawn as: the light between them, or their sides themselves as bright sheets.
 enum class ShadowDraw { exact, shells };
@@ -20,6 +21,9 @@ struct ShadowVolumeSettings {
     float shell_length = 0;        // metres behind the occluder at which a shell has faded out; 0 = half the scene
     float shell_intensity = 0.03f; // share of that length: the depth of lit fog a shell is as bright as
 };
+
+// Whether fog is sampled and not integrated in closed form.
+bool samples_fog(const Snapshot& snapshot, const ShadowVolumeSettings& settings);
 
 // For its row of the table.
 void append_shadow_volume_rows(std::vector<SettingRow>& rows);

@@ -1,6 +1,6 @@
 // Camera rays of neighbouring pixels followed through transparent surfaces and the fog between them.
 #pragma once
-#include "modes/promise.h"
+#include "modes/mode.h"
 #include "render/frame/frame.h"
 #include "trace/surface.h"
 

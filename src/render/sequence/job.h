@@ -1,5 +1,6 @@
 // Frames to be rendered to files: of what, how, and where to.
 #pragma once
+#include "modes/limitation.h"
 #include "modes/settings.h"
 #include "render/image/exr.h"
 #include "scene/load_options.h"
@@ -34,7 +35,7 @@ struct RenderJob {
     double time_budget = 0;  // seconds for each frame, loading and writing apart; 0 = as many as it takes
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
-    std::vector<std::string> limits_said;
+    Limitations limitations;                // of the mode, in the first frame
     std::string unsaved;                    // edits that the scene's files do not have; for hash and header
     std::string plan;                       // why this mode, when it was chosen for the scene; for the header
     std::shared_ptr<const Choice> choice;   // of the first frame's candidate, when already made

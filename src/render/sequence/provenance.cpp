@@ -204,9 +204,6 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
     }
     if (!job.unsaved.empty()) attributes["tyndall:unsavedEdits"] = job.unsaved;
     if (!job.plan.empty()) attributes["tyndall:plan"] = job.plan;
-    std::string limits;
-    for (const std::string& line : job.limits_said) limits += (limits.empty() ? "" : "\n") + line;
-    if (!limits.empty()) attributes["tyndall:limits"] = limits;
     return result;
 }
 

@@ -109,7 +109,7 @@ std::string stats_json(const RenderReport& report, const RenderJob& job) {
                         {"isa", json_of(job.isa)},
                         {"seed", json_of(static_cast<uint64_t>(job.seed))},
                         {"settings", object(std::move(settings))},
-                        {"limits", json_of(job.limits_said)},
+                        {"limitations", json_of(job.limitations)},
                         {"notes", json_of(report.notes)},
                         {"cancelled", json_of(report.cancelled)},
                         {"frames", std::move(frames)},

@@ -84,10 +84,11 @@ ShownPicture paint_stand_in(Painter& painter, const Request& request, std::atomi
 }
 
 // What the mode gets wrong here, worst first.
-std::vector<Limit> limits_of(const Painter& painter, const Request& request) {
-    std::vector<Limit> limits = find_mode(request.mode).limits(view_of(request), painter.snapshot, request.settings);
-    std::ranges::stable_sort(limits, std::ranges::greater(), &Limit::severity);
-    return limits;
+std::vector<LimitationGroup> limitations_of(const Painter& painter, const Request& request) {
+    const Mode& mode = find_mode(request.mode);
+    auto groups = groups_of(mode.limitations(view_of(request), painter.snapshot, request.settings));
+    std::ranges::stable_sort(groups, std::ranges::greater(), [](const auto& group) { return group.worst.severity; });
+    return groups;
 }
 
 // Whose round comes next: of those that are not finished, the one that has had the fewest.
@@ -121,7 +122,7 @@ ShownPicture paint_round(Painter& painter, const Request& request, std::atomic<b
     Round round = render_round(rounds, mode, request, request.settings, painter.snapshot, count, cancel);
     note_times(painter, round.stats);
 
-    if (!right && rounds.rounds == 0) picture.limits = limits_of(painter, request), picture.non_finite = 0;
+    if (!right && rounds.rounds == 0) picture.limitations = limitations_of(painter, request), picture.non_finite = 0;
     picture.non_finite += round.stats.non_finite;
     add_round(std::move(round), request, rounds);
     picture.mode = request.mode, picture.quick = false;

@@ -2,7 +2,7 @@
 #pragma once
 #include "base/error.h"
 #include "base/image.h"
-#include "modes/promise.h"
+#include "modes/limitation.h"
 
 #include <cstdint>
 #include <memory>
@@ -56,7 +56,7 @@ struct ShownPicture {
     std::optional<ErrorFigures> errors, errors_beside; // of both techniques, where the errors are shown
     std::shared_ptr<const RayAnswer> ray;              // as far as it is known
     std::shared_ptr<const VolumePicture> volume;
-    std::vector<Limit> limits; // of the mode asked for, worst first; empty in quick pictures
+    std::vector<LimitationGroup> limitations; // of the mode asked for, worst first; empty in quick pictures
     std::vector<std::string> notes;
     std::string error; // why there is no picture
     ExitCode code = ExitCode::ok;

@@ -272,7 +272,7 @@ TEST(Explain, LimitsOfLightsThatDoNotReachTheRayAreLeftOut) {
     const Stage stage = stage_of({hall()}, {away, here}, {plate(), wall()});
     const RayStory story = told(stage.snapshot, {&find_mode("cone")});
     std::string said;
-    for (const Limit& limit : story.answers[0].limits) said += limit.where + "\n";
+    for (const Limitation& one : story.answers[0].limitations) said += where_of(one) + "\n";
     EXPECT_THAT(said, HasSubstr("light here"));
     EXPECT_THAT(said, Not(HasSubstr("light away")));
 }

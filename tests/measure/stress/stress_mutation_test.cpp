@@ -2,6 +2,7 @@
 #include "integrate/ray_batch.h"
 #include "measure/stress/stress.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
@@ -373,16 +374,16 @@ TEST(MutationCheck, HistoryThatDoesNotFollowTheEye) {
                   }));
 }
 
-TEST(MutationCheck, ALimitNotSaid) {
+TEST(MutationCheck, ALimitationNotSaid) {
     Mode silent = find_mode("cone");
-    silent.limits = [](const View&, const Snapshot&, const Settings&) { return std::vector<Limit>{}; };
+    silent.limitations = [](const View&, const Snapshot&, const Settings&) { return Limitations{}; };
     expect_caught("slit", silent, Verdict::degrades);
 }
 
 TEST(MutationCheck, AModeThatAlwaysWarns) {
     Mode anxious = find_mode("march");
-    anxious.limits = [](const View&, const Snapshot&, const Settings&) {
-        return std::vector<Limit>{{Severity::wrong, "picture", "light scatters once only"}};
+    anxious.limitations = [](const View&, const Snapshot&, const Settings&) {
+        return Limitations{{Severity::wrong, &limitation::single_scattering_only, Subject::image}};
     };
     const StressCase& stress = *std::ranges::find(stress_cases(), "albedo", &StressCase::id);
     const WrongWarnings warnings = wrong_warnings(run_stress(stress, {&anxious, 1}, {}));

@@ -1,6 +1,7 @@
 // The stability suite, case by case, and that its judgement is sound.
 #include "measure/stress/stress.h"
 #include "modes/mode.h"
+#include "modes/shared_limitations.h"
 #include "trace/view.h"
 
 #include "base/error.h"
@@ -89,18 +90,18 @@ TEST(StressVerdict, ADegradedModeIsExcusedUpToSomeError) {
     EXPECT_EQ(result.verdict(), Verdict::degrades);
 }
 
-TEST(StressVerdict, ALimitWrongExcusesMoreThanOneDegraded) {
+TEST(StressVerdict, ALimitationWrongExcusesMoreThanOneDegraded) {
     Mode black = find_mode("march");
     black.prepare = [](const View&, const Snapshot&, const Settings&, History*) {
         return ScatterFunction(
             [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
     };
-    black.limits = [](const View&, const Snapshot&, const Settings&) {
-        return std::vector<Limit>{{Severity::degraded, "fog", "optical depths deep"}};
+    black.limitations = [](const View&, const Snapshot&, const Settings&) {
+        return Limitations{{Severity::degraded, &limitation::deep_steps, Subject::medium}};
     };
     EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::fails);
-    black.limits = [](const View&, const Snapshot&, const Settings&) {
-        return std::vector<Limit>{{Severity::wrong, "fog", "optical depths deep"}};
+    black.limitations = [](const View&, const Snapshot&, const Settings&) {
+        return Limitations{{Severity::wrong, &limitation::deep_steps, Subject::medium}};
     };
     EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::degrades);
 }

@@ -1,11 +1,13 @@
 // Beam cards: where they are placed, and what they do to a picture.
 #include "modes/billboard/billboard.h"
+#include "modes/billboard/limitations.h"
 #include "modes/billboard/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/occlusion/occluders.h"
@@ -235,13 +237,12 @@ TEST(Billboard, HandPlacedCardsAreDrawn) {
     EXPECT_LT(run_mode("billboard", view, hole.snapshot, settings, {blocked})[0].radiance.x, 0.05f * light.x);
 }
 
-TEST(Billboard, NamesItsLimits) {
+TEST(Billboard, NamesItsLimitations) {
     const HoleInWall hole;
-    const auto limits = find_mode("billboard").limits(view_from({1, 1, 0}, {3, 1, 0}), hole.snapshot, {});
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& l) { return l.why.find("inside") != std::string::npos; }));
+    const Mode& mode = find_mode("billboard");
+    EXPECT_TRUE(says(mode.limitations(view_from({1, 1, 0}, {3, 1, 0}), hole.snapshot, {}), limitation::camera_in_card));
     Snapshot open = scene_of({even_fog(0.2f)}, {sun({0, -1, 0})});
-    const auto none = find_mode("billboard").limits({}, open, {});
-    EXPECT_TRUE(std::ranges::any_of(none, [](const Limit& l) { return l.where == "light sun"; }));
+    EXPECT_TRUE(says(mode.limitations({}, open, {}), limitation::no_opening));
 }
 }
 }

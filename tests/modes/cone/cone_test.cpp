@@ -1,9 +1,12 @@
 // Analytic light cones against adaptive quadrature in double, closed forms and geometry.
 #include "modes/cone/cone_integral.h"
+#include "modes/cone/limitations.h"
 #include "modes/cone/settings.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
+#include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
@@ -262,15 +265,12 @@ TEST(Cone, EveryControlDoesWhatItSays) {
 TEST(Cone, NamesWhatItDoesNotSee) {
     const Mode& mode = find_mode("cone");
     Snapshot snapshot = scene_of({grid_fog(1, unit_grid(8, [](vec3 p) { return p.x; }))}, {point_light(vec3(2))});
-    const auto limits = mode.limits({}, snapshot, {});
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& l) { return l.where == "medium grid"; }));
+    EXPECT_TRUE(says(mode.limitations({}, snapshot, {}), limitation::drawn_as_homogeneous));
     EXPECT_EQ(coned(snapshot, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).validity, 0.5f);
     EXPECT_EQ(coned(snapshot, {{5, 5, 3}, {0, 0, -1}, 10}).validity, 1.0f);
     Settings settings;
     settings.of<ConeSettings>().attenuation = ConeAttenuation::none;
-    EXPECT_TRUE(std::ranges::any_of(mode.limits({}, snapshot, settings), [](const Limit& l) {
-        return l.where == "light point" && l.severity == Severity::degraded;
-    }));
+    EXPECT_TRUE(says(mode.limitations({}, snapshot, settings), limitation::unphysical_attenuation));
 }
 
 TEST(GaussLegendre, IsExactForPolynomials) {

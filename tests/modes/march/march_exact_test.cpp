@@ -1,10 +1,12 @@
 // The exact march against closed forms, quadrature of the light equation, and the sampled march.
 #include "integrate/ray_batch.h"
 #include "modes/busy_stage.h"
+#include "modes/limitation.h"
+#include "modes/march/limitations.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "modes/settings.h"
 #include "support/integral.h"
+#include "support/limitations.h"
 #include "support/run_mode.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/view.h"
@@ -236,8 +238,8 @@ TEST(MarchExact, SheetsOfAlphaLetTheirShareThrough) {
     const Stage under = stage_of(fog, {sun({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, exact_settings(), ray).radiance.x / open, 0.5, 1e-6);
     Settings settings = exact_settings();
-    const auto limits = find_mode("march").limits(View{}, under.snapshot, settings);
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "march.visibility"; }));
+    const Limitations said = find_mode("march").limitations(View{}, under.snapshot, settings);
+    EXPECT_TRUE(says(said, limitation::sampled_alpha_shadows));
 }
 
 TEST(MarchExact, LightsWithoutShadowsAndTheEndOfTheMarch) {

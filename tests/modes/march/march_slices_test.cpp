@@ -1,9 +1,11 @@
 // Steps between exact shadows: against the exact march, in every kind of fog and light.
 #include "integrate/ray_batch.h"
 #include "modes/busy_stage.h"
+#include "modes/limitation.h"
+#include "modes/march/limitations.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "modes/settings.h"
+#include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/view.h"
@@ -76,8 +78,8 @@ TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
     const float open = marched(stage_of(fog, {sun({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
     const Stage under = stage_of(fog, {sun({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, sliced_settings(), ray).radiance.x / open, 0.5, 1e-4); // 512 steps
-    const auto limits = find_mode("march").limits(View{}, under.snapshot, sliced_settings());
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "march.visibility"; }));
+    const Limitations said = find_mode("march").limitations(View{}, under.snapshot, sliced_settings());
+    EXPECT_TRUE(says(said, limitation::sampled_alpha_shadows));
 }
 
 TEST(MarchSlices, SurfacesWithAlphaAreSampledBesideOpaqueOnes) {

@@ -147,8 +147,8 @@ TEST(RadialBlur, SaysWhichLightsMakeNoRays) {
     const View view = view_towards({0, 0, -1});
     const auto worst = [&](float angle) {
         Severity severity = Severity::info;
-        for (const Limit& limit : find_mode("radial-blur").limits(view, sun_at(angle), Settings{}))
-            if (limit.where == "light sun") severity = std::max(severity, limit.severity);
+        for (const Limitation& one : find_mode("radial-blur").limitations(view, sun_at(angle), Settings{}))
+            if (one.subject == Subject::light && one.name == "sun") severity = std::max(severity, one.severity);
         return severity;
     };
     EXPECT_EQ(worst(0.1f), Severity::info);

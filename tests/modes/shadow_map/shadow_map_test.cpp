@@ -1,12 +1,16 @@
 // The march with shadow maps against closed forms, the reference and traced shadows.
 
 #include "base/parallel.h"
+#include "modes/map_shadows.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/integral.h"
+#include "support/limitations.h"
 #include "support/meshes.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
@@ -241,26 +245,24 @@ TEST(ShadowMapMarch, FogWithoutEndKeepsStepsInTheScene) {
     EXPECT_NEAR(run(endless, Settings{}, ray).radiance.x / exact, 1, 0.02);
 }
 
-TEST(ShadowMapMarch, LimitsNameWhatMapsCannotDo) {
+TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
     HalfShadowed box(sun({0.35f, -1, 0.2f}));
-    const auto says = [&](std::string_view mode, const Settings& settings, std::string_view words) {
-        const auto limits = find_mode(mode).limits(tiny_view(), box.snapshot, settings);
-        return std::ranges::any_of(limits,
-                                   [&](const Limit& limit) { return limit.why.find(words) != std::string::npos; });
+    const auto said = [&](std::string_view mode, const Settings& settings) {
+        return find_mode(mode).limitations(tiny_view(), box.snapshot, settings);
     };
-    EXPECT_TRUE(says("shadow-map", Settings{}, "texels of its shadow map"));
-    EXPECT_FALSE(says("shadow-map", Settings{}, "soft shadows"));
+    EXPECT_TRUE(says(said("shadow-map", Settings{}), limitation::coarse_texels));
+    EXPECT_FALSE(says(said("shadow-map", Settings{}), limitation::hard_shadows));
     box.snapshot.lights[0].angle = 0.1f;
-    EXPECT_TRUE(says("shadow-map", Settings{}, "soft shadows"));
+    EXPECT_TRUE(says(said("shadow-map", Settings{}), limitation::hard_shadows));
     Settings settings;
-    EXPECT_FALSE(says("march", settings, "soft shadows"));
+    EXPECT_FALSE(says(said("march", settings), limitation::hard_shadows));
     settings.march.visibility = Visibility::maps;
-    EXPECT_TRUE(says("march", settings, "soft shadows"));
+    EXPECT_TRUE(says(said("march", settings), limitation::hard_shadows));
 
-    EXPECT_FALSE(says("shadow-map", Settings{}, "detail"));
+    EXPECT_FALSE(says(said("shadow-map", Settings{}), limitation::long_steps));
     box.snapshot.media = {grid_fog(1, unit_grid(64, [](vec3) { return 1.0f; }))};
     settings.of<ShadowMapSettings>().steps = 2;
-    EXPECT_TRUE(says("shadow-map", settings, "detail"));
+    EXPECT_TRUE(says(said("shadow-map", settings), limitation::long_steps));
     const Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 10};
     EXPECT_NEAR(run(box.snapshot, settings, ray).validity, 4.0f / 64 / 0.5f, 0.02f);
     settings.of<ShadowMapSettings>().steps = 64;

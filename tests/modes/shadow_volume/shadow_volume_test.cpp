@@ -2,8 +2,11 @@
 #include "integrate/lit_fog.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "modes/shadow_volume/limitations.h"
 #include "modes/shadow_volume/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
+#include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/occlusion/occluders.h"
@@ -223,8 +226,8 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     Settings even;
     even.of<ShadowVolumeSettings>().fog = ShadowFog::even;
     EXPECT_EQ(drawn("shadow-volume", picture, stage.snapshot, even)[500].validity, 0);
-    EXPECT_TRUE(std::ranges::any_of(find_mode("shadow-volume").limits(picture.view, stage.snapshot, even),
-                                    [](const Limit& limit) { return limit.severity == Severity::wrong; }));
+    const Limitations said = find_mode("shadow-volume").limitations(picture.view, stage.snapshot, even);
+    EXPECT_TRUE(says(said, limitation::drawn_as_homogeneous));
 }
 
 TEST(ShadowVolume, EndlessFogAndFarEnds) {
@@ -256,8 +259,8 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     EXPECT_GT(mean_of(one), 0);
     EXPECT_NEAR(mean_of(two) / mean_of(one), 2, 1e-5);
     EXPECT_EQ(one[100].validity, 0);
-    const auto limits = find_mode("shadow-volume").limits(picture.view, stage.snapshot, shells);
-    EXPECT_TRUE(std::ranges::any_of(limits, [](const Limit& limit) { return limit.where == "shadow_volume.draw"; }));
+    const Limitations said = find_mode("shadow-volume").limitations(picture.view, stage.snapshot, shells);
+    EXPECT_TRUE(says(said, limitation::shells));
     shells.of<ShadowVolumeSettings>().shell_length = 1e-3f; // nothing shows that near its occluder
     EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
 }
@@ -280,21 +283,20 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     EXPECT_GT(mean_of(found), mean_of(dark));
 }
 
-TEST(ShadowVolume, LimitsNameSoftLightsAndAlpha) {
+TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
     Light soft = sun({0, -1, 0});
     soft.angle = 0.01f;
     Stage stage = stage_of({even_fog(0.1f, room)}, {soft}, furniture());
-    const auto where = [&](const Snapshot& snapshot, std::string_view name) {
-        const auto limits = find_mode("shadow-volume").limits(View{}, snapshot, {});
-        return std::ranges::any_of(limits, [&](const Limit& limit) { return limit.where == name; });
+    const auto said = [](const Snapshot& snapshot) {
+        return find_mode("shadow-volume").limitations(View{}, snapshot, {});
     };
-    EXPECT_TRUE(where(stage.snapshot, "light sun"));
-    EXPECT_FALSE(where(stage.snapshot, "occluders"));
+    EXPECT_TRUE(says(said(stage.snapshot), limitation::hard_shadows));
+    EXPECT_FALSE(says(said(stage.snapshot), limitation::no_alpha_shadows));
     Material glass;
     glass.alpha_mode = AlphaMode::blend, glass.alpha = 0.5f;
     stage.scene->materials.push_back(glass), stage.scene->meshes[0].material = 0;
     stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
-    EXPECT_TRUE(where(stage.snapshot, "occluders"));
+    EXPECT_TRUE(says(said(stage.snapshot), limitation::no_alpha_shadows));
 }
 
 TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {

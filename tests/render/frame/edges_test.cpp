@@ -1,6 +1,6 @@
 // More rays where neighbouring pixels differ.
+#include "modes/limitation.h"
 #include "modes/mode.h"
-#include "modes/promise.h"
 #include "render/fixtures.h"
 #include "render/frame/edges.h"
 #include "scene/scene.h"

@@ -66,7 +66,6 @@ TEST(Sequence, SaysHowItWasMade) {
     RenderJob job = job_for(scene, out.file("f.exr"), {12});
     job.settings.pixel.samples = 3;
     job.seed = 77;
-    job.limits_said = {"info: one", "wrong: two"};
     run(scene, job);
     const auto attributes = read_exr(out.file("f.exr")).attributes;
     EXPECT_EQ(attributes.at("tyndall:mode"), "test");
@@ -74,7 +73,6 @@ TEST(Sequence, SaysHowItWasMade) {
     EXPECT_EQ(attributes.at("tyndall:camera"), "main");
     EXPECT_EQ(attributes.at("tyndall:isa"), "avx2");
     EXPECT_EQ(attributes.at("tyndall:nonFinite"), "0");
-    EXPECT_EQ(attributes.at("tyndall:limits"), "info: one\nwrong: two");
     EXPECT_EQ(attributes.at("imageCounter"), "12");
     EXPECT_EQ(attributes.at("tyndall:hash").size(), 32u);
     const std::string settings = attributes.at("tyndall:settings");

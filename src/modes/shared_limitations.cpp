@@ -1,6 +1,7 @@
-#include "modes/limits.h"
+#include "modes/shared_limitations.h"
 
 #include "modes/settings.h"
+#include "scene/light.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -9,7 +10,6 @@
 #include "volume/medium.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -26,7 +26,7 @@ float thickness(const Medium& medium, const Box& scene_bounds) {
 }
 
 // How far places as far from the origin as the camera are off, against a pixel in the middle of the scene.
-void add_precision_limit(const View& view, const Snapshot& snapshot, std::vector<Limit>& limits) {
+void add_float_precision(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     const Camera& camera = view.camera;
     if (snapshot.bounds.empty()) return;
     const float offset = shadow_offset(camera.position);
@@ -34,36 +34,27 @@ void add_precision_limit(const View& view, const Snapshot& snapshot, std::vector
     const float height =
         camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5f * camera.vertical_fov);
     if (offset < seen_offset * height / static_cast<float>(view.size.y)) return;
-    limits.push_back({Severity::degraded, "scene",
-                      "lies so far from the origin that places are known to " + number_text("%.2g", offset) +
-                          " m only: edges and shadows are as coarse"});
+    limitations.push_back({Severity::degraded, &limitation::float_precision, Subject::scene, "", {offset}});
 }
 
-void add_ambient_limit(const Snapshot& snapshot, std::vector<Limit>& limits) {
+void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) {
     if (max_component(snapshot.ambient) > 0)
-        limits.push_back({Severity::info, "ambient", "ambient light is not shadowed by surfaces or fog"});
+        limitations.push_back({Severity::info, &limitation::unshadowed_ambient, Subject::scene});
 }
 }
 
-std::string number_text(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-void add_single_scattering_limits(const View& view, const Snapshot& snapshot, std::vector<Limit>& limits) {
+void add_single_scattering(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     for (const Medium& medium : snapshot.media) {
         const float scattered = thickness(medium, snapshot.bounds) * max_component(medium.optics.albedo);
         if (scattered <= 0.5f) continue;
-        limits.push_back({Severity::degraded, "medium " + medium.name,
-                          "light scatters once only; up to " + number_text("%.2g", scattered) +
-                              " optical depths of scattering make real fog this thick brighter and softer"});
+        limitations.push_back(
+            {Severity::degraded, &limitation::single_scattering_only, Subject::medium, medium.name, {scattered}});
     }
-    add_ambient_limit(snapshot, limits);
-    add_precision_limit(view, snapshot, limits);
+    add_unshadowed_ambient(snapshot, limitations);
+    add_float_precision(view, snapshot, limitations);
 }
 
-void add_light_grid_limits(const Snapshot& snapshot, int cells, std::vector<Limit>& limits) {
+void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations) {
     Box fog;
     for (const Medium& medium : snapshot.media)
         if (medium.kind == DensityKind::bricks) fog.grow(medium.world_bounds);
@@ -72,9 +63,8 @@ void add_light_grid_limits(const Snapshot& snapshot, int cells, std::vector<Limi
     for (const Medium& medium : snapshot.media) {
         const float depth = medium.majorant() * cell;
         if (medium.kind == DensityKind::bricks && depth > deep_cell)
-            limits.push_back({Severity::degraded, "medium " + medium.name,
-                              "cells of the light grid are up to " + number_text("%.2g", depth) +
-                                  " optical depths deep: light in its dense parts is blurred"});
+            limitations.push_back(
+                {Severity::degraded, &limitation::light_grid_cells, Subject::medium, medium.name, {depth}});
     }
 }
 
@@ -93,51 +83,56 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
     return rays;
 }
 
-void add_step_limits(const View& view, const Snapshot& snapshot, int steps, const char* row, bool fixed,
-                     std::vector<Limit>& limits) {
+void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
     for (const Medium& medium : snapshot.media) {
         float length = 0;
         for (const Ray& ray : rays)
             length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
         const float step = length / static_cast<float>(steps), depth = step * medium.majorant();
-        const std::string text = "steps of about " + number_text("%.2g", step) + " m are ";
         if (medium.kind == DensityKind::bricks) {
             const vec3 voxels = medium.bricks->voxel_size;
             const float voxel = std::min(voxels.x, std::min(voxels.y, voxels.z));
             if (step > voxel)
-                limits.push_back({step > detail_voxels * voxel ? Severity::degraded : Severity::info,
-                                  "medium " + medium.name,
-                                  text + "longer than the detail of its voxels, " + number_text("%.2g", voxel) +
-                                      " m, which is seen blurred or as grain; more " + row + " resolve it"});
+                limitations.push_back({step > detail_voxels * voxel ? Severity::degraded : Severity::info,
+                                       &limitation::long_steps,
+                                       Subject::medium,
+                                       medium.name,
+                                       {step, voxel}});
         }
         if (fixed && depth > deep_step)
-            limits.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded, "medium " + medium.name,
-                              text + "up to " + number_text("%.2g", depth) +
-                                  " optical depths deep: what dims and brightens within them is lost; more " + row +
-                                  " resolve it"});
+            limitations.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded,
+                                   &limitation::deep_steps,
+                                   Subject::medium,
+                                   medium.name,
+                                   {depth, step}});
     }
 }
 
-void add_fluence_limits(const View& view, const Snapshot& snapshot, const FluenceSettings& settings,
-                        std::vector<Limit>& limits) {
-    add_ambient_limit(snapshot, limits);
-    add_precision_limit(view, snapshot, limits);
+void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light, Limitations& limitations) {
+    if (snapshot.media.empty()) return;
+    const auto add = [&](const LimitationKind& kind) {
+        for (const Light& one : snapshot.lights)
+            limitations.push_back({Severity::degraded, &kind, Subject::light, one.name});
+    };
+    if (light == LightTransmittance::off) add(limitation::unattenuated_light);
+    if (light == LightTransmittance::average) add(limitation::average_light);
+}
+
+void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings,
+                 Limitations& limitations) {
+    add_unshadowed_ambient(snapshot, limitations);
+    add_float_precision(view, snapshot, limitations);
     const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));
     if (snapshot.lights.empty() || fog.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
-    limits.push_back({Severity::info, "fluence.resolution",
-                      "light that has been scattered before comes from cells of " + number_text("%.2g", cell) +
-                          " m: its detail is no finer, and within them light may leak around corners of walls"});
-    limits.push_back({Severity::info, "fluence.orders",
-                      "fog lights no surfaces, and surfaces light fog but not each other; ambient light and what glows "
-                      "are not scattered again"});
-    if (std::ranges::any_of(snapshot.media, is_endless))
-        limits.push_back({Severity::info, "fluence.orders",
-                          "of endless fog only what lies in and around the scene scatters light again"});
-    if (settings.orders < all_orders)
-        limits.push_back({Severity::info, "fluence.orders",
-                          "light that scatters more than " + std::to_string(settings.orders) + " times is left out"});
+    const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0) {
+        limitations.push_back({Severity::info, &kind, Subject::setting, row, {amount}});
+    };
+    add(limitation::cached_fluence, "fluence.resolution", cell);
+    add(limitation::fog_scatters_alone, "fluence.orders");
+    if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");
+    if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
 }
 }

@@ -1,0 +1,44 @@
+#include "modes/billboard/limitations.h"
+
+#include "modes/billboard/billboard.h"
+#include "modes/billboard/settings.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// Where the camera sees a card from: inside it, or along its beam.
+void add_card(const BeamCard& card, vec3 camera, Limitations& limitations) {
+    constexpr float edge_on = 0.94f; // cosine
+    if (off_axis(card, camera) < 1)
+        limitations.push_back({Severity::wrong, &limitation::camera_in_card, Subject::card, card.name});
+    const vec3 axis = glm::normalize(card.to - card.from);
+    const vec3 towards = glm::normalize(0.5f * (card.from + card.to) - camera);
+    if (std::abs(glm::dot(axis, towards)) > edge_on)
+        limitations.push_back({Severity::degraded, &limitation::card_edge_on, Subject::card, card.name});
+}
+}
+
+Limitations billboard_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    Limitations limitations;
+    if (std::ranges::any_of(snapshot.media, [](const Medium& medium) { return medium.majorant() > 0; }))
+        limitations.push_back({Severity::wrong, &limitation::cards, Subject::image});
+    std::vector<float> open;
+    const std::vector<BeamCard> cards = place_cards(snapshot, settings.of<BillboardSettings>(), &open);
+    for (const BeamCard& card : cards) add_card(card, view.camera.position, limitations);
+    for (size_t l = 0; l < snapshot.lights.size(); ++l) {
+        const auto has_light = [&](const BeamCard& card) { return card.light == static_cast<int>(l); };
+        const std::string& name = snapshot.lights[l].name;
+        if (open[l] > 0) limitations.push_back({Severity::degraded, &limitation::open_light, Subject::light, name});
+        if (std::ranges::none_of(cards, has_light))
+            limitations.push_back({Severity::info, &limitation::no_opening, Subject::light, name});
+    }
+    if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
+    for (const Medium& medium : snapshot.media)
+        limitations.push_back({Severity::degraded, &limitation::homogeneous_in_cards, Subject::medium, medium.name});
+    return limitations;
+}
+}

@@ -1,0 +1,61 @@
+#include "modes/cone/limitations.h"
+
+#include "modes/cone/settings.h"
+#include "modes/settings.h"
+#include "modes/shared_limitations.h"
+#include "scene/light.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// Whether surfaces keep a light from fog that the picture shows.
+bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
+    constexpr int points = 16; // on each ray
+    for (Ray& ray : probing_rays(view, snapshot)) {
+        Hits hits;
+        snapshot.occluders->closest({&ray, 1}, 0, hits);
+        ray.t_max = std::min(ray.t_max, hits.t[0]);
+        for (int i = 0; i < points; ++i) {
+            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
+            const Arrival at = arrival(light, point);
+            if (max_component(at.irradiance) <= 0) continue;
+            if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
+        }
+    }
+    return false;
+}
+
+void add_light(const View& view, const Snapshot& snapshot, const Light& light, const ConeSettings& settings,
+               Limitations& limitations) {
+    const auto add = [&](Severity severity, const LimitationKind& kind) {
+        limitations.push_back({severity, &kind, Subject::light, light.name});
+    };
+    const bool sun = light.kind == LightKind::sun, spot = light.kind == LightKind::spot;
+    const bool shadows = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+    if (shadows && sun && is_shadowed(view, snapshot, light))
+        add(Severity::wrong, limitation::sun_without_shadows);
+    else if (shadows)
+        add(Severity::degraded, limitation::no_shadows);
+    if (!sun && light.radius > 0) add(Severity::info, limitation::point_light_only);
+    if (!sun && settings.attenuation != ConeAttenuation::inverse_square)
+        add(Severity::degraded, limitation::unphysical_attenuation);
+    if (spot && settings.edge == ConeEdge::soft) add(Severity::degraded, limitation::inner_cone_ignored);
+    if (spot && settings.near_radius > 0) add(Severity::info, limitation::cut_near_light);
+    if (!sun && settings.noise > 0) add(Severity::info, limitation::artistic_noise);
+}
+}
+
+Limitations cone_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    Limitations limitations;
+    for (const Light& light : snapshot.lights)
+        add_light(view, snapshot, light, settings.of<ConeSettings>(), limitations);
+    for (const Medium& medium : snapshot.media)
+        if (medium.kind == DensityKind::bricks)
+            limitations.push_back(
+                {Severity::degraded, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+    add_single_scattering(view, snapshot, limitations);
+    return limitations;
+}
+}

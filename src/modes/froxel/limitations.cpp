@@ -1,0 +1,107 @@
+#include "modes/froxel/limitations.h"
+
+#include "modes/froxel/grid.h"
+#include "modes/froxel/settings.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "modes/shared_limitations.h"
+#include "scene/light.h"
+#include "scene/moving_nodes.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/bricks/bricks.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// Size of a froxel in the middle of the scene: across, and in depth.
+struct FroxelSize {
+    float across = 0, deep = 0; // metres
+
+    float coarse() const { return std::max(across, deep); }
+};
+FroxelSize middle_froxel(const View& view, const Snapshot& snapshot, const FroxelSettings& settings) {
+    const FroxelGrid grid = make_froxel_grid(view.camera, view.size, settings.tile);
+    const Box& box = snapshot.bounds;
+    const float depth = std::max(glm::dot(box.center() - view.camera.position, view.camera.forward), view.camera.near);
+    const float pixel = glm::length(grid.origin_x) + depth * glm::length(grid.step_x);
+    const float extent = box.empty() ? depth : depth + 0.5f * glm::length(box.size());
+    return {pixel * static_cast<float>(settings.tile), extent / static_cast<float>(settings.depth_slices)};
+}
+
+bool in_fog(const Snapshot& snapshot, vec3 point) {
+    return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
+}
+
+// Whether the scene gives a light keys for where it is or shines to.
+bool is_moving(const Snapshot& snapshot, const Light& light) {
+    const auto moves = [&](const LightSource& source) {
+        return source.name == light.name &&
+               (!source.position.constant() || !source.direction.constant() || is_moving(*snapshot.scene, source.node));
+    };
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->lights, moves);
+}
+
+// Whether it gives the camera keys for where it is.
+bool is_moving(const Snapshot& snapshot, const Camera& camera) {
+    const auto moves = [&](const CameraSource& source) {
+        return source.name == camera.name && (!source.position.constant() || is_moving(*snapshot.scene, source.node));
+    };
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->cameras, moves);
+}
+
+// Of each light: its shadows, its movement and what is next to it.
+void add_light(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, FroxelSize size,
+               Limitations& limitations) {
+    const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts = {}) {
+        limitations.push_back({severity, &kind, Subject::light, light.name, amounts});
+    };
+    const bool fine = settings.tile == 1 && settings.depth_slices >= 256;
+    const bool shadows = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+    if (settings.visibility == FroxelVisibility::off && light.shadows)
+        add(Severity::wrong, limitation::visibility_off);
+    else if (shadows)
+        add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
+    if (shadows && is_soft(light) && settings.shadow_rays == 1) add(Severity::degraded, limitation::hard_shadows);
+    if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
+    if (light.kind != LightKind::sun && in_fog(snapshot, light.position))
+        add(Severity::info, limitation::flat_glow, {size.coarse()});
+}
+
+// Of each medium: what changes within a froxel.
+void add_medium(const Medium& medium, FroxelSize size, Limitations& limitations) {
+    const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts) {
+        limitations.push_back({severity, &kind, Subject::medium, medium.name, amounts});
+    };
+    const vec3 sides = medium.world_bounds.size();
+    const float thin = std::min(sides.x, std::min(sides.y, sides.z));
+    const float depth = medium.majorant() * std::min(size.deep, thin);
+    if (depth > 1) add(depth > dark_depth ? Severity::wrong : Severity::degraded, limitation::deep_froxels, {depth});
+    if (thin < size.deep) add(Severity::info, limitation::thin_medium, {size.deep});
+    if (medium.kind != DensityKind::bricks) return;
+    const float voxel = 1 / glm::length(vec3(medium.bricks->world_to_index[0]));
+    if (voxel < 0.5f * size.coarse()) add(Severity::info, limitation::lost_detail, {size.coarse(), voxel});
+}
+}
+
+Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    Settings terms = settings; // what the march says of single scattering holds here too
+    terms.march.visibility = Visibility::rays;
+    Limitations limitations = main_mode().limitations(view, snapshot, terms);
+    if (snapshot.media.empty()) return limitations;
+
+    const FroxelSettings& froxel = settings.of<FroxelSettings>();
+    const FroxelSize size = middle_froxel(view, snapshot, froxel);
+    if (is_moving(snapshot, view.camera))
+        limitations.push_back({Severity::degraded, &limitation::moving_camera, Subject::camera, view.camera.name});
+    for (const Light& light : snapshot.lights) add_light(light, snapshot, froxel, size, limitations);
+    for (const Medium& medium : snapshot.media) add_medium(medium, size, limitations);
+    const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
+    if (std::ranges::any_of(snapshot.media, unbounded))
+        limitations.push_back({Severity::info, &limitation::few_far_slices, Subject::setting, "froxel.depth_slices"});
+    if (froxel.visibility == FroxelVisibility::slices && snapshot.occluders && snapshot.occluders->has_alpha())
+        limitations.push_back({Severity::info, &limitation::rays_for_alpha, Subject::setting, "froxel.visibility"});
+    return limitations;
+}
+}

@@ -1,0 +1,100 @@
+#include "modes/limitation.h"
+
+#include "base/error.h"
+#include "base/io/json.h"
+#include "base/text.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr size_t max_named = 3; // of a group
+constexpr size_t max_name = 60; // bytes
+
+std::string_view word_of(Subject subject) {
+    constexpr std::string_view words[] = {"scene",  "image",    "surfaces", "camera", "light",
+                                          "medium", "material", "card",     "setting"};
+    return words[static_cast<size_t>(subject)];
+}
+
+std::string plural_of(Subject subject) {
+    return subject == Subject::medium ? "media" : std::string(word_of(subject)) + "s";
+}
+}
+
+std::vector<LimitationGroup> groups_of(std::span<const Limitation> limitations) {
+    std::vector<LimitationGroup> groups;
+    for (const Limitation& one : limitations) {
+        const auto alike = [&](const LimitationGroup& group) {
+            return group.worst.kind == one.kind && group.worst.severity == one.severity &&
+                   group.worst.subject == one.subject;
+        };
+        const auto known = std::ranges::find_if(groups, alike);
+        if (known == groups.end()) {
+            groups.push_back({one, {one.name}});
+            continue;
+        }
+        known->names.push_back(one.name);
+        if (one.amounts[0] > known->worst.amounts[0]) known->worst = one;
+    }
+    return groups;
+}
+
+std::string_view name_of(Severity severity) {
+    constexpr std::string_view names[] = {"info", "degraded", "wrong"};
+    return names[static_cast<size_t>(severity)];
+}
+
+std::string where_of(const Limitation& limitation) {
+    const std::string name = printable(limitation.name, max_name);
+    if (limitation.subject == Subject::setting) return name;
+    return std::string(word_of(limitation.subject)) + (name.empty() ? "" : " ") + name;
+}
+
+std::string where_of(const LimitationGroup& group) {
+    if (group.names.size() == 1) return where_of(group.worst);
+    std::vector<std::string> names;
+    for (const std::string& name : group.names)
+        if (names.size() < max_named) names.push_back(printable(name, max_name));
+    if (group.names.size() > max_named) names.push_back("...");
+    return std::to_string(group.names.size()) + " " + plural_of(group.worst.subject) + " (" + joined(names, ", ") + ")";
+}
+
+std::string sentence_of(const Limitation& limitation) {
+    std::string text;
+    size_t used = 0;
+    for (std::string_view rest = limitation.kind->sentence; !rest.empty();) {
+        const size_t open = std::min(rest.find('{'), rest.size());
+        text += rest.substr(0, open);
+        rest.remove_prefix(open);
+        if (rest.empty()) break;
+        text += formatted(rest.starts_with("{n}") ? "%.0f" : "%.2g", limitation.amounts.at(used++));
+        rest.remove_prefix(rest.find('}') + 1);
+    }
+    return text;
+}
+
+std::string line_of(const LimitationGroup& group) {
+    return std::string(name_of(group.worst.severity)) + ": " + where_of(group) + ": " + sentence_of(group.worst);
+}
+
+Json json_of(const Limitations& limitations) {
+    Json array;
+    array.kind = Json::Kind::array;
+    for (const Limitation& limitation : limitations) {
+        const auto text = [](std::string_view value) {
+            Json json;
+            json.kind = Json::Kind::string, json.string = value;
+            return json;
+        };
+        Json json;
+        json.kind = Json::Kind::object;
+        json.members = {{"severity", text(name_of(limitation.severity))},
+                        {"id", text(limitation.kind->id)},
+                        {"where", text(where_of(limitation))},
+                        {"why", text(sentence_of(limitation))}};
+        array.items.push_back(std::move(json));
+    }
+    return array;
+}
+}

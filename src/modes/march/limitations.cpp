@@ -1,0 +1,58 @@
+#include "modes/march/limitations.h"
+
+#include "modes/map_shadows.h"
+#include "modes/march/march.h"
+#include "modes/settings.h"
+#include "modes/shared_limitations.h"
+#include "scene/mesh.h"
+#include "scene/scene.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// Lights whose shadows a setting leaves out, or finds otherwise than it says.
+void add_visibility(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
+    const Visibility visibility = settings.march.visibility;
+    const bool alpha = snapshot.occluders && snapshot.occluders->has_alpha();
+    if (visibility == Visibility::off)
+        for (const Light& light : snapshot.lights)
+            if (light.shadows)
+                limitations.push_back({Severity::wrong, &limitation::visibility_off, Subject::light, light.name});
+    if (alpha && (visibility == Visibility::slices || visibility == Visibility::exact))
+        limitations.push_back(
+            {Severity::info, &limitation::sampled_alpha_shadows, Subject::setting, "march.visibility"});
+    if (visibility == Visibility::slices && !alpha)
+        for (const Light& light : snapshot.lights)
+            if (casts(light, snapshot) && shadows_by(light, *snapshot.occluders) == ShadowsBy::rays)
+                limitations.push_back({Severity::info,
+                                       &limitation::sampled_shadows,
+                                       Subject::light,
+                                       light.name,
+                                       {static_cast<double>(snapshot.occluders->triangle_count())}});
+    if (visibility == Visibility::maps) add_map_shadows(view, snapshot, settings, limitations);
+}
+}
+
+Limitations march_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    const MarchSettings& march = settings.march;
+    Limitations limitations;
+    if (settings.fluence.orders < 2)
+        add_single_scattering(view, snapshot, limitations);
+    else
+        add_fluence(view, snapshot, settings.fluence, limitations);
+    if (march.light == LightTransmittance::grid) add_light_grid_cells(snapshot, march.light_resolution, limitations);
+    for (const Medium& medium : snapshot.media)
+        if (!march.heterogeneity && medium.kind == DensityKind::bricks)
+            limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+    add_visibility(view, snapshot, settings, limitations);
+    add_light_transmittance(snapshot, march.light, limitations);
+    if (snapshot.scene)
+        for (const Material& material : snapshot.scene->materials)
+            if (max_component(material.emission) > 0)
+                limitations.push_back(
+                    {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    return limitations;
+}
+}

@@ -1,0 +1,20 @@
+// How the march is off.
+#pragma once
+#include "modes/limitation.h"
+
+namespace tyndall {
+struct Settings;
+struct Snapshot;
+struct View;
+
+namespace limitation {
+inline constexpr LimitationKind sampled_alpha_shadows{
+    "sampled_alpha_shadows", "shadows of MASK and BLEND surfaces are sampled by rays, not integrated exactly"};
+inline constexpr LimitationKind sampled_shadows{
+    "sampled_shadows", "{n} triangles: its shadows are sampled by rays, not integrated exactly"};
+inline constexpr LimitationKind emission_lights_nothing{"emission_lights_nothing",
+                                                        "emits light that is seen, but lights nothing else"};
+}
+
+Limitations march_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);
+}

@@ -1,0 +1,7 @@
+// How the march finds the shadows of a light within lit intervals.
+#pragma once
+#include "integrate/lit_fog.h"
+
+namespace tyndall {
+ShadowsBy shadows_by(const Light& light, const Occluders& occluders);
+}

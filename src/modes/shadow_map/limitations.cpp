@@ -1,0 +1,44 @@
+#include "modes/shadow_map/limitations.h"
+
+#include "modes/map_shadows.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "modes/shadow_map/settings.h"
+#include "modes/shared_limitations.h"
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+namespace tyndall {
+namespace {
+// Edges of light that fall between steps: of shafts, and of the light around lamps that the image shows.
+void add_few_steps(const View& view, const Snapshot& snapshot, int steps, Limitations& limitations) {
+    constexpr int fine = 64;
+    if (steps >= fine || snapshot.media.empty()) return;
+    for (const Light& light : snapshot.lights) {
+        const auto add = [&](const LimitationKind& kind) {
+            limitations.push_back({Severity::degraded, &kind, Subject::light, light.name, {double(steps)}});
+        };
+        if (casts(light, snapshot)) add(limitation::grainy_edges);
+        if (light.kind == LightKind::sun) continue;
+        const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
+        if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))
+            add(limitation::few_steps_for_glow);
+    }
+}
+}
+
+Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    // What a march cannot do this one cannot either.
+    Settings like = settings;
+    like.fluence.orders = 1;
+    like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
+    Limitations limitations = main_mode().limitations(view, snapshot, like);
+    const ShadowMapSettings& own = settings.of<ShadowMapSettings>();
+    add_map_shadows(view, snapshot, settings, limitations);
+    add_steps(view, snapshot, own.steps, true, limitations);
+    add_few_steps(view, snapshot, own.steps, limitations);
+    add_light_transmittance(snapshot, own.light, limitations);
+    return limitations;
+}
+}

@@ -1,0 +1,59 @@
+#include "modes/shadow_volume/limitations.h"
+
+#include "modes/settings.h"
+#include "modes/shadow_volume/settings.h"
+#include "modes/shared_limitations.h"
+#include "scene/light.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/shadows/kept_shadows.h"
+#include "trace/shadows/volumes/shadow_volumes.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+void add_fog(const View& view, const Snapshot& snapshot, const ShadowVolumeSettings& settings,
+             Limitations& limitations) {
+    if (samples_fog(snapshot, settings)) {
+        add_steps(view, snapshot, settings.steps, false, limitations);
+        add_light_grid_cells(snapshot, settings.light_resolution, limitations);
+    } else {
+        for (const Medium& medium : snapshot.media)
+            if (medium.kind == DensityKind::bricks)
+                limitations.push_back(
+                    {Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+    }
+    add_single_scattering(view, snapshot, limitations);
+}
+
+void add_shadows(const Snapshot& snapshot, Limitations& limitations) {
+    constexpr size_t many_edges = 20000;
+    bool shadows = false;
+    for (const Light& light : snapshot.lights) {
+        if (!casts(light, snapshot)) continue;
+        shadows = true;
+        if (is_soft(light))
+            limitations.push_back({Severity::degraded, &limitation::hard_shadows, Subject::light, light.name});
+        const size_t edges = kept_shadow_volumes(snapshot, light)->sides.size();
+        if (edges > many_edges)
+            limitations.push_back({Severity::info,
+                                   &limitation::many_silhouette_edges,
+                                   Subject::light,
+                                   light.name,
+                                   {static_cast<double>(edges)}});
+    }
+    if (shadows && snapshot.occluders->has_alpha())
+        limitations.push_back({Severity::wrong, &limitation::no_alpha_shadows, Subject::surfaces});
+}
+}
+
+Limitations shadow_volume_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
+    Limitations limitations;
+    if (own.draw == ShadowDraw::shells)
+        limitations.push_back({Severity::wrong, &limitation::shells, Subject::setting, "shadow_volume.draw"});
+    add_fog(view, snapshot, own, limitations);
+    add_shadows(snapshot, limitations);
+    return limitations;
+}
+}

@@ -1,0 +1,71 @@
+// Limitations that several techniques share, and what finds them.
+#pragma once
+#include "base/math.h"
+#include "modes/limitation.h"
+#include "trace/fluence/settings.h"
+#include "trace/transmittance/light_transmittance.h"
+
+namespace tyndall {
+struct Snapshot;
+struct View;
+
+namespace limitation {
+inline constexpr LimitationKind single_scattering_only{
+    "single_scattering_only",
+    "single scattering only: with up to {} optical depths of scattering, real fog is brighter and softer"};
+inline constexpr LimitationKind float_precision{
+    "float_precision", "float precision at this distance from the origin is {} m: edges and shadows are no finer"};
+inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
+                                                   "ambient light is not shadowed by surfaces or fog"};
+inline constexpr LimitationKind light_grid_cells{
+    "light_grid_cells",
+    "cells of the light grid are up to {} optical depths deep: light in its dense parts is blurred"};
+inline constexpr LimitationKind long_steps{
+    "long_steps", "steps of about {} m are longer than its voxels, {} m: their detail is blurred or noisy; more steps "
+                  "resolve it"};
+inline constexpr LimitationKind deep_steps{
+    "deep_steps", "steps are up to {} optical depths deep (about {} m): how light fades within a step is lost; more "
+                  "steps resolve it"};
+inline constexpr LimitationKind cached_fluence{
+    "cached_fluence",
+    "multiple scattering is cached in cells of {} m: its detail is no finer, and within a cell it may "
+    "leak around corners"};
+inline constexpr LimitationKind fog_scatters_alone{
+    "fog_scatters_alone", "multiple scattering covers fog only: surface interreflection, ambient light and emission "
+                          "are ignored"};
+inline constexpr LimitationKind unbounded_fluence{
+    "unbounded_fluence", "of unbounded fog only what lies in and around the scene scatters light again"};
+inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are left out"};
+inline constexpr LimitationKind drawn_as_homogeneous{"drawn_as_homogeneous",
+                                                     "drawn as homogeneous fog of its mean density"};
+inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
+inline constexpr LimitationKind unattenuated_light{
+    "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
+inline constexpr LimitationKind average_light{
+    "average_light", "light-side transmittance is average: the light is dimmed alike everywhere"};
+inline constexpr LimitationKind hard_shadows{"hard_shadows",
+                                             "seen from one point: its soft shadows have hard edges in the fog"};
+}
+
+// Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places
+// so far from the origin that floats do not resolve them.
+void add_single_scattering(const View& view, const Snapshot& snapshot, Limitations& limitations);
+
+// Where fog dims the light to it within a cell of a light grid that has so many cells across the fog.
+void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations);
+
+// Rays through the middle and towards the corners of the image, to the end of fog and scene.
+std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
+
+// Where so many steps along a ray are too few for the detail of a grid; with `fixed`, for its light in thick fog too.
+void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations);
+
+// Optical depths of a step or a froxel that take most of the light that falls on them: what is seen is by chance.
+inline constexpr float dark_depth = 2;
+
+// Where lights are dimmed by less than the fog they cross.
+void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light, Limitations& limitations);
+
+// What a grid of light that has been scattered before cannot show; ambient light too.
+void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
+}
