@@ -159,6 +159,7 @@ class Modes(ProgramTest):
         for mode in report["modes"]:
             self.assertTrue(mode["promise"] and mode["summary"])
             self.assertIn(mode["summary"], text)
+        self.assertGreater(len(report["settings"]), 30)
         for row in report["settings"]:
             self.assertIn(row["name"], text)
             self.assertEqual(list(row["values"]), ["draft", "preview", "final", "reference"])

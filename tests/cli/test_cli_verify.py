@@ -22,6 +22,7 @@ class Verify(ProgramTest):
     def test_json_holds_every_figure(self):
         report = json.loads(self.succeed("verify", self.scene, *self.small, "--json", "-q").stdout)
         self.assertEqual(report["off"], 0)
+        self.assertGreaterEqual(len(report["checks"]), 5)
         for check in report["checks"]:
             self.assertTrue(check["holds"], check)
             self.assertLessEqual(abs(check["measured"] - check["expected"]), check["tolerance"])

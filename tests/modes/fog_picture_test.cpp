@@ -174,8 +174,12 @@ TEST(FogPicture, ALightThatGoesOutLeavesNothing) {
     Snapshot dark = lit;
     dark.lights.clear();
     History history;
+    ScatterFunction before;
     for (int frame = 0; frame < 8; ++frame)
-        from_fog_picture(view, lit, {PictureShare::half}, march_of(view, lit), &history);
+        before = from_fog_picture(view, lit, {PictureShare::half}, march_of(view, lit), &history);
+    float shown = 0;
+    for (const Scatter& result : ask(before, box_rays(view, lit))) shown += result.radiance.x;
+    EXPECT_GT(shown, 0);
     const ScatterFunction after = from_fog_picture(view, dark, {PictureShare::half}, march_of(view, dark), &history);
     for (const Scatter& result : ask(after, box_rays(view, lit))) ASSERT_EQ(result.radiance, vec3(0));
 }

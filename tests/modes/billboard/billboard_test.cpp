@@ -194,11 +194,14 @@ TEST(Billboard, GapsAndVeilAreSetApart) {
     const HoleInWall hole;
     Settings settings;
     settings.of<BillboardSettings>().gaps = 7, settings.of<BillboardSettings>().veil = 0;
-    for (const BeamCard& card : place_cards(hole.snapshot, settings.of<BillboardSettings>()))
-        EXPECT_EQ(card.tint, vec3(1));
+    const auto expect_tint = [&](const Snapshot& snapshot, float tint) {
+        const std::vector<BeamCard> cards = place_cards(snapshot, settings.of<BillboardSettings>());
+        EXPECT_FALSE(cards.empty());
+        for (const BeamCard& card : cards) EXPECT_EQ(card.tint, vec3(tint));
+    };
+    expect_tint(hole.snapshot, 1);
     const OpenPosts posts;
-    for (const BeamCard& card : place_cards(posts.snapshot, settings.of<BillboardSettings>()))
-        EXPECT_EQ(card.tint, vec3(7));
+    expect_tint(posts.snapshot, 7);
     EXPECT_EQ(posts.beside_all_cards(settings), 0);
     settings.of<BillboardSettings>().veil = 0.25f;
     const float quarter = posts.beside_all_cards(settings);

@@ -75,8 +75,10 @@ TEST_P(FroxelHistory, ANaNIsGoneInTheNextFrame) {
     for (size_t i = 0; i < poisoned->light.values.size(); i += 37)
         poisoned->light.values[i] = std::numeric_limits<float>::quiet_NaN();
     history.froxels = poisoned;
+    ASSERT_GT(poisoned->light.values.size(), 37u);
     for (const Scatter& result : picture(moved_view(1), stage.snapshot, settings(), &history))
         ASSERT_TRUE(is_finite(result.radiance) && std::isfinite(result.transmittance));
+    EXPECT_EQ(history.froxels->light.values.size(), poisoned->light.values.size());
     for (const float value : history.froxels->light.values) ASSERT_TRUE(std::isfinite(value));
 }
 
@@ -132,6 +134,7 @@ TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
     for (size_t i = 0; i < grid.tiles() * 16; ++i)
         for (const float value : {static_cast<float>(i % 7), 2.0f, 3.0f, i % 5 ? 0.1f : 0.0f})
             light.values.push_back(value);
+    int remembered = 0;
     const FroxelLight back = recall(memory_of(grid, tiles, light), grid, tiles).light;
     for (size_t tile = 0; tile < grid.tiles(); ++tile)
         for (int k = 0; k < 16; ++k) {
@@ -140,8 +143,10 @@ TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
             ASSERT_NEAR(is[3], known ? was[3] : 0, 1e-4) << tile << " " << k;
             if (known) {
                 ASSERT_NEAR(is[0], was[0], 1e-2) << tile << " " << k;
+                ++remembered;
             }
         }
+    EXPECT_GT(remembered, static_cast<int>(grid.tiles()));
 }
 
 TEST(FroxelMemory, KnowsHowMuchWiderWhatItFindsBecame) {

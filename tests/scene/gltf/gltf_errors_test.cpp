@@ -319,6 +319,7 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
     const auto built = [](const std::string& body) {
         return "glTF" + word_bytes(2) + word_bytes(static_cast<uint32_t>(12 + body.size())) + body;
     };
+    int without_data = 0;
     for (const std::string& bytes : {put(0, 0x46546C68),
                                      put(4, 1),
                                      put(4, 3),
@@ -342,11 +343,14 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
                                      built(text + data + "abc"),
                                      built(text + data + "abcd")}) {
         const LoadAnswer answer = load(folder.put("bad.glb", bytes));
-        if (answer.loaded)
+        if (answer.loaded) {
             EXPECT_TRUE(has_warning(answer.scene, "no data")) << "a missing chunk leaves the mesh out";
-        else
+            ++without_data;
+        } else {
             expect_refusal(answer, "bad.glb");
+        }
     }
+    EXPECT_EQ(without_data, 1);
     EXPECT_TRUE(load(folder.put("good.glb", built(text + data + chunk("ABCD", "more", ' ')))).loaded)
         << "unknown chunks are skipped";
     expect_refusal(load(folder.put("lfs.glb", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n")),

@@ -10,6 +10,7 @@ namespace tyndall::test {
 TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
     const Studio studio;
     const Scene scene = load_scene(studio.file);
+    ASSERT_GT(all_properties().size(), 30u);
     for (const Property& property : all_properties()) {
         const PropertyWords& words = words_of(property);
         EXPECT_LE(std::string(words.label).size(), 16u) << property.name;
@@ -18,6 +19,7 @@ TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
     for (const Part part : {Part::light, Part::medium, Part::camera, Part::scene})
         for (size_t i = 0; i < count_of(scene, part); ++i) {
             std::set<std::string> labels;
+            EXPECT_FALSE(properties_of(scene, part, i).empty());
             for (const Property* property : properties_of(scene, part, i))
                 EXPECT_TRUE(labels.insert(words_of(*property).label).second) << property->name;
         }
@@ -43,6 +45,7 @@ TEST(PropertyWords, SunsStandWhereTheirLightComesFrom) {
 }
 
 TEST(PropertyWords, SlidersHoldTheirValuesAndStayInRange) {
+    int sliders = 0;
     for (const Property& property : all_properties()) {
         if (property.kind != ValueKind::number) continue;
         for (const float value : {property.least, property.slider_low, property.slider_high, property.most,
@@ -55,7 +58,9 @@ TEST(PropertyWords, SlidersHoldTheirValuesAndStayInRange) {
             EXPECT_LE(range.high, property.most) << property.name;
             EXPECT_LT(range.low, range.high) << property.name;
             EXPECT_TRUE(!range.logarithmic || range.low >= 0) << property.name;
+            ++sliders;
         }
     }
+    EXPECT_GT(sliders, 60);
 }
 }

@@ -91,14 +91,9 @@ TEST_P(RandomRequests, EveryPictureFitsItsRequest) {
     take_scene(state, small_scene());
     state.most_samples = 6;
     Painter painter;
-    int pictures = 0;
+    int pictures = 0, whole = 0;
     for (int i = 0; i < 150; ++i) {
-        const Action action = any_action(chance);
-        try {
-            apply(state, action);
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code, ExitCode::usage) << error.what(); // rows that contradict each other
-        }
+        apply(state, any_action(chance));
         for (int rounds = chance.below(4); rounds >= 0; --rounds) {
             const Request request = request_of(state, chance.share() < 0.5);
             const auto picture = paint_for_a_while(painter, request, chance.below(6000));
@@ -109,12 +104,13 @@ TEST_P(RandomRequests, EveryPictureFitsItsRequest) {
             EXPECT_NO_THROW(find_mode(picture->mode));
             EXPECT_EQ(picture->codes.pixels.size(),
                       static_cast<size_t>(picture->codes.size.x) * static_cast<size_t>(picture->codes.size.y));
-            if (!picture->quick) {
-                EXPECT_EQ(picture->codes.size, request.size);
-            }
+            if (picture->quick) continue;
+            EXPECT_EQ(picture->codes.size, request.size);
+            ++whole;
         }
     }
     EXPECT_GT(pictures, 50);
+    EXPECT_GT(whole, 5);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomRequests, testing::Range(1u, 5u));
 }

@@ -233,14 +233,16 @@ TEST(Steps, BeamsGetStepsOfTheirOwn) {
     StepRule rule;
     rule.length = 1, rule.optical_depth = 10, rule.beams = beams, rule.beam_steps = 8;
     const auto steps = steps_of(Ray{vec3(0), vec3(1, 0, 0), 60}, fog, rule);
+    int inside = 0;
     for (const Step& step : steps) {
         EXPECT_LE(step.high - step.low, 1.0001f);
         // Shares of the local bounds added up: a step inside one bound is no longer than that.
         const float longest = step.high <= 3.2f ? 0.2f / 8 : 0.4f / 8;
-        if (step.low >= 3 && step.high <= 3.5f && (step.high <= 3.2f || step.low >= 3.2f)) {
-            EXPECT_LE(step.high - step.low, longest * 1.0001f) << step.low;
-        }
+        if (step.low < 3 || step.high > 3.5f || (step.low < 3.2f && step.high > 3.2f)) continue;
+        EXPECT_LE(step.high - step.low, longest * 1.0001f) << step.low;
+        ++inside;
     }
+    EXPECT_EQ(inside, 12);
     // 8 in the first beam, 6 in what the second has beyond it, 19.5 elsewhere.
     EXPECT_EQ(steps.size(), 34u);
 }
