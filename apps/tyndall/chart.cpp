@@ -142,7 +142,7 @@ Run add_chart(const Command& program) {
                    "(default: 60; 0.7 with --quick)",
                    "SECONDS");
     command.options("--set", texts->settings,
-                    "one setting for all modes, for instance march.ambient=off; may be\n"
+                    "one setting for all modes, for instance terms.ambient=off; may be\n"
                     "repeated. What makes a mode quicker or more careful is the chart's own",
                     "ROW=VALUE");
     command.footer("Example: a first look, then the whole story\n"

@@ -63,25 +63,12 @@ void settle_noise(RenderJob& job, const Globals& globals) {
     say_rounding(job, globals);
 }
 
-// What the rows of a mode begin with: radial-blur has radial_blur.samples.
-std::string setting_prefix(std::string_view mode) {
-    std::string prefix(mode);
-    std::ranges::replace(prefix, '-', '_');
-    return prefix;
-}
-
-// Settings of a technique that is not asked for. Surfaces that techniques share are lit as march says.
+// Settings that the mode does not read.
 void say_idle_settings(const std::vector<std::string>& settings, const RenderJob& job, const Globals& globals) {
     if (globals.quiet) return;
-    for (const std::string& setting : settings) {
-        const std::string owner = setting.substr(0, setting.find('.'));
-        const bool shared = owner == "march" && find_mode(job.mode).surfaces == Surfaces::shared;
-        const auto owns = [&](const Mode& mode) { return setting_prefix(mode.name) == owner; };
-        const bool plain = (owner == "style" && !honours_style(find_mode(job.mode))) ||
-                           (owner == "fluence" && !find_mode(job.mode).adds_fluence);
-        if (plain || (owner != setting_prefix(job.mode) && !shared && std::ranges::any_of(modes(), owns)))
+    for (const std::string& setting : settings)
+        if (!reads(find_mode(job.mode), setting.substr(0, setting.find('='))))
             say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
-    }
 }
 
 void say_summary(const RenderReport& report, const RenderJob& job) {

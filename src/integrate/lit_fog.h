@@ -1,5 +1,5 @@
 // Fog between exact shadows: what is made once per frame, and the integral along a packet of rays over the stretches
-// that each light reaches. Behind shadow-volume, and behind march with march.visibility=slices.
+// that each light reaches. Behind shadow-volume, and behind march with march.visibility=intervals.
 #pragma once
 #include "integrate/gauss_legendre.h"
 #include "integrate/light_along.h"

@@ -8,6 +8,8 @@
 
 namespace tyndall {
 namespace {
+constexpr int max_steps = 65536; // per ray; longer ones beyond
+
 // The parts of a piece of a ray inside the cones of spots, from its start.
 void find_beams(const MarchSteps& rule, const Ray& ray, Interval piece, std::vector<Step>& beams) {
     beams.clear();
@@ -29,8 +31,8 @@ void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& 
     find_beams(march, ray, piece, beams);
     const StepRule rule{settings.step_depth,
                         settings.step_voxels,
-                        std::min(settings.step_length, settings.step_share * piece.length()),
-                        settings.max_steps,
+                        settings.step_share * piece.length(),
+                        max_steps,
                         march.near_points,
                         settings.near_light,
                         beams,

@@ -24,6 +24,22 @@ const Mode& find_mode(std::string_view name) {
 
 bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }
 
+std::string row_prefix(const Mode& mode) {
+    std::string prefix(mode.name);
+    std::ranges::replace(prefix, '-', '_');
+    return prefix;
+}
+
+bool reads(const Mode& mode, std::string_view row) {
+    const std::string_view prefix = row.substr(0, row.find('.'));
+    if (prefix == "pixel") return true;
+    if (prefix == "style") return honours_style(mode);
+    if (prefix == "fluence") return mode.adds_fluence;
+    if (prefix == "terms") // the light's own for surfaces too, which most modes share
+        return row.starts_with("terms.light") ? mode.surfaces != Surfaces::own : mode.accuracy != Accuracy::look;
+    return prefix == row_prefix(mode) || prefix == mode.also_reads;
+}
+
 bool error_is_noise(const Mode& mode) {
     return mode.surfaces == Surfaces::own && mode.accuracy == Accuracy::multiple_scattering;
 }

@@ -54,6 +54,7 @@ struct Mode {
     void (*append_rows)(std::vector<SettingRow>& rows) = nullptr;                          // of its own settings
     void (*set_quality)(Settings& settings, Quality quality) = nullptr; // its own; null = always the same
     std::vector<Rung> (*rungs)() = nullptr;                             // from the quickest to the most careful
+    std::string_view also_reads{};                                      // prefix of rows that are another's
     std::string_view color{};                                           // in charts
     bool remembers = false;                                             // whether a History changes anything
     bool adds_fluence = false;        // whether it can add light that scatters more than once (fluence.orders)
@@ -75,6 +76,12 @@ const Mode& find_mode(std::string_view name); // throws Error (usage) listing th
 
 // Whether style.* changes its pictures: the truth has none.
 bool honours_style(const Mode& mode);
+
+// What the names of a technique's own rows begin with: radial_blur of radial_blur.samples.
+std::string row_prefix(const Mode& mode);
+
+// Whether a row can change the mode's images.
+bool reads(const Mode& mode, std::string_view row);
 
 // Whether the mode's only error is noise, so that the variance of a picture says how far it is from the truth.
 bool error_is_noise(const Mode& mode);

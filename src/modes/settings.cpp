@@ -46,8 +46,9 @@ const std::vector<SettingRow>& setting_rows() {
     static const std::vector<SettingRow> rows = [] {
         std::vector<SettingRow> all;
         append_pixel_rows(all);
-        append_style_rows(all);
+        append_term_rows(all);
         append_fluence_rows(all);
+        append_style_rows(all);
         for (const Mode& mode : modes())
             if (mode.append_rows) mode.append_rows(all);
         return all;
@@ -90,6 +91,7 @@ Settings settings_for(Quality quality) {
         fluence.resolution = 128, fluence.paths = 4'000'000;
         break;
     }
+    set_term_quality(settings.terms, quality);
     for (const Mode& mode : modes())
         if (mode.set_quality) mode.set_quality(settings, quality);
     return settings;

@@ -4,6 +4,7 @@
 #include "base/math.h"
 #include "integrate/march_settings.h"
 #include "integrate/style.h"
+#include "integrate/terms.h"
 #include "trace/fluence/settings.h"
 #include "trace/sampling/jitter.h"
 #include "trace/sampling/pixel_filter.h"
@@ -29,14 +30,13 @@ inline constexpr int all_orders = 65536; // ends paths that nothing else ends
 
 struct PathSettings {
     int orders = all_orders; // most scatterings of light, in fog or on surfaces
-    bool emission = true;
-    bool ambient = true;
 };
 
 // Settings of every technique, and what they share. A technique's own are found by their type: settings.of<T>() is
 // T() until something was set.
 struct Settings {
     PixelSettings pixel;
+    TermSettings terms;
     StyleSettings style;
     MarchSettings march;
     FluenceSettings fluence; // of march and froxel

@@ -1,4 +1,4 @@
-// How a technique describes its settings as named rows. For settings_*.cpp.
+// How a technique describes its settings as named rows. For settings.cpp of each technique.
 #pragma once
 #include "modes/settings.h"
 
@@ -62,6 +62,9 @@ inline const std::vector<std::string> picture_shares{"full", "half", "third", "q
 
 // The rows that techniques share.
 void append_pixel_rows(std::vector<SettingRow>& rows);
+void append_term_rows(std::vector<SettingRow>& rows);
 void append_style_rows(std::vector<SettingRow>& rows);
 void append_fluence_rows(std::vector<SettingRow>& rows);
+
+void set_term_quality(TermSettings& terms, Quality quality);
 }

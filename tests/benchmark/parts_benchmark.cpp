@@ -103,7 +103,7 @@ void march_and_its_parts(benchmark::State& state) {
     const MarchSteps rule = march_steps(settings.march, snapshot.lights);
     std::vector<LightDepth> depths;
     for (const Light& light : snapshot.lights)
-        depths.push_back(make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution));
+        depths.push_back(make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution));
     const ScatterFunction scatter = find_mode("march").prepare(view, snapshot, settings, nullptr);
 
     double frame = 0, placing = 0, density = 0, shadows = 0, light = 0, samples = 0;

@@ -60,9 +60,9 @@ class Layers(ProgramTest):
 
     def test_settings_of_another_mode_are_said_to_be_idle(self):
         self.assertIn("path.orders=3 changes nothing", self.render("--set", "path.orders=3", "--samples", "1").stderr)
-        self.assertIn("march.light=off changes nothing",
-                      self.render("--mode", "path", "--samples", "1", "--set", "march.light=off").stderr)
-        self.assertNotIn("changes nothing", self.render("--set", "march.light=off", "--samples", "1").stderr)
+        self.assertIn("terms.light=off changes nothing",
+                      self.render("--mode", "path", "--samples", "1", "--set", "terms.light=off").stderr)
+        self.assertNotIn("changes nothing", self.render("--set", "terms.light=off", "--samples", "1").stderr)
 
     def test_full_floats(self):
         self.render("--aov", "none", "--samples", "1")
@@ -182,11 +182,11 @@ class MarchTarget(ProgramTest):
         self.assertIn("of 0.3 s", said)
 
     def test_a_row_that_is_set_too_coarse_is_a_miss(self):
-        report, attributes, said = self.render("--target-error", "0.02", "--set", "march.light=off", code=1)
+        report, attributes, said = self.render("--target-error", "0.02", "--set", "terms.light=off", code=1)
         self.assertEqual(report["missed"], 1)
         self.assertGreater(report["frames"][0]["integrator_error"], 0.02)
         self.assertIn("may be larger than 0.02", said)
-        self.assertIn("march.light=off", attributes["tyndall:settings"])
+        self.assertIn("terms.light=off", attributes["tyndall:settings"])
 
 
 if __name__ == "__main__":

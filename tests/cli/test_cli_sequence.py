@@ -101,7 +101,7 @@ class Resume(Sequence):
         self.succeed(*self.render("out"))
         first = self.path("out/out.0001.exr")
         before = first.read_bytes()
-        for change in [("--seed", "1"), ("--samples", "2"), ("--set", "march.light=off"), ("--res", "32x18")]:
+        for change in [("--seed", "1"), ("--samples", "2"), ("--set", "terms.light=off"), ("--res", "32x18")]:
             self.succeed(*self.render("out", "--resume", *change))
             self.assertNotEqual(first.read_bytes(), before, change)
             before = first.read_bytes()

@@ -169,7 +169,7 @@ Settings with_orders(Settings settings, int orders) {
 TEST(Fluence, ChangesNoBitOfSingleScattering) {
     const Snapshot snapshot = scene_of({even_fog(2, unit_box, forward(0.5f))}, {sun({1, -1, 0.5f})});
     const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.8f, 64);
-    for (const Visibility visibility : {Visibility::rays, Visibility::slices, Visibility::exact}) {
+    for (const Visibility visibility : {Visibility::rays, Visibility::intervals, Visibility::exact}) {
         Settings settings;
         settings.march.visibility = visibility;
         const std::vector<Scatter> plain = marched(snapshot, settings, rays),
@@ -191,7 +191,7 @@ void expect_power_of_path(float g, int lines, double precision) {
         for (const int orders : {2, all_orders}) {
             const std::vector<double> path = difference(path_light(snapshot, rays, orders), once);
             const double power = mean_of(path).value;
-            for (const Visibility visibility : {Visibility::rays, Visibility::slices, Visibility::exact}) {
+            for (const Visibility visibility : {Visibility::rays, Visibility::intervals, Visibility::exact}) {
                 Settings settings = settings_for(Quality::preview);
                 settings.march.visibility = visibility;
                 const std::vector<double> march = difference(marched(snapshot, with_orders(settings, orders), rays),

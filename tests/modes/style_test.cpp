@@ -38,7 +38,7 @@ protected:
         return settings;
     }
 };
-INSTANTIATE_TEST_SUITE_P(March, Styles, testing::Values(Visibility::rays, Visibility::slices, Visibility::exact));
+INSTANTIATE_TEST_SUITE_P(March, Styles, testing::Values(Visibility::rays, Visibility::intervals, Visibility::exact));
 
 TEST_P(Styles, DepthsOfLightAndViewAreScaledApart) {
     const Slab slab;
@@ -72,7 +72,7 @@ TEST_P(Styles, RangeFades) {
     Slab slab;
     for (Medium& medium : slab.snapshot.media) medium.optics.extinction = 1e-4f;
     Settings styled = settings();
-    styled.march.step_length = 0.01f;
+    styled.march.step_share = 1e-3f;
     View view;
     view.camera.position = slab.ray.origin;
     const auto light = [&](const Settings& some) {

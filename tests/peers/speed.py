@@ -20,7 +20,7 @@ from scenes import SHAFTS
 FEW_STEPS = "--set march.step_share=0.0625 --set march.step_voxels=16"
 LADDER = ["--samples 1 " + FEW_STEPS, "--samples 1", "--samples 4 " + FEW_STEPS, "--samples 4",
           "--quality final --samples 4", "--quality final --samples 16"]
-CONVERGED_OPTIONS = "--quality final --samples 128 --set march.light_resolution=256"
+CONVERGED_OPTIONS = "--quality final --samples 128 --set terms.light_resolution=256"
 # The same fog and a sun, as vdb_render has them: isotropic, white, the eye 12 m away.
 VDB_RENDER = ["-res", "640x360", "-translate", "0,2,12", "-lookat", "0,2,0", "-light", "0.3,0.8,0.2,1,1,1",
               "-absorb", "0.05,0.05,0.05", "-scatter", "0.3,0.3,0.3", "-gain", "0"]

@@ -17,7 +17,8 @@ std::vector<fs::path> corpus_files(std::string_view folder, const std::vector<st
     for (const fs::path& collection : collections) {
         if (!fs::is_directory(collection / folder)) continue;
         for (const auto& entry : fs::recursive_directory_iterator(collection / folder)) {
-            const bool wanted = extensions.empty() || std::ranges::count(extensions, entry.path().extension().string()) > 0;
+            const bool wanted =
+                extensions.empty() || std::ranges::count(extensions, entry.path().extension().string()) > 0;
             if (entry.is_regular_file() && wanted) found.emplace(entry.path().lexically_relative(collection), entry);
         }
     }

@@ -50,7 +50,7 @@ Settings sampled_settings() {
 
 Settings sliced_settings() {
     Settings settings = sampled_settings();
-    settings.march.visibility = Visibility::slices;
+    settings.march.visibility = Visibility::intervals;
     return settings;
 }
 }

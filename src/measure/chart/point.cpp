@@ -141,7 +141,7 @@ bool lights_only(const Mode& mode) { return mode.accuracy == Accuracy::multiple_
 
 Settings settings_of(const ChartRung& rung) {
     Settings settings = rung.candidate.settings;
-    if (lights_only(*rung.mode)) settings.path.orders = 1, settings.path.ambient = settings.path.emission = false;
+    if (lights_only(*rung.mode)) settings.path.orders = 1, settings.terms.ambient = settings.terms.emission = false;
     return settings;
 }
 

@@ -26,14 +26,14 @@ Settings truth_for(const Snapshot& snapshot, const Settings& settings, int light
     Settings truth = truth_of(settings);
     truth.fluence.orders = 1;
     if (std::ranges::any_of(snapshot.lights, is_soft))
-        truth.march.light_points = std::max(truth.march.light_points, light_points);
+        truth.terms.light_points = std::max(truth.terms.light_points, light_points);
     return truth;
 }
 
 void add_depths(RayScene& scene) {
-    const MarchSettings& march = scene.truth.march;
+    const TermSettings& terms = scene.truth.terms;
     for (const Light& light : scene.fog.lights) {
-        scene.depths.push_back(make_light_depth(scene.fog, light, march.light, march.light_resolution, &scene.view));
+        scene.depths.push_back(make_light_depth(scene.fog, light, terms.light, terms.light_resolution, &scene.view));
         scene.depths.back().scale = scene.truth.style.light_depth;
     }
 }
@@ -50,7 +50,7 @@ void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
     }
     for (const Medium& medium : scene.snapshot.media) story.media.push_back({medium.name, 0});
     story.reference.mode = "reference", story.reference.accuracy = Accuracy::single_scattering;
-    story.reference.samples = std::ranges::any_of(scene.snapshot.lights, is_soft) ? scene.truth.march.light_points : 1;
+    story.reference.samples = std::ranges::any_of(scene.snapshot.lights, is_soft) ? scene.truth.terms.light_points : 1;
 }
 
 // Fog light of one part by the reference, light by light.
@@ -75,7 +75,7 @@ void add_reference(const Prepared& prepared, const RayPart& part, RayStory& stor
 void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const Stretches& s,
                  const SurfacePoint& point, double distance, RayStory& story) {
     const Path& path = s.path[0];
-    const uint32_t points = static_cast<uint32_t>(scene.truth.march.light_points);
+    const uint32_t points = static_cast<uint32_t>(scene.truth.terms.light_points);
     std::vector<vec2> u(points);
     for (uint32_t p = 0; p < points; ++p) {
         const Sample2 random = sample2(path.place.index * points + p, hash(path.seed, layer, use_soft_light));
@@ -155,8 +155,9 @@ std::string name_of_instance(const Snapshot& snapshot, int instance) {
 RayStory explain_ray(const View& view, const Snapshot& snapshot, const Settings& settings, ivec2 pixel,
                      const ExplainOptions& options) {
     const Settings truth = truth_for(snapshot, settings, options.light_points);
-    RayScene scene{centered(view), snapshot, settings, truth, march_snapshot(snapshot, truth.march, truth.style), {},
-                   options};
+    RayScene scene{
+        centered(view), snapshot, settings, truth, with_terms(stylised(snapshot, truth.style), truth.terms), {},
+        options};
     add_depths(scene);
     RayStory story;
     start_story(scene, pixel, story);

@@ -20,7 +20,7 @@ FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view,
             scene.snapshot,
             prepared.scatter,
             mode.surfaces,
-            scene.settings.march.light_points,
+            scene.settings.terms.light_points,
             prepared.light_depths};
 }
 

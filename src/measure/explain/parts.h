@@ -19,7 +19,7 @@ struct RayScene {
     const Occluders* occluders() const { return snapshot.occluders.get(); }
     // Points of a light that are asked for its shadows.
     uint32_t points_of(const Light& light) const {
-        return is_soft(light) ? static_cast<uint32_t>(truth.march.light_points) : 1;
+        return is_soft(light) ? static_cast<uint32_t>(truth.terms.light_points) : 1;
     }
 };
 

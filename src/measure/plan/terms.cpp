@@ -66,7 +66,7 @@ struct Terms {
     const Pilot& with_marched_light() {
         if (marched) return *marched;
         Settings truth = base;
-        truth.march.light = LightTransmittance::marched;
+        truth.terms.light = LightTransmittance::marched;
         return *(marched = make(truth));
     }
     SquaredError error_of(const Pilot& against, const Variant& variant) const {
@@ -140,7 +140,7 @@ void add_dimming(Terms& terms, double thickest) {
         const double bound = way == LightTransmittance::off ? std::expm1(thickest) : infinity;
         terms.add({"dimming of light on its way", "", name}, bound, &Terms::with_marched_light, [&, way = way] {
             Variant variant = terms.changed();
-            variant.settings.march.light = way;
+            variant.settings.terms.light = way;
             return variant;
         });
         if (!terms.terms.back().needed) return;
@@ -162,23 +162,23 @@ double phase_bound(const Snapshot& snapshot) {
 void add_switches(Terms& terms) {
     const Snapshot& snapshot = terms.snapshot;
     const auto any_medium = [&](auto&& says) { return std::ranges::any_of(snapshot.media, says); };
-    const auto without = [&](bool MarchSettings::*term) {
+    const auto without = [&](bool TermSettings::*term) {
         return [&terms, term] {
             Variant variant = terms.changed();
-            variant.settings.march.*term = false;
+            variant.settings.terms.*term = false;
             return variant;
         };
     };
     const bool bricks = any_medium([](const Medium& medium) { return medium.kind == DensityKind::bricks; });
     terms.add({"changing density", "", "even fog"}, bricks ? infinity : 0, &Terms::usual,
-              without(&MarchSettings::heterogeneity));
+              without(&TermSettings::heterogeneity));
     terms.add({"direction of scattering", "", "isotropic"}, phase_bound(snapshot), &Terms::usual,
-              without(&MarchSettings::phase));
+              without(&TermSettings::phase));
     const bool glows = any_medium([](const Medium& medium) { return max_component(medium.optics.emission) > 0; });
-    terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&MarchSettings::emission));
+    terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&TermSettings::emission));
     const bool ambient = max_component(snapshot.ambient) > 0;
     terms.add({"ambient light in fog", "", "left out"}, ambient ? infinity : 0, &Terms::usual,
-              without(&MarchSettings::ambient));
+              without(&TermSettings::ambient));
 }
 
 void add_surfaces(Terms& terms, double thickest) {
@@ -236,22 +236,22 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
 }
 
 Settings without_needless(const std::vector<Term>& terms, Settings settings) {
-    MarchSettings& march = settings.march;
+    TermSettings& switches = settings.terms;
     bool shadows = false, needless = false;
     for (const Term& term : terms) {
         if (term.name == "shadows") (term.needed ? shadows : needless) |= term.bound > 0;
         if (term.name == "light scattered again" && !term.needed) settings.fluence.orders = 1;
         if (term.needed || term.bound == 0) continue; // switching off what is not there changes nothing
         if (term.name == "dimming of light on its way" && term.simpler == "left out")
-            march.light = LightTransmittance::off;
+            switches.light = LightTransmittance::off;
         if (term.name == "dimming of light on its way" && term.simpler == "average")
-            march.light = LightTransmittance::average;
-        if (term.name == "changing density") march.heterogeneity = false;
-        if (term.name == "direction of scattering") march.phase = false;
-        if (term.name == "emission") march.emission = false;
-        if (term.name == "ambient light in fog") march.ambient = false;
+            switches.light = LightTransmittance::average;
+        if (term.name == "changing density") switches.heterogeneity = false;
+        if (term.name == "direction of scattering") switches.phase = false;
+        if (term.name == "emission") switches.emission = false;
+        if (term.name == "ambient light in fog") switches.ambient = false;
     }
-    if (needless && !shadows) march.visibility = Visibility::off;
+    if (needless && !shadows) settings.march.visibility = Visibility::off;
     return settings;
 }
 }

@@ -124,7 +124,7 @@ Layers Trial::render(const StressScene& what, History* history) {
 Layers Trial::truth_of_scene(const StressScene& what) {
     Settings settings = truth_of(what.settings);
     View view = what.view;
-    if (std::ranges::any_of(what.snapshot.lights, is_soft)) settings.march.light_points = 16, view.pixel_samples = 8;
+    if (std::ranges::any_of(what.snapshot.lights, is_soft)) settings.terms.light_points = 16, view.pixel_samples = 8;
     FrameOptions options;
     options.cancel = cancel;
     FrameStats stats;

@@ -151,7 +151,7 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     exact.settings.pixel.filter = PixelFilter::center;
     // Points on soft lights are all that is random in it: batches of them tell how far their mean is to be trusted.
     const bool soft = std::ranges::any_of(snapshot.lights, is_soft);
-    exact.settings.pixel.samples = exact.batches = soft ? 8 : 1, exact.settings.march.light_points = soft ? 16 : 1;
+    exact.settings.pixel.samples = exact.batches = soft ? 8 : 1, exact.settings.terms.light_points = soft ? 16 : 1;
     const auto part = [&](double from, double to) {
         return [&checks, from, to](double done) {
             if (checks.progress) checks.progress(from + (to - from) * done);

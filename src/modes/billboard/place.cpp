@@ -86,7 +86,7 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
     const Light& light = snapshot.lights[index];
     const bool blocked = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
     if (settings.cards == 0 || (!blocked && light.kind != LightKind::spot)) return;
-    const Openings openings = find_openings(light, snapshot, settings);
+    const Openings openings = find_openings(light, snapshot);
     open = openings.open;
     const auto add = [&](BeamCard card) {
         if (!(glm::length(card.to - card.from) > 1e-4f)) return;
@@ -151,7 +151,7 @@ KeptKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
         key.bits += light.name;
     }
     for (const Medium& medium : snapshot.media) key.add(medium.world_bounds);
-    return key.add(settings.cards).add(settings.rays).add(settings.gaps);
+    return key.add(settings.cards).add(settings.gaps);
 }
 }
 

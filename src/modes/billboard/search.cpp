@@ -128,10 +128,11 @@ std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>&
     return parts;
 }
 
-Openings find_openings(const Light& light, const Snapshot& snapshot, const BillboardSettings& settings) {
+Openings find_openings(const Light& light, const Snapshot& snapshot) {
     // A sun's first look only finds out where to look closer.
     const bool sun = light.kind == LightKind::sun;
-    const int rays = settings.rays, first = sun ? (rays + 1) / 2 : rays;
+    constexpr int rays = 128; // across the light's view that looks for openings
+    const int first = sun ? (rays + 1) / 2 : rays;
     Openings result{light_view(light, snapshot, first, false), {}, {}};
     look(snapshot, result);
     result.large = large_share * static_cast<float>(result.cells.size());

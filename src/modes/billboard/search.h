@@ -38,7 +38,7 @@ struct Openings {
     float large = 0; // number of cells above which an opening is cut up
     float open = 0;  // lit share of the grid of a sun in the open
 };
-Openings find_openings(const Light& light, const Snapshot& snapshot, const BillboardSettings& settings);
+Openings find_openings(const Light& light, const Snapshot& snapshot);
 
 // Cuts an opening into `count` parts of like size.
 std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>& cells, int count);

@@ -10,8 +10,6 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
     };
     number("cards", "", 0, 256, "most cards found per light, largest openings first; 0 = hand-placed ones only",
            TYNDALL_FIELD(of<BillboardSettings>().cards));
-    number("rays", "", 8, 1024, "rays across the light's view that looks for openings",
-           TYNDALL_FIELD(of<BillboardSettings>().rays));
     rows.push_back(
         choice_row("billboard.facing", {"axis", "camera", "cross"},
                    "how cards turn: about their beam towards the eye, square to the view, or not at all, two "
@@ -44,11 +42,8 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
 }
 
 std::vector<Rung> billboard_rungs() {
-    return {{"", "pixel.samples=1 billboard.cards=8 billboard.rays=32"},
-            {"", "pixel.samples=1 billboard.cards=16 billboard.rays=64"},
-            {"", "pixel.samples=1 billboard.cards=64 billboard.rays=128"},
-            {"", "pixel.samples=4 billboard.cards=64 billboard.rays=128"},
-            {"", "pixel.samples=16 billboard.cards=128 billboard.rays=192"},
-            {"", "pixel.samples=64 billboard.cards=256 billboard.rays=256"}};
+    return {{"", "pixel.samples=1 billboard.cards=8"},    {"", "pixel.samples=1 billboard.cards=16"},
+            {"", "pixel.samples=1 billboard.cards=64"},   {"", "pixel.samples=4 billboard.cards=64"},
+            {"", "pixel.samples=16 billboard.cards=128"}, {"", "pixel.samples=64 billboard.cards=256"}};
 }
 }

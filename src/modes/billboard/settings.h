@@ -9,7 +9,6 @@ enum class CardFacing { axis, camera, cross };
 
 struct BillboardSettings {
     int cards = 64; // most per light, largest openings first
-    int rays = 128; // across the light's view that looks for openings
     CardFacing facing = CardFacing::axis;
     float brightness = 1;    // factor on all cards and veils
     float veil = 0.5f;       // share of the open air's fog that is taken for lit

@@ -115,7 +115,7 @@ float AnchoredFog::extinction() const {
 }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    Snapshot seen = stylised(snapshot, settings.style);
+    Snapshot seen = with_terms(stylised(snapshot, settings.style), settings.terms);
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);

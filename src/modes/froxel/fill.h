@@ -21,7 +21,7 @@ struct FroxelScene {
     std::vector<LightDepth> depths;                          // one per light
     std::vector<std::unique_ptr<const GridColumns>> columns; // of their grids; null where there is none
     std::vector<ConeFalloff> cones;                          // one per light
-    // With FroxelVisibility::slices: of each light that all lines see the same point of, its shadows as the grid's
+    // With FroxelVisibility::intervals: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
     ShadowSlices slices;

@@ -36,15 +36,9 @@ struct FroxelFrame {
 
 // The scene as the settings see it.
 void set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
-    const MarchSettings& terms = settings.march;
-    scene.snapshot = stylised(snapshot, settings.style);
+    const TermSettings& terms = settings.terms;
+    scene.snapshot = with_terms(stylised(snapshot, settings.style), terms);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
-    if (!terms.heterogeneity) scene.snapshot.media = even_media(scene.snapshot.media);
-    for (Medium& medium : scene.snapshot.media) {
-        if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
-        if (!terms.emission) medium.optics.emission = vec3(0);
-    }
-    if (!terms.ambient) scene.snapshot.ambient = vec3(0);
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
@@ -59,7 +53,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.cones.push_back(cone_falloff(light));
     }
     scene.fluence = kept_fluence(scene.snapshot, settings.fluence, view.seed);
-    if (scene.settings.visibility != FroxelVisibility::slices || !snapshot.occluders) return;
+    if (scene.settings.visibility != FroxelVisibility::intervals || !snapshot.occluders) return;
     if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
 }
 
@@ -76,7 +70,7 @@ Camera tile_camera(const FroxelGrid& grid) {
 void set_shadows(FroxelFrame& frame, FroxelStill& still) {
     FroxelScene& scene = frame.scene;
     const Occluders* occluders = scene.snapshot.occluders.get();
-    if (scene.settings.visibility != FroxelVisibility::slices || !occluders || occluders->empty()) return;
+    if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
     const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
     constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
     for (const Light& light : scene.snapshot.lights) {

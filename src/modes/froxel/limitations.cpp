@@ -100,7 +100,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
     if (std::ranges::any_of(snapshot.media, unbounded))
         limitations.push_back({Severity::info, &limitation::few_far_slices, Subject::setting, "froxel.depth_slices"});
-    if (froxel.visibility == FroxelVisibility::slices && snapshot.occluders && snapshot.occluders->has_alpha())
+    if (froxel.visibility == FroxelVisibility::intervals && snapshot.occluders && snapshot.occluders->has_alpha())
         limitations.push_back({Severity::info, &limitation::rays_for_alpha, Subject::setting, "froxel.visibility"});
     return limitations;
 }

@@ -14,12 +14,12 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("froxel.depth_growth", "", 0.1, 256,
                               "how many times as thick the last slice is as the first; 1 = all the same",
                               TYNDALL_FIELD(of<FroxelSettings>().depth_growth)));
-    rows.push_back(choice_row("froxel.visibility", {"off", "rays", "slices"},
-                              "shadows of surfaces in the fog; rays = sampled in each froxel, slices = the exact lit "
-                              "share of the line through its middle",
+    rows.push_back(choice_row("froxel.visibility", {"off", "rays", "intervals"},
+                              "shadows of surfaces in the fog; rays = sampled in each froxel, intervals = the exact "
+                              "lit share of the line through its middle",
                               TYNDALL_FIELD(of<FroxelSettings>().visibility)));
     rows.push_back(number_row("froxel.shadow_rays", "", 1, 256,
-                              "points of each froxel at which light and fog are sampled; with slices, points of a "
+                              "points of each froxel at which light and fog are sampled; with intervals, points of a "
                               "soft light",
                               TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
     rows.push_back(choice_row("froxel.lookup", {"trilinear", "tricubic", "jittered"},
@@ -43,11 +43,11 @@ void set_froxel_quality(Settings& settings, Quality quality) {
 
 std::vector<Rung> froxel_rungs() {
     return {
-        {"", "pixel.samples=1 froxel.tile=24 froxel.depth_slices=32 froxel.shadow_rays=1 march.light_resolution=32"},
-        {"", "pixel.samples=1 froxel.tile=16 froxel.depth_slices=48 froxel.shadow_rays=1 march.light_resolution=32"},
-        {"", "pixel.samples=1 froxel.tile=8 froxel.depth_slices=64 froxel.shadow_rays=1 march.light_resolution=64"},
-        {"", "pixel.samples=4 froxel.tile=4 froxel.depth_slices=96 froxel.shadow_rays=2 march.light_resolution=96"},
-        {"", "pixel.samples=16 froxel.tile=2 froxel.depth_slices=160 froxel.shadow_rays=4 march.light_resolution=128"},
-        {"", "pixel.samples=32 froxel.tile=2 froxel.depth_slices=256 froxel.shadow_rays=8 march.light_resolution=192"}};
+        {"", "pixel.samples=1 froxel.tile=24 froxel.depth_slices=32 froxel.shadow_rays=1 terms.light_resolution=32"},
+        {"", "pixel.samples=1 froxel.tile=16 froxel.depth_slices=48 froxel.shadow_rays=1 terms.light_resolution=32"},
+        {"", "pixel.samples=1 froxel.tile=8 froxel.depth_slices=64 froxel.shadow_rays=1 terms.light_resolution=64"},
+        {"", "pixel.samples=4 froxel.tile=4 froxel.depth_slices=96 froxel.shadow_rays=2 terms.light_resolution=96"},
+        {"", "pixel.samples=16 froxel.tile=2 froxel.depth_slices=160 froxel.shadow_rays=4 terms.light_resolution=128"},
+        {"", "pixel.samples=32 froxel.tile=2 froxel.depth_slices=256 froxel.shadow_rays=8 terms.light_resolution=192"}};
 }
 }

@@ -5,15 +5,14 @@
 namespace tyndall {
 struct Rung;
 
-enum class FroxelVisibility { off, rays, slices };
+enum class FroxelVisibility { off, rays, intervals };
 enum class FroxelLookup { trilinear, tricubic, jittered };
 
-// Terms of the light (phase, heterogeneity, emission, ambient, light-side transmittance) are those of the march.
 struct FroxelSettings {
     int tile = 8; // pixels
     int depth_slices = 64;
     float depth_growth = 4; // thickness of the last slice over that of the first
-    FroxelVisibility visibility = FroxelVisibility::slices;
+    FroxelVisibility visibility = FroxelVisibility::intervals;
     int shadow_rays = 1; // per froxel and frame
     FroxelLookup lookup = FroxelLookup::trilinear;
     float history = 0.9f; // weight of the frames before

@@ -79,7 +79,7 @@ FroxelStill look_at_scene(const View& view, const Snapshot& snapshot, const Frox
 }
 
 FroxelLight fill_still_froxels(const FroxelScene& scene, FroxelStill& still, FillPass pass) {
-    const bool one_look = scene.settings.visibility == FroxelVisibility::slices && scene.settings.shadow_rays == 1;
+    const bool one_look = scene.settings.visibility == FroxelVisibility::intervals && scene.settings.shadow_rays == 1;
     if (!one_look || !still.same_fog) return fill_froxels(scene, still.grid, still.tiles, pass);
     still.extinctions.resize(still.tiles.rays());
     std::shared_ptr<const RecycledFloats>& here =

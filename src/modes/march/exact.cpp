@@ -237,7 +237,7 @@ dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_i
     const Light& light = march.snapshot.lights[light_index];
     const Occluders* occluders = march.snapshot.occluders.get();
     const bool apart = light.shadows && occluders && occluders->has_alpha();
-    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(march.settings.light_points) : 1;
+    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(march.light_points) : 1;
     std::vector<LitPart>& lit = on.scratch.lit;
     std::vector<LitEnd>& ends = on.scratch.ends;
     dvec3 sum(0);
@@ -275,7 +275,7 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
     if (fog.pieces.empty()) return;
 
     const double stretch = fog.pieces.back().high - fog.pieces.front().low;
-    on.longest = std::min<double>(march.settings.step_length, march.settings.step_share * stretch);
+    on.longest = march.settings.step_share * stretch;
     dvec3 sum = glow(on);
     if (march.fluence) sum += scattered_before(on);
     const std::vector<Light>& lights = march.snapshot.lights;

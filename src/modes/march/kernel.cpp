@@ -86,8 +86,7 @@ Floats visible_share(const March& march, const Light& light, const Points& point
     const auto key = [&](size_t lane) {
         return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
     };
-    return share_by_rays(*march.snapshot.occluders, light, points.position, light_at, wanted,
-                         march.settings.light_points, key);
+    return share_by_rays(*march.snapshot.occluders, light, points.position, light_at, wanted, march.light_points, key);
 }
 
 // Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.

@@ -16,6 +16,7 @@ namespace tyndall {
 struct March {
     Snapshot snapshot; // media as the settings see them
     MarchSettings settings;
+    int light_points = 1; // of a soft light
     StyleSettings style;
     Camera camera;                  // for style.range
     std::vector<LightDepth> depths; // one per light

@@ -20,10 +20,10 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
         for (const Light& light : snapshot.lights)
             if (light.shadows)
                 limitations.push_back({Severity::wrong, &limitation::visibility_off, Subject::light, light.name});
-    if (alpha && (visibility == Visibility::slices || visibility == Visibility::exact))
+    if (alpha && (visibility == Visibility::intervals || visibility == Visibility::exact))
         limitations.push_back(
             {Severity::info, &limitation::sampled_alpha_shadows, Subject::setting, "march.visibility"});
-    if (visibility == Visibility::slices && !alpha)
+    if (visibility == Visibility::intervals && !alpha)
         for (const Light& light : snapshot.lights)
             if (casts(light, snapshot) && shadows_by(light, *snapshot.occluders) == ShadowsBy::rays)
                 limitations.push_back({Severity::info,
@@ -36,18 +36,18 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
 }
 
 Limitations march_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    const MarchSettings& march = settings.march;
+    const TermSettings& terms = settings.terms;
     Limitations limitations;
     if (settings.fluence.orders < 2)
         add_single_scattering(view, snapshot, limitations);
     else
         add_fluence(view, snapshot, settings.fluence, limitations);
-    if (march.light == LightTransmittance::grid) add_light_grid_cells(snapshot, march.light_resolution, limitations);
+    if (terms.light == LightTransmittance::grid) add_light_grid_cells(snapshot, terms.light_resolution, limitations);
     for (const Medium& medium : snapshot.media)
-        if (!march.heterogeneity && medium.kind == DensityKind::bricks)
+        if (!terms.heterogeneity && medium.kind == DensityKind::bricks)
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_visibility(view, snapshot, settings, limitations);
-    add_light_transmittance(snapshot, march.light, limitations);
+    add_light_transmittance(snapshot, terms.light, limitations);
     if (snapshot.scene)
         for (const Material& material : snapshot.scene->materials)
             if (max_component(material.emission) > 0)

@@ -33,11 +33,11 @@ namespace {
 ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const Settings& settings) {
     auto fog = std::make_shared<LitFog>();
     const MarchSettings& march = settings.march;
-    fog->snapshot = march_snapshot(snapshot, settings.march, settings.style), fog->style = settings.style;
-    fog->nodes = march.nodes, fog->light_points = march.light_points;
+    fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
+    fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     const auto by = [&](const Light& light) { return shadows_by(light, *snapshot.occluders); };
-    add_lights(view, march.light, march.light_resolution, by, *fog);
+    add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
     std::vector<Light> sampled; // lights that the steps have to find the shadows of
     for (size_t i = 0; i < fog->shadows.size(); ++i)
         if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
@@ -49,13 +49,14 @@ ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const
 }
 
 ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
-    if (settings.march.visibility == Visibility::slices) return prepare_slices(view, snapshot, settings);
+    if (settings.march.visibility == Visibility::intervals) return prepare_slices(view, snapshot, settings);
     auto march = std::make_shared<March>();
-    march->snapshot = march_snapshot(snapshot, settings.march, settings.style);
-    march->settings = settings.march, march->style = settings.style, march->camera = view.camera;
+    march->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms);
+    march->settings = settings.march, march->light_points = settings.terms.light_points, march->style = settings.style,
+    march->camera = view.camera;
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(
-            make_light_depth(march->snapshot, light, settings.march.light, settings.march.light_resolution, &view));
+            make_light_depth(march->snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
     }
@@ -78,6 +79,7 @@ Mode march_mode() {
             .append_rows = append_march_rows,
             .set_quality = set_march_quality,
             .rungs = march_rungs,
+            .also_reads = "shadow_map", // with march.visibility=maps
             .color = "#0072B2",
             .adds_fluence = true,
             .samples_soft_lights = true};

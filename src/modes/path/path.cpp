@@ -15,7 +15,7 @@ bool glimmers(const PathTracer& tracer) {
     if (max_component(tracer.snapshot.ambient) > 0) return true;
     for (const Medium& medium : tracer.snapshot.media)
         if (max_component(medium.optics.emission) > 0) return true;
-    if (tracer.settings.emission && tracer.snapshot.scene)
+    if (tracer.surfaces_emit && tracer.snapshot.scene)
         for (const Material& material : tracer.snapshot.scene->materials)
             if (max_component(material.emission) > 0) return true;
     return false;
@@ -24,13 +24,10 @@ bool glimmers(const PathTracer& tracer) {
 
 ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto tracer = std::make_shared<PathTracer>();
-    tracer->snapshot = snapshot;
-    tracer->settings = settings.path;
+    tracer->snapshot = with_terms(snapshot, settings.terms);
+    tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
-    if (!settings.path.ambient) tracer->snapshot.ambient = vec3(0);
-    if (!settings.path.emission)
-        for (Medium& medium : tracer->snapshot.media) medium.optics.emission = vec3(0);
-    if (settings.path.emission) tracer->glow = make_glow(tracer->snapshot);
+    if (tracer->surfaces_emit) tracer->glow = make_glow(tracer->snapshot);
     tracer->glimmers = glimmers(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }

@@ -157,7 +157,7 @@ void turn(const Walk& walk, const Line& line, Ray ray, vec3 share, float density
 
 void meet_surface(const Walk& walk, Line& line, const SurfacePoint& surface, int instance, int triangle) {
     const float share = line.through * surface.alpha;
-    if (walk.tracer.settings.emission && max_component(surface.emission) > 0) {
+    if (walk.tracer.surfaces_emit && max_component(surface.emission) > 0) {
         const float aimed =
             line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
         const float weight = aimed > 0 ? line.walker.density / (line.walker.density + aimed) : 1;

@@ -15,6 +15,7 @@ namespace tyndall {
 struct PathTracer {
     Snapshot snapshot;
     PathSettings settings;
+    bool surfaces_emit = true;
     Camera camera;
     ivec2 size{0};
     Glow glow;

@@ -44,7 +44,7 @@ Totals march_rays(const Packet& packet) {
 void march_sun(const Packet& packet, size_t index) {
     const Scratch& scratch = packet.scratch;
     const RaysInMap rays(packet, index);
-    const int lookups = rays.map.empty() ? 1 : packet.march.settings.lookups;
+    const int lookups = rays.map.empty() ? 1 : map_lookups;
     const float part = 1 / static_cast<float>(lookups);
     Sixteen* scattered = packet.scratch.scattered.data() + index * packet.media();
     const Lit* lit_steps = scratch.lit.data() + index * static_cast<size_t>(packet.steps);

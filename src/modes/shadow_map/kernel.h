@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace tyndall {
+inline constexpr int map_lookups = 4; // of each step, in the shadow maps: narrow shafts need more than fog does
+
 // What the march needs, made once per frame.
 struct ShadowMapMarch {
     Snapshot snapshot; // media and lights as the settings see them

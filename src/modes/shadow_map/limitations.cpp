@@ -32,13 +32,12 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     // What a march cannot do this one cannot either.
     Settings like = settings;
     like.fluence.orders = 1;
-    like.march.visibility = Visibility::rays, like.march.light = LightTransmittance::grid;
+    like.march.visibility = Visibility::rays, like.terms.light = without_froxels(settings.terms.light);
     Limitations limitations = main_mode().limitations(view, snapshot, like);
     const ShadowMapSettings& own = settings.of<ShadowMapSettings>();
     add_map_shadows(view, snapshot, settings, limitations);
     add_steps(view, snapshot, own.steps, true, limitations);
     add_few_steps(view, snapshot, own.steps, limitations);
-    add_light_transmittance(snapshot, own.light, limitations);
     return limitations;
 }
 }

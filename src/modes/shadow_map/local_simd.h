@@ -102,7 +102,7 @@ struct Turning {
 // Share of a local light in one step that surfaces let through.
 HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, const Turning& turning,
                                const Floats& nearest) {
-    const int lookups = rays.map.empty() ? 1 : packet.march.settings.lookups;
+    const int lookups = rays.map.empty() ? 1 : map_lookups;
     const float part = 1 / static_cast<float>(lookups);
     Floats share = 0.0f;
     for (int i = 0; i < lookups; ++i)

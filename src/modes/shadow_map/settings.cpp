@@ -8,9 +8,6 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.steps", "", 1, 1024,
                               "steps along each ray through the fog, and as many along what each local light reaches",
                               TYNDALL_FIELD(of<ShadowMapSettings>().steps)));
-    rows.push_back(number_row("shadow_map.lookups", "", 1, 64,
-                              "points of each step whose shadows are looked up: narrow shafts need more than fog does",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().lookups)));
     rows.push_back(choice_row("shadow_map.spacing", {"angle", "distance"},
                               "steps of local lights: even in the angle around the light, or even along the ray",
                               TYNDALL_FIELD(of<ShadowMapSettings>().spacing)));
@@ -26,9 +23,6 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.bias", "texels", 0, 64,
                               "moves surfaces away from the light; fog needs none, and light leaks by as much",
                               TYNDALL_FIELD(of<ShadowMapSettings>().bias)));
-    rows.push_back(choice_row("shadow_map.light", {"off", "average", "froxel", "grid", "marched"},
-                              "fog between light and fog, as march.light; cells: march.light_resolution",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().light)));
     rows.push_back(choice_row("shadow_map.picture", picture_shares,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
@@ -42,21 +36,19 @@ void set_shadow_map_quality(Settings& settings, Quality quality) {
     ShadowMapSettings& shadow_map = settings.of<ShadowMapSettings>();
     if (quality == Quality::draft) shadow_map.steps = 16, shadow_map.resolution = 256;
     if (quality == Quality::final) shadow_map.steps = 64, shadow_map.resolution = 2048, shadow_map.pcf = 1;
-    if (quality == Quality::reference)
-        shadow_map.steps = 256, shadow_map.resolution = 4096, shadow_map.pcf = 1,
-        shadow_map.light = LightTransmittance::marched;
+    if (quality == Quality::reference) shadow_map.steps = 256, shadow_map.resolution = 4096, shadow_map.pcf = 1;
 }
 
 std::vector<Rung> shadow_map_rungs() {
     return {
-        {"", "pixel.samples=1 shadow_map.steps=8 shadow_map.resolution=256 march.light_resolution=32"},
-        {"", "pixel.samples=1 shadow_map.steps=16 shadow_map.resolution=256 march.light_resolution=32"},
-        {"", "pixel.samples=2 shadow_map.steps=24 shadow_map.resolution=512 march.light_resolution=64"},
+        {"", "pixel.samples=1 shadow_map.steps=8 shadow_map.resolution=256 terms.light_resolution=32"},
+        {"", "pixel.samples=1 shadow_map.steps=16 shadow_map.resolution=256 terms.light_resolution=32"},
+        {"", "pixel.samples=2 shadow_map.steps=24 shadow_map.resolution=512 terms.light_resolution=64"},
         {"",
-         "pixel.samples=4 shadow_map.steps=48 shadow_map.resolution=1024 shadow_map.pcf=1 march.light_resolution=64"},
+         "pixel.samples=4 shadow_map.steps=48 shadow_map.resolution=1024 shadow_map.pcf=1 terms.light_resolution=64"},
         {"",
-         "pixel.samples=16 shadow_map.steps=64 shadow_map.resolution=2048 shadow_map.pcf=1 march.light_resolution=128"},
+         "pixel.samples=16 shadow_map.steps=64 shadow_map.resolution=2048 shadow_map.pcf=1 terms.light_resolution=128"},
         {"", "pixel.samples=64 shadow_map.steps=128 shadow_map.resolution=4096 shadow_map.pcf=1 "
-             "march.light_resolution=192"}};
+             "terms.light_resolution=192"}};
 }
 }

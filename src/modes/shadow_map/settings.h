@@ -9,14 +9,12 @@ struct Rung;
 enum class Spacing { angle, distance };
 
 struct ShadowMapSettings {
-    int steps = 24;  // per ray, and per local light on what it reaches
-    int lookups = 4; // in the maps, per step
+    int steps = 24; // per ray, and per local light on what it reaches
     Spacing spacing = Spacing::angle;
     int resolution = 512; // texels across each map
     int cascades = 3;     // most maps of a sun
     int pcf = 0;          // 0 nearest texel, 1 the four around, 2 sixteen
     float bias = 0;       // texels
-    LightTransmittance light = LightTransmittance::grid;
     PictureShare picture = PictureShare::full;
     bool blur = false; // of the jitter's pattern
 };

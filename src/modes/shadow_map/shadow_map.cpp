@@ -29,13 +29,13 @@ float fog_detail(std::span<const Medium> media) {
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
-    march->snapshot = march_snapshot(snapshot, settings.march, settings.style);
+    march->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
     march->maps = make_shadow_maps(view, march->snapshot, settings);
     for (const Light& light : march->snapshot.lights) {
-        march->depths.push_back(make_light_depth(march->snapshot, light, settings.of<ShadowMapSettings>().light,
-                                                 settings.march.light_resolution, &view));
+        march->depths.push_back(make_light_depth(march->snapshot, light, without_froxels(settings.terms.light),
+                                                 settings.terms.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
     }

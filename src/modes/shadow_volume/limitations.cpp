@@ -12,11 +12,13 @@
 
 namespace tyndall {
 namespace {
-void add_fog(const View& view, const Snapshot& snapshot, const ShadowVolumeSettings& settings,
-             Limitations& limitations) {
-    if (samples_fog(snapshot, settings)) {
-        add_steps(view, snapshot, settings.steps, false, limitations);
-        add_light_grid_cells(snapshot, settings.light_resolution, limitations);
+void add_fog(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
+    const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
+    const bool sampled = settings.terms.heterogeneity && samples_fog(snapshot, own);
+    if (sampled) {
+        add_steps(view, snapshot, own.steps, false, limitations);
+        if (without_froxels(settings.terms.light) == LightTransmittance::grid)
+            add_light_grid_cells(snapshot, settings.terms.light_resolution, limitations);
     } else {
         for (const Medium& medium : snapshot.media)
             if (medium.kind == DensityKind::bricks)
@@ -48,11 +50,11 @@ void add_shadows(const Snapshot& snapshot, Limitations& limitations) {
 }
 
 Limitations shadow_volume_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     Limitations limitations;
-    if (own.draw == ShadowDraw::shells)
+    if (settings.of<ShadowVolumeSettings>().draw == ShadowDraw::shells)
         limitations.push_back({Severity::wrong, &limitation::shells, Subject::setting, "shadow_volume.draw"});
-    add_fog(view, snapshot, own, limitations);
+    add_fog(view, snapshot, settings, limitations);
+    add_light_transmittance(snapshot, settings.terms.light, limitations);
     add_shadows(snapshot, limitations);
     return limitations;
 }

@@ -16,9 +16,6 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().nodes)));
     rows.push_back(number_row("shadow_volume.steps", "", 1, 4096, "steps along a ray where fog is sampled",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().steps)));
-    rows.push_back(number_row("shadow_volume.light_resolution", "cells", 4, 1024,
-                              "cells across the fog in the light's grid where fog is sampled",
-                              TYNDALL_FIELD(of<ShadowVolumeSettings>().light_resolution)));
     rows.push_back(number_row("shadow_volume.shell_length", "m", 0, 1e6,
                               "distance behind the occluder at which a shell has faded out; 0 = half the scene's "
                               "diagonal",
@@ -30,20 +27,17 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
 
 void set_shadow_volume_quality(Settings& settings, Quality quality) {
     ShadowVolumeSettings& shadow_volume = settings.of<ShadowVolumeSettings>();
-    if (quality == Quality::draft)
-        shadow_volume.nodes = 3, shadow_volume.steps = 16, shadow_volume.light_resolution = 32;
-    if (quality == Quality::final)
-        shadow_volume.nodes = 6, shadow_volume.steps = 128, shadow_volume.light_resolution = 128;
-    if (quality == Quality::reference)
-        shadow_volume.nodes = 16, shadow_volume.steps = 1024, shadow_volume.light_resolution = 256;
+    if (quality == Quality::draft) shadow_volume.nodes = 3, shadow_volume.steps = 16;
+    if (quality == Quality::final) shadow_volume.nodes = 6, shadow_volume.steps = 128;
+    if (quality == Quality::reference) shadow_volume.nodes = 16, shadow_volume.steps = 1024;
 }
 
 std::vector<Rung> shadow_volume_rungs() {
-    return {{"", "pixel.samples=1 shadow_volume.nodes=2 shadow_volume.steps=8 shadow_volume.light_resolution=32"},
-            {"", "pixel.samples=1 shadow_volume.nodes=3 shadow_volume.steps=16 shadow_volume.light_resolution=32"},
-            {"", "pixel.samples=2 shadow_volume.nodes=4 shadow_volume.steps=24 shadow_volume.light_resolution=64"},
-            {"", "pixel.samples=4 shadow_volume.nodes=4 shadow_volume.steps=48 shadow_volume.light_resolution=64"},
-            {"", "pixel.samples=16 shadow_volume.nodes=6 shadow_volume.steps=128 shadow_volume.light_resolution=128"},
-            {"", "pixel.samples=64 shadow_volume.nodes=8 shadow_volume.steps=256 shadow_volume.light_resolution=192"}};
+    return {{"", "pixel.samples=1 shadow_volume.nodes=2 shadow_volume.steps=8 terms.light_resolution=32"},
+            {"", "pixel.samples=1 shadow_volume.nodes=3 shadow_volume.steps=16 terms.light_resolution=32"},
+            {"", "pixel.samples=2 shadow_volume.nodes=4 shadow_volume.steps=24 terms.light_resolution=64"},
+            {"", "pixel.samples=4 shadow_volume.nodes=4 shadow_volume.steps=48 terms.light_resolution=64"},
+            {"", "pixel.samples=16 shadow_volume.nodes=6 shadow_volume.steps=128 terms.light_resolution=128"},
+            {"", "pixel.samples=64 shadow_volume.nodes=8 shadow_volume.steps=256 terms.light_resolution=192"}};
 }
 }

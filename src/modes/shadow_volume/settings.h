@@ -17,7 +17,6 @@ struct ShadowVolumeSettings {
     ShadowFog fog = ShadowFog::automatic;
     int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of even fog
     int steps = 24;                // along a ray, where fog is sampled
-    int light_resolution = 64;     // cells across the fog in the light grids, where fog is sampled
     float shell_length = 0;        // metres behind the occluder at which a shell has faded out; 0 = half the scene
     float shell_intensity = 0.03f; // share of that length: the depth of lit fog a shell is as bright as
 };

@@ -21,18 +21,18 @@ float half_diagonal(const Box& scene) {
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto frame = std::make_shared<LitFog>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
-    frame->snapshot = stylised(snapshot, settings.style), frame->style = settings.style;
+    frame->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), frame->style = settings.style;
     frame->nodes = own.nodes, frame->steps = own.steps;
     if (own.draw == ShadowDraw::shells)
         frame->shells = {own.shell_length > 0 ? own.shell_length : half_diagonal(snapshot.bounds), own.shell_intensity};
-    frame->sampled = samples_fog(snapshot, own);
+    frame->sampled = samples_fog(frame->snapshot, own);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
             if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
         frame->snapshot.media = even_media(frame->snapshot.media);
     }
     const auto by = [](const Light&) { return ShadowsBy::volumes; };
-    add_lights(view, LightTransmittance::grid, own.light_resolution, by, *frame);
+    add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
     return [frame](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*frame, batch, results); };
 }
 

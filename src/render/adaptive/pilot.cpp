@@ -53,7 +53,7 @@ void spread_tiles(const View& view, Pilot& pilot) {
 
 FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                       const Prepared& prepared) {
-    return {view, snapshot, prepared.scatter, mode.surfaces, settings.march.light_points, prepared.light_depths};
+    return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
 }
 
 // Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where there is

@@ -142,7 +142,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
     auto nanoseconds = std::make_shared<std::atomic<int64_t>>(0);
     FrameTask task{prepared,
-                   {view, snapshot, timed(prepared->scatter, nanoseconds), mode.surfaces, settings.march.light_points,
+                   {view, snapshot, timed(prepared->scatter, nanoseconds), mode.surfaces, settings.terms.light_points,
                     prepared->light_depths},
                    options.prepared ? 0 : prepared->mode_seconds,
                    nanoseconds,
@@ -162,7 +162,7 @@ Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snaps
     if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             result.light_depths.push_back(
-                make_light_depth(snapshot, light, settings.march.light, settings.march.light_resolution, &view));
+                make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
     return result;
 }
 

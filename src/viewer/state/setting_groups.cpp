@@ -12,25 +12,22 @@ namespace {
 constexpr double wide = 1e3; // high over low of a range that is cut to what is worth a slider
 constexpr double reach = 16; // times the usual value and below it, on such a slider
 
-// What a row's name begins with: radial_blur of radial_blur.samples.
-std::string_view owner(const SettingRow& row) { return std::string_view(row.name).substr(0, row.name.find('.')); }
-
-SettingGroup group_of(std::string title, std::string_view prefix) {
+// The rows with a prefix that the mode reads.
+void append_group(const Mode& mode, std::string title, std::string_view prefix, std::vector<SettingGroup>& groups) {
     SettingGroup group{std::move(title), {}};
     for (const SettingRow& row : setting_rows())
-        if (owner(row) == prefix) group.rows.push_back(&row);
-    return group;
+        if (row.name.substr(0, row.name.find('.')) == prefix && reads(mode, row.name)) group.rows.push_back(&row);
+    if (!group.rows.empty()) groups.push_back(std::move(group));
 }
 }
 
 std::vector<SettingGroup> setting_groups(const Mode& mode) {
-    std::string prefix(mode.name);
-    std::ranges::replace(prefix, '-', '_');
-    std::vector<SettingGroup> groups{group_of(std::string(mode.name), prefix)};
-    if (honours_style(mode)) groups.push_back(group_of("style", "style"));
-    if (mode.adds_fluence) groups.push_back(group_of("light scattered before", "fluence"));
-    if (mode.surfaces != Surfaces::own && prefix != "march") groups.push_back(group_of("terms of the light", "march"));
-    groups.push_back(group_of("pixels", "pixel"));
+    std::vector<SettingGroup> groups;
+    append_group(mode, std::string(mode.name), row_prefix(mode), groups);
+    append_group(mode, "terms", "terms", groups);
+    append_group(mode, "multiple scattering", "fluence", groups);
+    append_group(mode, "style", "style", groups);
+    append_group(mode, "pixels", "pixel", groups);
     return groups;
 }
 

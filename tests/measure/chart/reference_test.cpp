@@ -51,7 +51,7 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
 }
 // A light grid this coarse is off by more than the noise unless exact samples put it right.
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
-                         testing::Values(std::pair{"scenes/window.json", "march.light_resolution=8"},
+                         testing::Values(std::pair{"scenes/window.json", "terms.light_resolution=8"},
                                          std::pair{"tests/measure/plan/plan_scenes/even_room.json", ""}));
 }
 }

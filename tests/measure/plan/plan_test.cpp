@@ -68,7 +68,7 @@ TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
         EXPECT_FALSE(term.needed) << name;
         EXPECT_GE(term.bound, std::expm1(thickest_line(snapshot))) << name;
     }
-    EXPECT_EQ(without_needless(terms, Settings{}).march.light, LightTransmittance::off);
+    EXPECT_EQ(without_needless(terms, Settings{}).terms.light, LightTransmittance::off);
 }
 
 TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
@@ -99,8 +99,8 @@ TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
         EXPECT_GE(term.bound, term.error) << name;
     }
     const Settings kept = without_needless(terms, Settings{});
-    EXPECT_EQ(kept.march.visibility, Visibility::slices);
-    EXPECT_TRUE(kept.march.phase);
+    EXPECT_EQ(kept.march.visibility, Visibility::intervals);
+    EXPECT_TRUE(kept.terms.phase);
 }
 
 // Isotropic instead of g: the error of light seen under one angle is 1/(4 pi p) - 1; a sun in thin fog has one angle

@@ -103,7 +103,7 @@ TEST(MutationCheck, NoTransmittanceOnTheLightsSide) {
     expect_caught("slab", broken("march", [](const View& view, const Snapshot& snapshot, const Settings& settings,
                                              History* history) {
                       Settings other = settings;
-                      other.march.light = LightTransmittance::off;
+                      other.terms.light = LightTransmittance::off;
                       return find_mode("march").prepare(view, snapshot, other, history);
                   }));
 }

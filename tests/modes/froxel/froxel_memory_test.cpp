@@ -123,7 +123,7 @@ TEST_P(FroxelHistory, StaysCloseToTheReference) {
 
 INSTANTIATE_TEST_SUITE_P(Ways, FroxelHistory,
                          testing::Combine(testing::Bool(),
-                                          testing::Values(FroxelVisibility::rays, FroxelVisibility::slices)));
+                                          testing::Values(FroxelVisibility::rays, FroxelVisibility::intervals)));
 
 TEST(FroxelMemory, AStandingCameraFindsWhatItLeft) {
     const Stage stage = lit_stage();

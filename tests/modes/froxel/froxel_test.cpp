@@ -26,7 +26,7 @@ TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
     const Snapshot snapshot = scene_of({even_fog(extinction, {vec3(-60), vec3(60)})}, {sun({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 25}, {0, 0, 0});
     for (const std::string& way : ways) {
-        const ScatterFunction scatter = froxels(view, snapshot, with({way, "march.light=off"}));
+        const ScatterFunction scatter = froxels(view, snapshot, with({way, "terms.light=off"}));
         for (const vec2 pixel : {vec2(32.5f, 18.5f), vec2(0.5f, 0.5f), vec2(63.9f, 20), vec2(12.3f, 35.9f)})
             for (float t = 0.05f; t < 50; t *= 1.07f) {
                 Ray ray = camera_ray(view.camera, view.size, pixel);
@@ -55,7 +55,7 @@ TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
 TEST(Froxel, FogWithoutEndIsFollowedBehindTheScene) {
     const Snapshot snapshot = scene_of({even_fog(0.02f)}, {sun({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 12}, {0, 0, 0});
-    const ScatterFunction scatter = froxels(view, snapshot, with({"march.light=off"}));
+    const ScatterFunction scatter = froxels(view, snapshot, with({"terms.light=off"}));
     for (const float t : {5.0f, 20.0f, 24.0f, 60.0f, 300.0f, 600.0f}) {
         Ray ray = camera_ray(view.camera, view.size, {20, 10});
         ray.t_max = t;
@@ -73,7 +73,7 @@ TEST(Froxel, ADarkRoomStaysDark) {
     const View inside = view_of({1.5f, 1.2f, 3.5f}, {-1, 1.4f, -4});
     const View outside = view_of({1.5f, 1.2f, 15}, {-1, 1.4f, 6});
     for (const int tile : {1, 4, 8, 16})
-        for (const char* visibility : {"rays", "slices"}) {
+        for (const char* visibility : {"rays", "intervals"}) {
             const Settings settings =
                 with({"froxel.tile=" + std::to_string(tile), std::string("froxel.visibility=") + visibility});
             const double dark = mean_radiance(
@@ -90,7 +90,7 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
     const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
-    for (const char* visibility : {"rays", "slices"}) {
+    for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"});
         const std::vector<Scatter> results = scattered(froxels(view, stage.snapshot, settings), rays);
         EXPECT_NEAR(mean_radiance(results) / mean_radiance(truth), 1, 0.01) << visibility;
@@ -120,7 +120,7 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
         const double truth = mean_radiance(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
             const Settings settings = with({"froxel.tile=4", "froxel.depth_slices=32",
-                                            exact ? "froxel.visibility=slices" : "froxel.visibility=rays"});
+                                            exact ? "froxel.visibility=intervals" : "froxel.visibility=rays"});
             const double ratio = mean_radiance(scattered(froxels(view, snapshot, settings), rays)) / truth;
             EXPECT_NEAR(ratio, 1, 0.05) << exact << " at " << i;
             least[exact] = std::min(least[exact], ratio), most[exact] = std::max(most[exact], ratio);
@@ -165,7 +165,7 @@ TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
     const Stage stage = busy_stage();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
-    for (const char* visibility : {"rays", "slices"}) {
+    for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility});
         set_thread_count(1);
         const std::vector<Scatter> alone = scattered(froxels(view, stage.snapshot, settings), rays, 1);

@@ -13,7 +13,7 @@ TEST(Froxel, ASliceIsSeenThroughItsOwnFog) {
     Settings settings;
     settings.of<FroxelSettings>().tile = 1, settings.of<FroxelSettings>().depth_slices = 4,
     settings.of<FroxelSettings>().depth_growth = 1;
-    settings.march.light = LightTransmittance::off;
+    settings.terms.light = LightTransmittance::off;
     const View view = view_of({0, 0, 4}, {0, 0, 0}, {65, 37});
     for (const float edge : {0.2f, 0.75f, 1.4f, 3.1f, 4.4f, 5.9f})
         for (const bool front : {true, false}) {

@@ -40,7 +40,7 @@ TEST(MarchExact, SlantedSunThroughASlitMatchesQuadrature) {
         stage_of({even_fog(0.8f)}, {light},
                  {quad({-40, 1, -40}, {40, 0, 0}, {0, 0, 80}), quad({0.25f, 1, -40}, {40, 0, 0}, {0, 0, 80})});
     Settings settings = exact_settings();
-    settings.march.light = LightTransmittance::off; // the sun's way through fog without end is black
+    settings.terms.light = LightTransmittance::off; // the sun's way through fog without end is black
     const Scatter result = marched(stage.snapshot, settings, {{-3, 0, 0}, {1, 0, 0}, 6});
     const double expected = 2 / four_pi * (std::exp(-0.8f * 2.5) - std::exp(-0.8f * 2.75));
     EXPECT_NEAR(result.radiance.x / expected, 1, 1e-6);

@@ -36,7 +36,7 @@ class SoftLights : public testing::TestWithParam<Visibility> {
 protected:
     static Settings settings() { return GetParam() == Visibility::exact ? exact_settings() : sliced_settings(); }
 };
-INSTANTIATE_TEST_SUITE_P(March, SoftLights, testing::Values(Visibility::slices, Visibility::exact));
+INSTANTIATE_TEST_SUITE_P(March, SoftLights, testing::Values(Visibility::intervals, Visibility::exact));
 
 TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     // Edge at x = 0.4, 1.7 m above a level ray through thin fog: what counts is the mean lit length. Brute force over
@@ -85,7 +85,7 @@ TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
     const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings many = settings();
-    many.march.light_points = 8;
+    many.terms.light_points = 8;
     const double together = mean_over_samples(stage.snapshot, many, ray, 16).x;
     const double apart = mean_over_samples(stage.snapshot, settings(), ray, 128).x;
     EXPECT_NEAR(together / apart, 1, 1e-6);
@@ -93,7 +93,7 @@ TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
 
     // Shadow rays to many points in each step: the same light with less noise.
     Settings rays = exact_settings();
-    rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256, rays.march.light_points = 64;
+    rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256, rays.terms.light_points = 64;
     EXPECT_NEAR(mean_over_samples(stage.snapshot, rays, ray, 16).x / apart, 1, 0.01);
 }
 }

@@ -7,7 +7,7 @@
 namespace tyndall::test {
 namespace {
 const Visibility visibilities[] = {Visibility::off, Visibility::rays, Visibility::maps, Visibility::exact,
-                                   Visibility::slices};
+                                   Visibility::intervals};
 const LightTransmittance transmittances[] = {LightTransmittance::off, LightTransmittance::average,
                                              LightTransmittance::froxel, LightTransmittance::grid,
                                              LightTransmittance::marched};
@@ -23,10 +23,10 @@ TEST(MarchTerms, AllCombinationsAgree) {
     for (int v = 0; v < 5; ++v)
         for (int t = 0; t < 5; ++t) {
             Settings settings = settings_for(Quality::preview);
-            settings.march.visibility = visibilities[v], settings.march.light = transmittances[t];
+            settings.march.visibility = visibilities[v], settings.terms.light = transmittances[t];
             settings.march.step_share = 1.0f / 128, settings.march.step_voxels = 0.25f;
             // Cells of a thirtieth of the fog: the picture shows four times as much as the fog fills.
-            settings.march.light_resolution = transmittances[t] == LightTransmittance::froxel ? 128 : 32;
+            settings.terms.light_resolution = transmittances[t] == LightTransmittance::froxel ? 128 : 32;
             settings.of<ShadowMapSettings>().resolution = 1024;
             results[v][t] = scattered(find_mode("march").prepare(view, stage.snapshot, settings, nullptr), rays);
             for (const Scatter& result : results[v][t])

@@ -121,7 +121,7 @@ TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
     // Ratio of looking into the sun and away from it: ((1+g)/(1-g))³.
     const float g = 0.6f;
     Settings settings = sampled_settings();
-    settings.march.light = LightTransmittance::off;
+    settings.terms.light = LightTransmittance::off;
     const Snapshot snapshot =
         scene_of({even_fog(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})}, {sun({0, 0, 1})});
     const float towards = marched(snapshot, settings, {{0, 0, 3}, {0, 0, -1}, 10}).radiance.x;
@@ -201,8 +201,8 @@ TEST(March, EveryTermCanBeTurned) {
     snapshot.media[0].optics.emission = vec3(0.3f);
     const Ray ray{{0.9f, 0.3f, 3}, {0, 0, -1}, 10};
     const float full = marched(snapshot, Settings{}, ray).radiance.x;
-    for (const char* change : {"march.light=off", "march.light=average", "march.phase=off", "march.heterogeneity=off",
-                               "march.emission=off", "march.ambient=off"}) {
+    for (const char* change : {"terms.light=off", "terms.light=average", "terms.phase=off", "terms.heterogeneity=off",
+                               "terms.emission=off", "terms.ambient=off"}) {
         Settings settings;
         apply_setting(settings, change);
         EXPECT_GT(std::abs(marched(snapshot, settings, ray).radiance.x / full - 1), 0.01) << change;

@@ -150,7 +150,7 @@ TEST(ShadowMapMarch, HalfShadowedBoxConvergesToTheReference) {
             Settings settings;
             settings.of<ShadowMapSettings>().steps = 8 << (2 * level),
             settings.of<ShadowMapSettings>().resolution = 128 << (2 * level);
-            settings.of<ShadowMapSettings>().light = LightTransmittance::marched;
+            settings.terms.light = LightTransmittance::marched;
             error[level] = rmse_rel(run("shadow-map", box.snapshot, settings, rays), reference);
         }
         // Slope -1/2 or steeper of the error over the steps.
@@ -170,7 +170,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
                                                        LightTransmittance::grid, LightTransmittance::marched}) {
             const HalfShadowed box(light);
             Settings settings;
-            settings.march.light = transmittance, settings.of<ShadowMapSettings>().resolution = 512;
+            settings.terms.light = transmittance, settings.of<ShadowMapSettings>().resolution = 512;
             settings.of<ShadowMapSettings>().pcf = 1;
             settings.march.visibility = Visibility::rays;
             const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);

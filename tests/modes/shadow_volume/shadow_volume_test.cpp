@@ -215,7 +215,7 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     for (const char* steps : {"shadow_volume.steps=12", "shadow_volume.steps=48", "shadow_volume.steps=192"}) {
         Settings settings;
         apply_setting(settings, steps);
-        apply_setting(settings, "shadow_volume.light_resolution=128");
+        apply_setting(settings, "terms.light_resolution=128");
         const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, settings);
         const double error = rmse(found, expected) / mean_of(expected);
         EXPECT_LT(error, before);

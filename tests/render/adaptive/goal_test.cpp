@@ -113,7 +113,7 @@ TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
         EXPECT_LE(fine.step_voxels, coarse.step_voxels) << all[i].name;
         EXPECT_LE(fine.step_depth, coarse.step_depth) << all[i].name;
         EXPECT_LE(fine.step_share, coarse.step_share) << all[i].name;
-        EXPECT_GE(fine.light_resolution, coarse.light_resolution) << all[i].name;
+        EXPECT_GE(all[i].settings.terms.light_resolution, all[i - 1].settings.terms.light_resolution) << all[i].name;
         EXPECT_GE(fine.nodes, coarse.nodes) << all[i].name;
     }
     EXPECT_GE(compared, 3);
@@ -124,7 +124,7 @@ TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
 // Steps are what candidates cost on the same rays, but for the last, whose are of another kind.
 TEST(Goal, CandidatesCostMoreAndMore) {
     Example example("spotlight");
-    apply_setting(example.settings, "march.light_resolution=16"); // for speed: steps do not depend on it
+    apply_setting(example.settings, "terms.light_resolution=16"); // for speed: steps do not depend on it
     View view = example.view;
     view.size = {16, 9}, view.pixel_samples = 1;
     uint64_t before = 0;
@@ -141,14 +141,14 @@ TEST(Goal, CandidatesCostMoreAndMore) {
 
 TEST(Goal, RowsThatAreSetStay) {
     Settings settings = settings_for(Quality::preview);
-    apply_setting(settings, "march.light_resolution=20");
-    apply_setting(settings, "march.ambient=off");
+    apply_setting(settings, "terms.light_resolution=20");
+    apply_setting(settings, "terms.ambient=off");
     for (const Candidate& candidate : candidates_of(find_mode("march"), settings, Quality::preview)) {
-        EXPECT_EQ(candidate.settings.march.light_resolution, 20);
-        EXPECT_FALSE(candidate.settings.march.ambient);
+        EXPECT_EQ(candidate.settings.terms.light_resolution, 20);
+        EXPECT_FALSE(candidate.settings.terms.ambient);
     }
-    EXPECT_EQ(truth_of(settings).march.light, LightTransmittance::marched);
-    EXPECT_FALSE(truth_of(settings).march.ambient);
+    EXPECT_EQ(truth_of(settings).terms.light, LightTransmittance::marched);
+    EXPECT_FALSE(truth_of(settings).terms.ambient);
 }
 
 TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {

@@ -31,10 +31,10 @@ TEST(Ladders, EveryModeHasSixDifferentRungsOrMoreWithEverMoreSamples) {
 
 TEST(Ladders, LeaveAloneWhatIsNotAboutCare) {
     Settings settings;
-    settings.march.ambient = false, settings.path.orders = 3, settings.style.density = 2;
+    settings.terms.ambient = false, settings.path.orders = 3, settings.style.density = 2;
     for (const Mode& mode : modes())
         for (const Candidate& rung : ladder_of(mode, settings)) {
-            EXPECT_FALSE(rung.settings.march.ambient) << mode.name;
+            EXPECT_FALSE(rung.settings.terms.ambient) << mode.name;
             EXPECT_EQ(rung.settings.path.orders, 3) << mode.name;
             EXPECT_EQ(rung.settings.style.density, 2) << mode.name;
         }

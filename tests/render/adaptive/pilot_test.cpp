@@ -100,15 +100,15 @@ TEST(Goal, AFrameIsHeldAgainstTermsThatAnotherDidNotNeed) {
     fog.optics.emission = vec3(0.02f);
     const Snapshot snapshot = scene_of({fog}, {point_light({0, 5, 0}, 20)});
     Settings settings;
-    settings.march.emission = false;
+    settings.terms.emission = false;
     Goal goal{0.05};
     FrameStats stats;
     const View view = view_of({64, 36});
     render_to_target(find_mode("march"), view, snapshot, settings, goal, plain, stats);
-    EXPECT_FALSE(stats.integrator->settings.march.emission) << "nothing else was asked for";
+    EXPECT_FALSE(stats.integrator->settings.terms.emission) << "nothing else was asked for";
     goal.wanted = std::make_shared<const Settings>();
     render_to_target(find_mode("march"), view, snapshot, settings, goal, plain, stats);
-    EXPECT_TRUE(stats.integrator->settings.march.emission);
+    EXPECT_TRUE(stats.integrator->settings.terms.emission);
     EXPECT_LE(stats.error()->bound, 0.05);
 }
 }

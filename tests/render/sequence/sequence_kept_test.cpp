@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, SequenceOfMode,
                          testing::Values("march", "froxel", "shadow-volume", "shadow-map", "billboard"));
 
 TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
-    for (const char* visibility : {"maps", "slices"}) {
+    for (const char* visibility : {"maps", "intervals"}) {
         const Scratch in, row, alone;
         const Scene scene = small_scene(in, Moves::light);
         RenderJob job = job_for(scene, "march", row.file("f.####.exr"), {1, 2, 3});

@@ -130,7 +130,7 @@ TEST(ReferencePicture, StaysWhileTheTechniqueChangesAndBeginsAnewWithTheCamera) 
     ASSERT_TRUE(moved);
     EXPECT_FALSE(moved->reference) << "that of another view";
     EXPECT_TRUE(last_picture(painter, request).reference->finished);
-    ++request.revision, request.settings.march.phase = false; // another light, another truth
+    ++request.revision, request.settings.terms.phase = false; // another light, another truth
     EXPECT_FALSE(paint(painter, request, never)->reference);
 }
 

@@ -1,0 +1,17 @@
+#include "integrate/terms.h"
+
+#include "integrate/style.h"
+#include "trace/snapshot.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
+    if (!terms.heterogeneity) snapshot.media = even_media(snapshot.media);
+    for (Medium& medium : snapshot.media) {
+        if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
+        if (!terms.emission) medium.optics.emission = vec3(0);
+    }
+    if (!terms.ambient) snapshot.ambient = vec3(0);
+    return snapshot;
+}
+}
