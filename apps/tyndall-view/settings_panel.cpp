@@ -101,7 +101,13 @@ void draw_settings(ViewState& state, PanelMemory& memory, const Act& act) {
         const bool open = ImGui::CollapsingHeader(group.title.c_str(), first ? ImGuiTreeNodeFlags_DefaultOpen : 0);
         first = false;
         if (!open) continue;
-        for (const SettingRow* row : group.rows) draw_row(state, *row, usual, memory, act);
+        for (const SettingRow* row : group.rows)
+            if (!row->advanced) draw_row(state, *row, usual, memory, act);
+        if (std::ranges::none_of(group.rows, &SettingRow::advanced)) continue;
+        if (!ImGui::TreeNode((group.title + " advanced").c_str(), "advanced")) continue;
+        for (const SettingRow* row : group.rows)
+            if (row->advanced) draw_row(state, *row, usual, memory, act);
+        ImGui::TreePop();
     }
 }
 }

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 
+#include <cassert>
 #include <charconv>
 #include <cstdio>
 
@@ -40,6 +41,15 @@ size_t parsed_choice(std::string_view row, std::string_view text, const std::vec
     for (size_t i = 0; i < choices.size(); ++i)
         if (choices[i] == text) return i;
     fail(ExitCode::usage, row, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
+}
+
+void mark_advanced(std::vector<SettingRow>& rows, std::initializer_list<std::string_view> names) {
+    for (const std::string_view name : names) {
+        const auto ends = [&](const SettingRow& row) { return row.name.substr(row.name.find('.') + 1) == name; };
+        const auto last = std::find_if(rows.rbegin(), rows.rend(), ends); // the technique's own rows come last
+        assert(last != rows.rend());
+        last->advanced = true;
+    }
 }
 
 const std::vector<SettingRow>& setting_rows() {

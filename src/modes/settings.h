@@ -64,12 +64,13 @@ Settings settings_for(Quality quality);
 // One field by name: march.step_depth, its unit, range or choices, and what it does.
 struct SettingRow {
     std::string name, unit, doc;
-    std::vector<std::string> choices; // of an enumeration or switch; empty for a number
-    double low = 0, high = 0;         // range of a number
+    std::vector<std::string> choices{}; // of an enumeration or switch; empty for a number
+    double low = 0, high = 0;           // range of a number
     bool integer = false;
-    std::function<std::string(const Settings&)> get;
-    std::function<void(Settings&, std::string_view)> set; // throws Error (usage)
-    int parts = 1;                                        // numbers of a value; 3 = a colour
+    bool advanced = false; // most users leave it alone
+    std::function<std::string(const Settings&)> get{};
+    std::function<void(Settings&, std::string_view)> set{}; // throws Error (usage)
+    int parts = 1;                                          // numbers of a value; 3 = a colour
 };
 const std::vector<SettingRow>& setting_rows();
 

@@ -18,7 +18,7 @@ size_t parsed_choice(std::string_view row, std::string_view text, const std::vec
 template<class Field>
 SettingRow number_row(std::string name, std::string unit, double low, double high, std::string doc, Field field) {
     using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
-    SettingRow row{name, unit, doc, {}, low, high, std::is_integral_v<T>, {}, {}};
+    SettingRow row{name, unit, doc, {}, low, high, std::is_integral_v<T>};
     row.get = [field](const Settings& settings) { return short_number(field(const_cast<Settings&>(settings))); };
     row.set = [field, name, low, high](Settings& settings, std::string_view text) {
         field(settings) = static_cast<T>(parsed_number(name, text, low, high, std::is_integral_v<T>));
@@ -30,7 +30,7 @@ SettingRow number_row(std::string name, std::string unit, double low, double hig
 template<class Field>
 SettingRow choice_row(std::string name, std::vector<std::string> choices, std::string doc, Field field) {
     using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
-    SettingRow row{name, "", doc, choices, 0, 0, false, {}, {}};
+    SettingRow row{name, "", doc, choices};
     row.get = [field, choices](const Settings& settings) {
         return choices[static_cast<size_t>(field(const_cast<Settings&>(settings)))];
     };
@@ -43,7 +43,7 @@ SettingRow choice_row(std::string name, std::vector<std::string> choices, std::s
 // A row for a colour: three numbers with commas between.
 template<class Field>
 SettingRow color_row(std::string name, std::string unit, double low, double high, std::string doc, Field field) {
-    SettingRow row{name, unit, doc, {}, low, high, false, {}, {}};
+    SettingRow row{name, unit, doc, {}, low, high};
     row.parts = 3;
     row.get = [field](const Settings& settings) {
         const vec3 v = field(const_cast<Settings&>(settings));
@@ -54,6 +54,9 @@ SettingRow color_row(std::string name, std::string unit, double low, double high
     };
     return row;
 }
+
+// Marks rows, by their names without the prefix, as ones that most users leave alone.
+void mark_advanced(std::vector<SettingRow>& rows, std::initializer_list<std::string_view> names);
 
 #define TYNDALL_FIELD(member)                                                                                          \
     [](Settings & settings) -> auto& { return settings.member; }

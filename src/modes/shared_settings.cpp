@@ -24,6 +24,7 @@ void append_pixel_rows(std::vector<SettingRow>& rows) {
                    "where in its steps a ray looks: the middle, or shifted by a pattern from pixel to pixel and sample "
                    "to sample (slices and closed forms need none)",
                    TYNDALL_FIELD(pixel.jitter)));
+    mark_advanced(rows, {"filter_radius", "jitter"});
 }
 
 void append_term_rows(std::vector<SettingRow>& rows) {

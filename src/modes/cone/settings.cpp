@@ -31,6 +31,7 @@ void append_cone_rows(std::vector<SettingRow>& rows) {
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
                               TYNDALL_FIELD(of<ConeSettings>().picture)));
+    mark_advanced(rows, {"near_radius", "attenuation", "edge", "inner", "noise", "noise_size", "noise_speed"});
 }
 
 void set_cone_quality(Settings& settings, Quality quality) {

@@ -32,6 +32,7 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
                               "with a history, light only a quarter of the froxels anew "
                               "in each frame",
                               TYNDALL_FIELD(of<FroxelSettings>().amortise)));
+    mark_advanced(rows, {"depth_growth", "amortise"});
 }
 
 void set_froxel_quality(Settings& settings, Quality quality) {

@@ -29,6 +29,7 @@ void append_march_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("march.nodes", "", 1, 16,
                               "Gauss-Legendre nodes on each lit interval of fog without a grid, with intervals",
                               TYNDALL_FIELD(march.nodes)));
+    mark_advanced(rows, {"step_voxels", "near_light", "min_transmittance"});
 }
 
 void set_march_quality(Settings& settings, Quality quality) {

@@ -33,6 +33,7 @@ void append_radial_blur_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<RadialBlurSettings>().picture)));
     rows.push_back(choice_row("radial_blur.fog", switches, "surfaces and background fade in fog, taken as even",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fog)));
+    mark_advanced(rows, {"decay", "weight", "exposure", "fade"});
 }
 
 std::vector<Rung> radial_blur_rungs() {

@@ -30,6 +30,7 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("shadow_map.blur", switches,
                               "smooths the jitter's pattern over 4x4 pixels of like depth (of one ray per pixel)",
                               TYNDALL_FIELD(of<ShadowMapSettings>().blur)));
+    mark_advanced(rows, {"spacing", "cascades", "pcf", "bias", "blur"});
 }
 
 void set_shadow_map_quality(Settings& settings, Quality quality) {

@@ -23,6 +23,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_volume.shell_intensity", "", 0, 1e3,
                               "a shell is as bright as this share of shell_length of lit fog",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_intensity)));
+    mark_advanced(rows, {"draw", "shell_length", "shell_intensity"});
 }
 
 void set_shadow_volume_quality(Settings& settings, Quality quality) {
