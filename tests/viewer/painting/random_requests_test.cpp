@@ -35,7 +35,8 @@ Action any_setting(Chance& chance) {
     const std::vector<SettingRow>& rows = setting_rows();
     const SettingRow& row = rows[static_cast<size_t>(chance.below(static_cast<int>(rows.size())))];
     if (!row.choices.empty()) return {Verb::set, {row.name, chance.of(row.choices)}, {}, {}};
-    const double low = std::max(row.low, -20.0), high = std::min(row.high, 20.0), share = std::pow(chance.share(), 3);
+    const double low = std::max(row.low, -20.0), high = std::max(low, std::min(row.high, 20.0)),
+                 share = std::pow(chance.share(), 3);
     const double value = low + (high - low) * share;
     return {Verb::set, {row.name, row.integer ? std::to_string(std::lround(value)) : std::to_string(value)}, {}, {}};
 }
