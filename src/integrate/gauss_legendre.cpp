@@ -41,4 +41,12 @@ std::span<const QuadratureNode> gauss_legendre(int count) {
     }();
     return rules[std::clamp(count, 1, most_gauss_nodes)];
 }
+
+double integral(const std::function<double(double)>& f, double a, double b, int pieces) {
+    const double length = (b - a) / pieces;
+    double sum = 0;
+    for (int piece = 0; piece < pieces; ++piece)
+        for (const QuadratureNode& node : gauss_legendre(5)) sum += node.weight * f(a + (piece + node.at) * length);
+    return sum * length;
+}
 }

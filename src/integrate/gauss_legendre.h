@@ -1,5 +1,6 @@
 // Gauss–Legendre quadrature on 0..1.
 #pragma once
+#include <functional>
 #include <span>
 
 namespace tyndall {
@@ -10,4 +11,7 @@ inline constexpr int most_gauss_nodes = 32;
 
 // The rule with `count` nodes, 1..32, exact for polynomials of degree 2·count - 1.
 std::span<const QuadratureNode> gauss_legendre(int count);
+
+// ∫ f over a..b by the rule with 5 nodes on each of `pieces` pieces.
+double integral(const std::function<double(double)>& f, double a, double b, int pieces = 4000);
 }

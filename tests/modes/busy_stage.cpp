@@ -7,14 +7,15 @@ namespace tyndall::test {
 float wavy(vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 13 * p.z); }
 
 Stage busy_stage() {
-    std::vector<Medium> media{grid_fog(2, unit_grid(24, wavy)), even_fog(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
+    std::vector<Medium> media{medium_of(unit_volume(24, wavy), 2),
+                              even_medium(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
     media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.5f}, media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     media[1].optics.phase = {PhaseKind::rayleigh, 0};
     Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
     spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
     spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
-    return stage_of(media, {sun({0.3f, -1, 0.1f}), spot},
-                    {shade(0.35f, 1.2f), box_mesh(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}, vec3(0.1f));
+    return stage_of(media, {sun_light({0.3f, -1, 0.1f}), spot},
+                    {shade(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}, vec3(0.1f));
 }
 
 std::vector<Ray> busy_rays(int count) {

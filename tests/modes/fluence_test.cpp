@@ -1,6 +1,7 @@
 // Light that scatters more than once, by the grid of fluence: closed forms, conservation, and path tracing.
 #include "base/parallel.h"
 #include "base/random.h"
+#include "integrate/gauss_legendre.h"
 #include "modes/froxel/froxel_fixtures.h"
 #include "modes/froxel/settings.h"
 #include "modes/mode.h"
@@ -11,9 +12,7 @@
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "support/integral.h"
 #include "support/limitations.h"
-#include "support/meshes.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/fluence/fluence.h"
@@ -48,7 +47,7 @@ TEST(Fluence, IsWhatThinFogScattersOnce) {
     // A sun of 1 lux in a cube of optical depth σ << 1: fluence at the middle is σ ∫ dV / (4π r²), flux 0; the grid
     // knows the mean over the eight cells about it.
     constexpr float sigma = 0.01f;
-    const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {sun({0, -1, 0})});
+    const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {sun_light({0, -1, 0})});
     const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 16, 2'000'000));
     const FluenceAt at = fluence_at(grid, vec3(0.5f));
     const double expected = sigma * mean_inverse_square();
@@ -62,9 +61,9 @@ TEST(Fluence, AboveALitFloorIsTwiceItsLightAndGoesUp) {
     // A floor of base colour ρ under a sun of E: radiance ρE/π from half of all directions, φ = 2ρE, F = ρE upwards.
     Scene scene;
     scene.materials = {lambert(vec3(0.5f, 0.25f, 1))};
-    add_mesh(scene, floor_at(0, 4, 0));
+    add_mesh(scene, floor_of(0, 4, 0));
     const Box box{vec3(-0.5f, 0, -0.5f), vec3(0.5f, 0.25f, 0.5f)};
-    Snapshot snapshot = scene_of({even_fog(1e-5f, box)}, {sun({0, -1, 0}, 3)});
+    Snapshot snapshot = snapshot_of({even_medium(1e-5f, box)}, {sun_light({0, -1, 0}, 3)});
     add_surfaces(scene, snapshot);
     const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 4, 400'000));
     const FluenceAt at = fluence_at(grid, vec3(0, 0.125f, 0));
@@ -76,7 +75,7 @@ TEST(Fluence, AboveALitFloorIsTwiceItsLightAndGoesUp) {
         EXPECT_NEAR(at.flux[c].x, 0, 0.06f * lit);
     }
     // The upper side is dark when light does not pass: a roof over it.
-    add_mesh(scene, floor_at(10, 80, 0));
+    add_mesh(scene, floor_of(10, 80, 0));
     add_surfaces(scene, snapshot);
     const FluenceGrid dark = make_fluence(snapshot, grid_settings(2, 4, 20'000));
     EXPECT_EQ(fluence_at(dark, vec3(0, 0.125f, 0)).fluence.x, 0);
@@ -114,7 +113,7 @@ TEST(Fluence, ScattersALobeIntoAWiderLobe) {
 TEST(Fluence, OfALampIsItsPowerInTheFog) {
     // Light that fog scatters once: 4π I σ ∫ dV / (4π r²) about a lamp in the middle of a thin cube.
     constexpr float sigma = 0.02f;
-    const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
+    const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
     const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
     LightPathResult result;
     trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 4), rules, 0, 200'000, 200'000, result);
@@ -131,7 +130,7 @@ TEST(Fluence, OfALampFarFromTheFogIsWhatArrivesThere) {
     Light beyond = lamp;
     beyond.range = 20;
     for (const Light& light : {lamp, spot, beyond}) {
-        const Snapshot snapshot = scene_of({even_fog(sigma, unit_box)}, {light});
+        const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {light});
         const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
         LightPathResult result;
         trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 8), rules, 0, 200'000, 200'000, result);
@@ -148,8 +147,9 @@ TEST(Fluence, OfALampFarFromTheFogIsWhatArrivesThere) {
 TEST(Fluence, HasTheSameBitsAtAnyThreadCount) {
     Scene scene;
     scene.materials = {lambert(vec3(0.5f))};
-    add_mesh(scene, box_mesh(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot = scene_of({even_fog(3, unit_box, forward(0.6f))}, {sun({1, -1, 0.5f}), point_light({2, 2, 2})});
+    add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
+    Snapshot snapshot =
+        snapshot_of({even_medium(3, unit_box, forward(0.6f))}, {sun_light({1, -1, 0.5f}), point_light({2, 2, 2})});
     add_surfaces(scene, snapshot);
     const int threads = thread_count();
     set_thread_count(1);
@@ -167,7 +167,7 @@ Settings with_orders(Settings settings, int orders) {
 }
 
 TEST(Fluence, ChangesNoBitOfSingleScattering) {
-    const Snapshot snapshot = scene_of({even_fog(2, unit_box, forward(0.5f))}, {sun({1, -1, 0.5f})});
+    const Snapshot snapshot = snapshot_of({even_medium(2, unit_box, forward(0.5f))}, {sun_light({1, -1, 0.5f})});
     const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.8f, 64);
     for (const Visibility visibility : {Visibility::rays, Visibility::intervals, Visibility::exact}) {
         Settings settings;
@@ -180,13 +180,13 @@ TEST(Fluence, ChangesNoBitOfSingleScattering) {
 
 // Everything that the cube sends out, by path, and by march with the grid, in all ways that march has.
 void expect_power_of_path(float g, int lines, double precision) {
-    Medium fog = even_fog(1.5f, unit_box, forward(g));
+    Medium fog = even_medium(1.5f, unit_box, forward(g));
     fog.optics.albedo = vec3(0.9f);
-    Medium grid = grid_fog(1.5f, unit_grid(16, [](vec3) { return 1.0f; }));
+    Medium grid = medium_of(unit_volume(16, [](vec3) { return 1.0f; }), 1.5f);
     grid.optics = fog.optics;
     const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.87f, lines);
     for (const Medium& medium : {fog, grid}) {
-        const Snapshot snapshot = scene_of({medium}, {sun({0.4f, -1, 0.3f})});
+        const Snapshot snapshot = snapshot_of({medium}, {sun_light({0.4f, -1, 0.3f})});
         const std::vector<Scatter> once = path_light(snapshot, rays, 1);
         for (const int orders : {2, all_orders}) {
             const std::vector<double> path = difference(path_light(snapshot, rays, orders), once);
@@ -232,7 +232,7 @@ TEST(Fluence, LooksTheSameInFroxels) {
 }
 
 TEST(Fluence, SaysWhatItLeavesOut) {
-    const Snapshot snapshot = scene_of({even_fog(4, unit_box)}, {sun({0, -1, 0})}, vec3(1));
+    const Snapshot snapshot = snapshot_of({even_medium(4, unit_box)}, {sun_light({0, -1, 0})}, vec3(1));
     for (const char* name : {"march", "froxel"}) {
         const auto said = [&](int orders) {
             return find_mode(name).limitations(View{}, snapshot, with_orders(Settings{}, orders));

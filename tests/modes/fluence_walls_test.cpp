@@ -2,7 +2,6 @@
 #include "base/random.h"
 #include "modes/path/path_scenes.h"
 #include "scene/scene.h"
-#include "support/meshes.h"
 #include "support/tiny_scenes.h"
 #include "trace/fluence/fluence.h"
 #include "trace/snapshot.h"
@@ -26,7 +25,7 @@ double mean_fluence(const FluenceGrid& grid, const Box& box) {
 }
 
 Snapshot with_surfaces(Scene& scene, const Box& fog, vec3 sun_direction, float extinction = 0.5f) {
-    Snapshot snapshot = scene_of({even_fog(extinction, fog)}, {sun(sun_direction)});
+    Snapshot snapshot = snapshot_of({even_medium(extinction, fog)}, {sun_light(sun_direction)});
     add_surfaces(scene, snapshot);
     return snapshot;
 }
@@ -37,7 +36,7 @@ TEST(FluenceRim, ALayerBetweenTheCellsIsAsBrightAsOneOnThem) {
     const float cell = 2.0f / twice.resolution;
     const auto brightness = [&](float low) {
         const Box layer{vec3(-1, low, -1), vec3(1, low + 2 * cell, 1)};
-        const Snapshot snapshot = scene_of({even_fog(1, layer)}, {sun({0.2f, -1, 0})});
+        const Snapshot snapshot = snapshot_of({even_medium(1, layer)}, {sun_light({0.2f, -1, 0})});
         return mean_fluence(make_fluence(snapshot, twice), layer);
     };
     const double on_cells = brightness(2 * cell);
@@ -56,7 +55,7 @@ TEST(FluenceWalls, FogThatGoesOnBelowAFloorIsAsBrightAboveIt) {
     const auto fluences = [&](float low) {
         Scene scene;
         scene.materials = {lambert(vec3(0))};
-        add_mesh(scene, floor_at(0, 6, 0));
+        add_mesh(scene, floor_of(0, 6, 0));
         const Snapshot snapshot = with_surfaces(scene, {vec3(-1, low, -1), vec3(1)}, {0, -1, 0});
         const FluenceGrid grid = make_fluence(snapshot, twice);
         std::array<double, places.size()> result;
@@ -77,7 +76,7 @@ TEST(FluenceWalls, FogThatGoesOnBelowAFloorIsAsBrightAboveIt) {
 TEST(FluenceWalls, AClosedRoomIsDarkInside) {
     Scene scene;
     scene.materials = {lambert(vec3(0.8f))};
-    add_mesh(scene, box_mesh(vec3(-0.53f), vec3(0.53f), 0));
+    add_mesh(scene, box_of(vec3(-0.53f), vec3(0.53f), 0));
     const Snapshot snapshot = with_surfaces(scene, {vec3(-1), vec3(1)}, {0.3f, -1, 0.2f}, 2);
     const FluenceGrid grid = make_fluence(snapshot, {all_orders, 16, 200'000});
     EXPECT_GT(mean_fluence(grid, {vec3(-0.95f), vec3(-0.6f)}), 0.1);
@@ -90,7 +89,7 @@ TEST(FluenceWalls, AScreenLitOnBothSidesIsHalfAsBrightAsNone) {
     const auto fluence = [](bool screen) {
         Scene scene;
         scene.materials = {lambert(vec3(0))};
-        add_mesh(scene, screen ? box_mesh(vec3(0.03f, -3, -3), vec3(0.031f, 3, 3), 0) : floor_at(-9, 1, 0));
+        add_mesh(scene, screen ? box_of(vec3(0.03f, -3, -3), vec3(0.031f, 3, 3), 0) : floor_of(-9, 1, 0));
         const Snapshot snapshot = with_surfaces(scene, {vec3(-1), vec3(1)}, {0, -1, 0}, 0.1f);
         const FluenceGrid grid = make_fluence(snapshot, twice);
         return mean_fluence(grid, {vec3(0.035f, -0.5f, -0.5f), vec3(0.08f, 0.5f, 0.5f)}) +

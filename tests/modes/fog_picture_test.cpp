@@ -27,7 +27,8 @@ View small_view(ivec2 size = {24, 16}) {
 }
 
 Snapshot lit_box() {
-    return scene_of({even_fog(0.3f, Box{vec3(-2), vec3(2)})}, {point_light({0.4f, 1, 0.5f}, 20), sun({1, -1, 0}, 3)});
+    return snapshot_of({even_medium(0.3f, Box{vec3(-2), vec3(2)})},
+                       {point_light({0.4f, 1, 0.5f}, 20), sun_light({1, -1, 0}, 3)});
 }
 
 // Camera rays through the fog, those of odd rows cut off at `cut`.
@@ -97,7 +98,7 @@ TEST(FogPicture, AtFullSizeItIsTheSameAtPixelCentres) {
 
 TEST(FogPicture, AShareOfThePictureIsCloseInSmoothFogAndExactWhereDepthDiffers) {
     const View view = small_view({64, 48});
-    const Snapshot snapshot = scene_of({even_fog(0.3f, Box{vec3(-20), vec3(20)})}, {sun({1, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({even_medium(0.3f, Box{vec3(-20), vec3(20)})}, {sun_light({1, -1, 0}, 3)});
     int calls = 0;
     const ScatterFunction march = march_of(view, snapshot);
     const ScatterFunction whole = [&](const RayBatch& batch, std::span<Scatter> results) {
@@ -188,7 +189,7 @@ TEST(FogPicture, ALightThatGoesOutLeavesNothing) {
 TEST(FogPicture, TheBlurRemovesAnOrderedPattern) {
     View view = small_view({32, 32});
     view.jitter = Jitter::ordered;
-    const Snapshot snapshot = scene_of({even_fog(0.3f, Box{vec3(-20), vec3(20)})}, {});
+    const Snapshot snapshot = snapshot_of({even_medium(0.3f, Box{vec3(-20), vec3(20)})}, {});
     const ScatterFunction pattern = [](const RayBatch& batch, std::span<Scatter> results) {
         for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(batch.jitter[i]), 0.5f, 1, 1, vec3(0)};
     };

@@ -16,10 +16,10 @@ namespace tyndall::test {
 namespace {
 // A ball of diameter 1 in the unit box, of an optical radius and albedo 0.99.
 Medium ball(float optical_radius, float g) {
-    const SparseVolume volume = unit_grid(64, [](vec3 p) {
+    const SparseVolume volume = unit_volume(64, [](vec3 p) {
         return std::clamp(0.5f + 64 * (0.484f - glm::length(p - 0.5f)), 0.0f, 1.0f); // a voxel's air around it
     });
-    Medium medium = grid_fog(optical_radius / 0.484f, volume);
+    Medium medium = medium_of(volume, optical_radius / 0.484f);
     medium.optics.albedo = vec3(0.99f), medium.optics.phase = {PhaseKind::henyey_greenstein, g};
     return medium;
 }
@@ -31,18 +31,18 @@ TEST(ScatteringOrders, OfABallAsTheClosedFormSays) {
         EXPECT_NEAR(multiple_over_single(radius, 0.99), ratio, 6e-4 * (1 + ratio));
     EXPECT_NEAR(multiple_over_single(0.0299999, 0.99), multiple_over_single(0.0300001, 0.99), 1e-6);
     for (const float sigma : {0.1f, 1.0f, 4.0f}) {
-        const Medium cube = even_fog(sigma, {vec3(0), vec3(1)});
-        const double measured = measured_ratio(scene_of({cube}, {sun({0.2f, -1, 0.4f})}), 65536).ratio;
+        const Medium cube = even_medium(sigma, {vec3(0), vec3(1)});
+        const double measured = measured_ratio(snapshot_of({cube}, {sun_light({0.2f, -1, 0.4f})}), 65536).ratio;
         EXPECT_NEAR(multiple_over_single(cube), measured, 0.12 * measured) << sigma;
     }
     EXPECT_EQ(multiple_over_single(1, 0), 0);
-    EXPECT_EQ(multiple_over_single(even_fog(1)), double(infinity));
+    EXPECT_EQ(multiple_over_single(even_medium(1)), double(infinity));
 }
 
 // Within a tenth of what light paths and path tracing find, give or take three standard errors.
 void expect_as_predicted(float optical_radius, float g, int paths, int points, double precision) {
     const double predicted = multiple_over_single(optical_radius, 0.99);
-    const Snapshot snapshot = scene_of({ball(optical_radius, g)}, {sun({0.3f, -1, 0.2f})});
+    const Snapshot snapshot = snapshot_of({ball(optical_radius, g)}, {sun_light({0.3f, -1, 0.2f})});
     const ScatteringRatio measured = measured_ratio(snapshot, paths);
     const double spread = measured.high - measured.ratio;
     EXPECT_NEAR(measured.ratio, predicted, 0.1 * predicted + spread);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(ScatteringOrders, ScatteringOrdersOfBall, testing::Valu
 
 TEST(ScatteringOrders, ConfidenceCoversTheTruth) {
     // 95 % of intervals should: of 40, hardly ever less than 33.
-    const Snapshot snapshot = scene_of({even_fog(1, {vec3(0), vec3(1)})}, {sun({0, -1, 0})});
+    const Snapshot snapshot = snapshot_of({even_medium(1, {vec3(0), vec3(1)})}, {sun_light({0, -1, 0})});
     const double truth = measured_ratio(snapshot, 1 << 20, 99).ratio;
     int covered = 0;
     for (uint32_t seed = 0; seed < 40; ++seed) {
@@ -96,16 +96,16 @@ TEST(ScatteringOrders, ConfidenceCoversTheTruth) {
 
 TEST(ScatteringOrders, BoundIsAboveWhatIsMissing) {
     for (const float sigma : {0.1f, 0.5f, 2.0f}) {
-        Medium fog = even_fog(sigma, {vec3(0), vec3(1)});
+        Medium fog = even_medium(sigma, {vec3(0), vec3(1)});
         fog.optics.albedo = vec3(0.9f);
-        const Snapshot snapshot = scene_of({fog}, {sun({0, -1, 0})});
+        const Snapshot snapshot = snapshot_of({fog}, {sun_light({0, -1, 0})});
         const double q = 0.9 * (1 - std::exp(-sigma * std::sqrt(3.0)));
         EXPECT_NEAR(truncation_bound(snapshot, 1), q / (1 - q), 1e-5 * q);
         EXPECT_NEAR(truncation_bound(snapshot, 3), q * q * q / (1 - q), 1e-5 * q);
         EXPECT_GT(truncation_bound(snapshot, 1), measured_ratio(snapshot).high);
     }
-    EXPECT_EQ(truncation_bound(scene_of({even_fog(1)}, {}), 1), double(infinity));
-    EXPECT_EQ(measured_ratio(scene_of({even_fog(1)}, {})).ratio, 0);
+    EXPECT_EQ(truncation_bound(snapshot_of({even_medium(1)}, {}), 1), double(infinity));
+    EXPECT_EQ(measured_ratio(snapshot_of({even_medium(1)}, {})).ratio, 0);
 }
 }
 }

@@ -51,13 +51,6 @@ Snapshot snapshot_of(const Scene& scene, std::vector<Medium> media) {
     return snapshot;
 }
 
-Medium even_medium(float extinction, Box box) {
-    Medium medium;
-    medium.optics.extinction = extinction;
-    medium.bounds = medium.world_bounds = box;
-    return medium;
-}
-
 Limitations no_limitations(const View&, const Snapshot&, const Settings&) { return {}; }
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*)) {

@@ -30,8 +30,6 @@ View plain_view(ivec2 size, int samples, float ortho_height = 0);
 Snapshot snapshot_of(const Scene& scene);
 Snapshot snapshot_of(const Scene& scene, std::vector<Medium> media);
 
-Medium even_medium(float extinction, Box box = everywhere());
-
 std::vector<Limitation> no_limitations(const View&, const Snapshot&, const Settings&);
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*));

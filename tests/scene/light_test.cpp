@@ -1,15 +1,10 @@
 #include "scene/light.h"
+#include "trace/small_scenes.h"
 
 #include <gtest/gtest.h>
 
 namespace tyndall {
 namespace {
-Light point_light(vec3 position, float candela) {
-    Light light;
-    light.position = position, light.intensity = vec3(candela);
-    return light;
-}
-
 TEST(Light, PointFollowsTheInverseSquare) {
     const Light light = point_light({1, 2, 3}, 50);
     for (const float distance : {0.01f, 0.5f, 1.0f, 20.0f, 3000.0f}) {

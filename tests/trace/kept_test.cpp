@@ -3,6 +3,7 @@
 #include "support/meshes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/kept_shadows.h"
+#include "trace/small_scenes.h"
 
 #include "base/parallel.h"
 #include "trace/kept.h"
@@ -40,7 +41,7 @@ template<class T> Keyed<T> from_to(T a, T b) {
 Scene lamp_scene() {
     Scene scene;
     add_mesh(scene, quad({-3, 0, -3}, {6, 0, 0}, {0, 0, 6}));
-    add_mesh(scene, box_mesh({-0.5f, 1, -0.5f}, {0.5f, 1.5f, 0.5f}), Node{});
+    add_mesh(scene, box_of({-0.5f, 1, -0.5f}, {0.5f, 1.5f, 0.5f}), Node{});
     MediumSource fog;
     fog.name = "mist", fog.kind = MediumKind::noise;
     FogRecipe recipe;

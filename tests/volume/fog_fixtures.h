@@ -1,9 +1,8 @@
 // Fog grids made in memory, and the plainest possible look at them.
 #pragma once
 #include "base/random.h"
+#include "trace/small_scenes.h"
 #include "volume/bricks/bricks.h"
-#include "volume/bricks/sparse_volume.h"
-#include "volume/medium.h"
 
 #include <gtest/gtest.h>
 
@@ -44,26 +43,15 @@ inline float exact_noise(int x, int y, int z) {
            256;
 }
 
-inline Medium medium_of(const SparseVolume& volume, float extinction = 1) {
-    Medium medium;
-    medium.kind = DensityKind::bricks;
-    medium.optics.extinction = extinction;
-    medium.bricks = make_bricks(volume);
-    medium.world_bounds = medium.bricks->bounds;
-    return medium;
-}
-
-inline Medium homogeneous(float extinction, Box bounds = everywhere(), const mat4& local_to_world = mat4(1)) {
-    Medium medium;
-    medium.optics.extinction = extinction;
-    medium.bounds = bounds;
+// The medium in another place.
+inline Medium placed(Medium medium, const mat4& local_to_world) {
     medium.world_to_local = glm::inverse(local_to_world);
-    medium.world_bounds = transform(local_to_world, bounds);
+    medium.world_bounds = transform(local_to_world, medium.bounds);
     return medium;
 }
 
 inline Medium height_fog(float extinction, float base, float falloff, Box bounds = everywhere()) {
-    Medium medium = homogeneous(extinction, bounds);
+    Medium medium = even_medium(extinction, bounds);
     medium.kind = DensityKind::height;
     medium.height_base = base, medium.height_falloff = falloff;
     return medium;

@@ -106,10 +106,12 @@ StressScene odd_size(double pixels) {
 double phase_integral(Phase phase) {
     // In u with cosine = 1 - 2 u^4 about the lobe: narrow lobes are resolved.
     const double sign = phase.g < 0 ? -1 : 1;
-    return integral(0, 1, 400, [&](double u) {
-        const double cosine = 1 - 2 * u * u * u * u;
-        return 2 * std::numbers::pi * 8 * u * u * u * phase_value(phase, static_cast<float>(sign * cosine));
-    });
+    return integral(
+        [&](double u) {
+            const double cosine = 1 - 2 * u * u * u * u;
+            return 2 * std::numbers::pi * 8 * u * u * u * phase_value(phase, static_cast<float>(sign * cosine));
+        },
+        0, 1, 400);
 }
 double phase_off(Trial& trial) {
     return std::abs(phase_integral({PhaseKind::henyey_greenstein, static_cast<float>(trial.value)}) - 1);

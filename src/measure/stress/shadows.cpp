@@ -34,21 +34,11 @@ Medium dust(float extinction = 0.15f) { return even_medium(extinction, {vec3(-3)
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
 const Camera aside = camera_from({0, 0, 7}, vec3(0));
 
-// A parallelogram of two triangles.
-Mesh plate(vec3 corner, vec3 a, vec3 b, int material = -1) {
-    Mesh mesh;
-    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
-    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    mesh.material = material;
-    return mesh;
-}
-
 // A roof with a gap that is not in the middle: no ray runs in the face of a shaft.
 std::vector<Mesh> roof_with_slit(float width, float height = 2, float middle = 0.137f) {
     const float low = middle - 0.5f * width, high = middle + 0.5f * width;
-    return {plate({-20, height, -20}, {20 + low, 0, 0}, {0, 0, 40}),
-            plate({high, height, -20}, {20 - high, 0, 0}, {0, 0, 40})};
+    return {quad({-20, height, -20}, {20 + low, 0, 0}, {0, 0, 40}),
+            quad({high, height, -20}, {20 - high, 0, 0}, {0, 0, 40})};
 }
 
 StressScene slit(double width) {
@@ -58,7 +48,7 @@ StressScene slit(double width) {
 StressScene lit_floor(double elevation) {
     const float e = static_cast<float>(elevation) * pi / 180;
     return stress_scene({dust()}, {sun_light({std::cos(e), -std::sin(e), 0}, 10)},
-                        camera_from({0, 1, 5}, {0, -0.5f, 0}), {plate({-20, -1, -20}, {40, 0, 0}, {0, 0, 40})});
+                        camera_from({0, 1, 5}, {0, -0.5f, 0}), {quad({-20, -1, -20}, {40, 0, 0}, {0, 0, 40})});
 }
 
 StressScene orbit(double azimuth) {
@@ -79,7 +69,7 @@ StressScene fence(double wire) {
     std::vector<Mesh> meshes;
     const float w = static_cast<float>(wire);
     for (int i = -12; i <= 12; ++i)
-        meshes.push_back(plate({0.25f * static_cast<float>(i) + 0.037f, 2, -3}, {w, 0, 0}, {0, 0, 6}));
+        meshes.push_back(quad({0.25f * static_cast<float>(i) + 0.037f, 2, -3}, {w, 0, 0}, {0, 0, 6}));
     return stress_scene({dust()}, {slanting}, aside, meshes);
 }
 
@@ -91,7 +81,7 @@ StressScene holed(double kind) {
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
             if (i == 1 && j == 1) continue;
-            const Mesh part = plate({at[i], 2, at[j]}, {at[i + 1] - at[i], 0, 0}, {0, 0, at[j + 1] - at[j]});
+            const Mesh part = quad({at[i], 2, at[j]}, {at[i + 1] - at[i], 0, 0}, {0, 0, at[j + 1] - at[j]});
             const auto first = static_cast<uint32_t>(mesh.positions.size());
             mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
             for (glm::uvec3 triangle : part.triangles) {
@@ -104,9 +94,9 @@ StressScene holed(double kind) {
         }
     std::vector<Mesh> meshes{mesh};
     if (static_cast<Sheet>(static_cast<int>(kind)) == Sheet::pieces)
-        meshes = {plate({-20, 2, -20}, {19.4f, 0, 0}, {0, 0, 40}), plate({0.7f, 2, -20}, {19.3f, 0, 0}, {0, 0, 40}),
-                  plate({-0.6f, 2, -20}, {1.3f, 0, 0}, {0, 0, 19.4f}),
-                  plate({-0.6f, 2, 0.7f}, {1.3f, 0, 0}, {0, 0, 19.3f})};
+        meshes = {quad({-20, 2, -20}, {19.4f, 0, 0}, {0, 0, 40}), quad({0.7f, 2, -20}, {19.3f, 0, 0}, {0, 0, 40}),
+                  quad({-0.6f, 2, -20}, {1.3f, 0, 0}, {0, 0, 19.4f}),
+                  quad({-0.6f, 2, 0.7f}, {1.3f, 0, 0}, {0, 0, 19.3f})};
     return stress_scene({dust()}, {slanting}, aside, meshes);
 }
 
@@ -190,7 +180,7 @@ StressScene soft_lamp(double radius) {
 StressScene glass(double alpha) {
     Material material;
     material.alpha_mode = AlphaMode::blend, material.alpha = static_cast<float>(alpha);
-    std::vector<Mesh> meshes{plate({-1, 2, -3}, {2, 0, 0}, {0, 0, 6}, 0)};
+    std::vector<Mesh> meshes{quad({-1, 2, -3}, {2, 0, 0}, {0, 0, 6}, 0)};
     return stress_scene({dust()}, {slanting}, aside, meshes, {material});
 }
 
@@ -203,7 +193,7 @@ StressScene cut_out(double share) {
     for (int x = 0; x < static_cast<int>(64 * share); ++x) texture.texels.at(x, 0).w = 0;
     StressScene scene = stress_scene({dust()}, {slanting}, aside);
     scene.scene->materials = {material}, scene.scene->textures = {texture};
-    scene.scene->meshes = {plate({-1.5f, 2, -3}, {3, 0, 0}, {0, 0, 6}, 0)};
+    scene.scene->meshes = {quad({-1.5f, 2, -3}, {3, 0, 0}, {0, 0, 6}, 0)};
     scene.scene->instances = {{-1, 0}};
     add_surfaces(*scene.scene, scene.snapshot);
     return scene;

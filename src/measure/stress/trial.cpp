@@ -178,13 +178,6 @@ double leak(Trial& trial) {
     return mean_of(trial.render().inscatter) / mean_of(trial.render(open).inscatter);
 }
 
-Light spot_light(vec3 position, vec3 direction, float candela, float inner, float outer) {
-    Light light = point_light(position, candela);
-    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
-    light.inner_cone = inner, light.outer_cone = outer;
-    return light;
-}
-
 Camera camera_from(vec3 position, vec3 target, float vertical_fov) {
     return look_at(position, target, vec3(0, 1, 0), vertical_fov);
 }

@@ -62,7 +62,6 @@ double most_of(const Image<vec3>& image);
 // --- scenes ------------------------------------------------------------------------------------------------------
 constexpr ivec2 stress_size{49, 27}; // odd: the middle ray looks where the camera does
 
-Light spot_light(vec3 position, vec3 direction, float candela, float inner, float outer);
 Camera camera_from(vec3 position, vec3 target, float vertical_fov = 0.7f);
 Camera flat_camera(vec3 position, vec3 target, float height); // orthographic
 

@@ -1,17 +1,12 @@
 // Scenes without files and light along single rays, for checks. Internal to verify.
 #pragma once
+#include "integrate/gauss_legendre.h"
 #include "integrate/ray_batch.h"
 #include "measure/verify/verify.h"
 #include "modes/settings.h"
-#include "scene/mesh.h"
-#include "volume/bricks/sparse_volume.h"
-#include "volume/phase.h"
+#include "trace/small_scenes.h"
 
 namespace tyndall {
-struct Light;
-struct Medium;
-struct Mode;
-struct Snapshot;
 // A list of checks under way.
 struct Checks {
     std::vector<Check> list;
@@ -36,18 +31,8 @@ std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyCo
 
 // --- scenes ------------------------------------------------------------------------------------------------------
 Phase forward_phase(float g);
-Medium even_medium(float extinction, Box box, Phase phase = forward_phase(0), vec3 albedo = vec3(1));
 Medium noise_medium(float extinction, Phase phase = forward_phase(0), vec3 albedo = vec3(1)); // rough, fills 0..1
-SparseVolume unit_volume(int n, const std::function<float(vec3)>& density); // n^3 voxels that fill 0..1
-Medium medium_of(const SparseVolume& volume, float extinction);
-Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density); // fills 0..1
-Light sun_light(vec3 direction, float lux);
-Light point_light(vec3 position, float candela);
-Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights, vec3 ambient = vec3(0));
-Mesh box_of(vec3 low, vec3 high, int material);
-Mesh floor_of(float height, float half, int material);
-// The scene must outlive the snapshot.
-void add_surfaces(const Scene& scene, Snapshot& snapshot);
+Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density);  // fills 0..1
 
 // --- light -------------------------------------------------------------------------------------------------------
 struct RayLight {
@@ -58,7 +43,4 @@ RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int o
 
 // Light of the fog along a ray by the deterministic reference.
 Scatter reference_light(const Snapshot& snapshot, const Ray& ray);
-
-// ∫ f over a..b by Gauss–Legendre with 5 nodes on each of `pieces` pieces.
-double integral(double a, double b, int pieces, const std::function<double(double)>& f);
 }

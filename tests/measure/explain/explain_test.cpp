@@ -3,7 +3,6 @@
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
-#include "support/meshes.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -38,7 +37,7 @@ Mesh plate() { return named(quad({-1, 1, -5}, {2, 0, 0}, {0, 0, 2}), "plate"); }
 // Ends the ray at 10 m.
 Mesh wall() { return named(quad({-50, -50, -10}, {100, 0, 0}, {0, 100, 0}), "wall"); }
 
-Medium hall() { return even_fog(0.2f, {{-20, -20, -20}, {20, 20, 20}}); }
+Medium hall() { return even_medium(0.2f, {{-20, -20, -20}, {20, 20, 20}}); }
 
 RayStory told(const Snapshot& snapshot, std::vector<const Mode*> asked = {}, const View& view = axis_view(),
               ivec2 pixel = middle) {
@@ -59,7 +58,7 @@ void expect_near(vec3 a, vec3 b, double share) {
 
 TEST(Explain, FogIsThatOfBeerAndLambert) {
     const float sigma = 0.3f;
-    const RayStory story = told(scene_of({even_fog(sigma, {{-1, -1, -8}, {1, 1, -2}})}, {}));
+    const RayStory story = told(snapshot_of({even_medium(sigma, {{-1, -1, -8}, {1, 1, -2}})}, {}));
     ASSERT_FALSE(story.steps.empty());
     EXPECT_NEAR(story.steps.front().low, 2, 1e-6);
     EXPECT_NEAR(story.steps.back().high, 8, 1e-6);
@@ -78,7 +77,7 @@ TEST(Explain, FogIsThatOfBeerAndLambert) {
 }
 
 TEST(Explain, AmbientLightHasItsClosedForm) {
-    const RayStory story = told(scene_of({even_fog(0.3f, {{-1, -1, -8}, {1, 1, -2}})}, {}, vec3(0.5f, 1, 2)));
+    const RayStory story = told(snapshot_of({even_medium(0.3f, {{-1, -1, -8}, {1, 1, -2}})}, {}, vec3(0.5f, 1, 2)));
     expect_near(story.glow, vec3(0.5f, 1, 2) * static_cast<float>(1 - std::exp(-1.8)), 1e-5);
     expect_near(story.reference.inscatter, story.glow, 1e-5);
 }
@@ -98,7 +97,7 @@ void expect_dark_between(const LightOnRay& light, double low, double high) {
 }
 
 TEST(Explain, AShadowLiesWhereItsPlateSays) {
-    const Stage stage = stage_of({hall()}, {sun({0, -1, 0}), point_light({0, 2, -4})}, {plate(), wall()});
+    const Stage stage = stage_of({hall()}, {sun_light({0, -1, 0}), point_light({0, 2, -4})}, {plate(), wall()});
     const RayStory story = told(stage.snapshot);
     ASSERT_EQ(story.lights.size(), 2u);
     expect_dark_between(story.lights[0], 3, 5);
@@ -113,7 +112,7 @@ TEST(Explain, AShadowLiesWhereItsPlateSays) {
 TEST(Explain, ASpotReachesWhatItsConeHolds) {
     Light spot = point_light({0, 2, -4});
     spot.kind = LightKind::spot, spot.direction = {0, -1, 0}, spot.outer_cone = pi / 4;
-    const RayStory story = told(scene_of({hall()}, {spot}));
+    const RayStory story = told(snapshot_of({hall()}, {spot}));
     const std::vector<LightStretch>& stretches = story.lights[0].stretches;
     ASSERT_EQ(stretches.size(), 3u);
     EXPECT_EQ(stretches[0].state, Lighting::out_of_reach);
@@ -125,7 +124,7 @@ TEST(Explain, ASpotReachesWhatItsConeHolds) {
 
 TEST(Explain, ASoftLightHasAHalfShadow) {
     // The shadow of an edge 1 m above, in a light of half angle a, is half dark over 2 tan a.
-    Light light = sun({0, -1, 0});
+    Light light = sun_light({0, -1, 0});
     light.angle = 0.05f;
     const Stage stage = stage_of({hall()}, {light}, {plate()});
     const RayStory story = told(stage.snapshot);
@@ -147,7 +146,7 @@ TEST(Explain, ASoftLightHasAHalfShadow) {
 TEST(Explain, AlphaLetsItsShareThrough) {
     Mesh sheet = plate();
     sheet.material = 0; // alpha 1/2
-    const Stage stage = stage_of({hall()}, {sun({0, -1, 0})}, {sheet, wall()});
+    const Stage stage = stage_of({hall()}, {sun_light({0, -1, 0})}, {sheet, wall()});
     const RayStory story = told(stage.snapshot);
     EXPECT_TRUE(story.lights[0].sampled);
     const std::vector<LightStretch>& stretches = story.lights[0].stretches;
@@ -161,7 +160,7 @@ TEST(Explain, AlphaLetsItsShareThrough) {
 
 TEST(Explain, TheRayGoesOnBehindASheet) {
     Mesh sheet = named(quad({-1, -1, -4}, {2, 0, 0}, {0, 2, 0}, 0), "sheet"); // alpha 1/2
-    const Stage stage = stage_of({hall()}, {sun({0, -1, 0})}, {sheet, wall()}, vec3(1));
+    const Stage stage = stage_of({hall()}, {sun_light({0, -1, 0})}, {sheet, wall()}, vec3(1));
     const RayStory story = told(stage.snapshot);
     ASSERT_EQ(story.surfaces.size(), 2u);
     EXPECT_EQ(story.surfaces[0].name, "sheet");
@@ -183,12 +182,14 @@ TEST(Explain, StepsAddUpToTheReference) {
     Light near = point_light({0, 0.01f, -6}, 0.1f); // a centimetre off the ray
     near.intensity = {0.1f, 0.2f, 0.3f};
     const Medium grid = [] {
-        Medium medium = grid_fog(0.5f, unit_grid(16, [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x + 7 * p.z); }));
+        Medium medium =
+            medium_of(unit_volume(16, [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x + 7 * p.z); }), 0.5f);
         return medium;
     }();
     View view = axis_view();
     view.camera.position = {0.4f, 0.6f, 3};
-    const Stage stage = stage_of({hall(), grid}, {sun({0.3f, -1, 0.1f}), soft, near}, {plate(), wall()}, vec3(0.02f));
+    const Stage stage =
+        stage_of({hall(), grid}, {sun_light({0.3f, -1, 0.1f}), soft, near}, {plate(), wall()}, vec3(0.02f));
     for (const ivec2 pixel : {middle, ivec2(20, 10), ivec2(3, 2)}) {
         const RayStory story = told(stage.snapshot, {}, view, pixel);
         expect_near(sum_of(story), story.reference.inscatter, 1e-3);
@@ -202,8 +203,8 @@ TEST(Explain, StepsAddUpToTheReference) {
 }
 
 TEST(Explain, StepsAddUpWithStyleToo) {
-    const Stage stage =
-        stage_of({hall()}, {sun({0.3f, -1, 0.1f}), point_light({0.5f, 2, -4}, 3)}, {plate(), wall()}, vec3(0.02f));
+    const Stage stage = stage_of({hall()}, {sun_light({0.3f, -1, 0.1f}), point_light({0.5f, 2, -4}, 3)},
+                                 {plate(), wall()}, vec3(0.02f));
     Settings settings = settings_for(Quality::preview);
     settings.style = {0.4f, 0.6f, 1.5f, 9, vec3(1, 0.5f, 2)};
     const RayStory story = explain_ray(axis_view(), stage.snapshot, settings, middle, {});
@@ -225,7 +226,7 @@ View one_sample(View view) {
 TEST(Explain, ModesAnswerAsInTheirPictures) {
     Light lamp = point_light({0, 2, -6}, 8);
     lamp.name = "lamp";
-    const Stage stage = stage_of({hall()}, {sun({0.2f, -1, 0.1f}), lamp}, {plate(), wall()}, vec3(0.01f));
+    const Stage stage = stage_of({hall()}, {sun_light({0.2f, -1, 0.1f}), lamp}, {plate(), wall()}, vec3(0.01f));
     const View view = one_sample(axis_view());
     const Settings settings = settings_for(Quality::preview);
     const ivec2 pixel(18, 7);
@@ -250,7 +251,7 @@ TEST(Explain, ModesAnswerAsInTheirPictures) {
 }
 
 TEST(Explain, PathsOfOneScatteringAgreeWithTheReference) {
-    const Stage stage = stage_of({hall()}, {sun({0.2f, -1, 0.1f}, 3)}, {plate(), wall()});
+    const Stage stage = stage_of({hall()}, {sun_light({0.2f, -1, 0.1f}, 3)}, {plate(), wall()});
     Settings settings = settings_for(Quality::preview);
     settings.path.orders = 1;
     ExplainOptions options;
@@ -289,7 +290,7 @@ TEST(Explain, DifferencesAreOfLuminance) {
 }
 
 TEST(Explain, ReportsStayWithinTheirColumns) {
-    const Stage stage = stage_of({hall()}, {sun({0.2f, -1, 0.1f})}, {plate(), wall()}, vec3(0.01f));
+    const Stage stage = stage_of({hall()}, {sun_light({0.2f, -1, 0.1f})}, {plate(), wall()}, vec3(0.01f));
     const RayStory story = told(stage.snapshot, all_modes());
     const std::string text = explain_text(story, {"a scene.json", "eye", "preview", 1});
     for (size_t start = 0; start < text.size();) {
@@ -305,7 +306,7 @@ TEST(Explain, ReportsStayWithinTheirColumns) {
 }
 
 TEST(Explain, NoFogIsAStoryToo) {
-    const Stage stage = stage_of({}, {sun({0.2f, -1, 0.1f})}, {wall()});
+    const Stage stage = stage_of({}, {sun_light({0.2f, -1, 0.1f})}, {wall()});
     const RayStory story = told(stage.snapshot, {&find_mode("march")});
     EXPECT_TRUE(story.steps.empty());
     EXPECT_EQ(story.reference.inscatter, vec3(0));

@@ -4,7 +4,6 @@
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "support/meshes.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -26,13 +25,6 @@ View small_view() {
     return view;
 }
 
-Light spot_light() {
-    Light light = point_light({-3, 2.5f, 0}, 50);
-    light.name = "spot", light.kind = LightKind::spot;
-    light.direction = glm::normalize(vec3(3, -2, 0)), light.inner_cone = 0.2f, light.outer_cone = 0.3f;
-    return light;
-}
-
 const Term& term_named(const std::vector<Term>& terms, std::string_view name) {
     for (const Term& term : terms)
         if (term.name == name) return term;
@@ -45,7 +37,8 @@ Plan plan_of(const Snapshot& snapshot, double error) {
 }
 
 TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
-    const Snapshot snapshot = scene_of({even_fog(0.1f, room)}, {spot_light()});
+    const Snapshot snapshot =
+        snapshot_of({even_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.01);
     for (const char* name :
          {"shadows", "changing density", "direction of scattering", "emission", "ambient light in fog"}) {
@@ -59,7 +52,8 @@ TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
 // 8 m across each side: no line is longer than 13.9 m.
 TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
     const float extinction = 1e-4f;
-    const Snapshot snapshot = scene_of({even_fog(extinction, room)}, {spot_light()});
+    const Snapshot snapshot =
+        snapshot_of({even_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     EXPECT_NEAR(thickest_line(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.05);
     for (const char* name : {"dimming of light on its way", "fog before surfaces"}) {
@@ -75,22 +69,25 @@ TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
     Settings all;
     all.fluence.orders = all_orders;
     for (const float extinction : {1e-4f, 1.0f}) {
-        const std::vector<Term> terms =
-            terms_of(small_view(), scene_of({even_fog(extinction, room)}, {spot_light()}), all, 0.05);
+        const std::vector<Term> terms = terms_of(
+            small_view(),
+            snapshot_of({even_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), all,
+            0.05);
         const Term& term = term_named(terms, "light scattered again");
         EXPECT_EQ(term.needed, extinction > 0.1f);
         EXPECT_EQ(without_needless(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
     }
 }
 
-TEST(Terms, EndlessFogHasNoThickestLine) { EXPECT_EQ(thickest_line(scene_of({even_fog(0.1f)}, {})), infinity); }
+TEST(Terms, EndlessFogHasNoThickestLine) { EXPECT_EQ(thickest_line(snapshot_of({even_medium(0.1f)}, {})), infinity); }
 
 // Light in the middle of thick fog: what is lost on the way is the same measured and in closed form at every point of
 // the picture's middle; here only that it is large, and known to be.
 TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
     const Phase forward{PhaseKind::henyey_greenstein, 0.8f};
     const Stage stage =
-        stage_of({even_fog(0.5f, room, forward)}, {spot_light()}, {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+        stage_of({even_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const std::vector<Term> terms = terms_of(small_view(), stage.snapshot, Settings{}, 0.02);
     for (const char* name : {"shadows", "dimming of light on its way", "direction of scattering"}) {
         const Term& term = term_named(terms, name);
@@ -110,7 +107,7 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
     view.camera.ortho_height = 2, view.filter = PixelFilter::center;
     const Phase phase{PhaseKind::henyey_greenstein, 0.3f};
     const Snapshot snapshot =
-        scene_of({even_fog(0.001f, Box{vec3(-10, -10, -1), vec3(10, 10, 1)}, phase)}, {sun({1, 0, -1})});
+        snapshot_of({even_medium(0.001f, Box{vec3(-10, -10, -1), vec3(10, 10, 1)}, phase)}, {sun_light({1, 0, -1})});
     const std::vector<Term> terms = terms_of(view, snapshot, Settings{}, 1e-3);
     const double seen = phase_value_of<double>(phase, glm::dot(glm::normalize(vec3(1, 0, -1)), vec3(0, 0, 1)));
     const double expected = std::abs(1 / (4 * std::numbers::pi * seen) - 1);
@@ -118,7 +115,8 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
 }
 
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
-    const Plan plan = plan_of(scene_of({even_fog(0.1f, room)}, {spot_light()}), 0.02);
+    const Plan plan =
+        plan_of(snapshot_of({even_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), 0.02);
     EXPECT_TRUE(plan.chosen.gets_there());
     EXPECT_LE(plan.chosen.error, 0.02);
     const auto cone = std::ranges::find(plan.standings, "cone", [](const Standing& s) { return s.mode->name; });
@@ -127,7 +125,8 @@ TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
 }
 
 TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
-    const Stage stage = stage_of({even_fog(0.2f, room)}, {spot_light()}, {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const Stage stage = stage_of({even_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const Plan plan = plan_of(stage.snapshot, 0.05);
     EXPECT_TRUE(plan.chosen.gets_there());
     for (const Standing& standing : plan.standings) {

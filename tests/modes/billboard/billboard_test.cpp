@@ -19,14 +19,6 @@
 namespace tyndall::test {
 namespace {
 // A parallelogram: corner, and the two edges from it.
-void add_quad(Scene& scene, vec3 corner, vec3 a, vec3 b) {
-    Mesh mesh;
-    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    scene.meshes.push_back(mesh);
-    scene.instances.push_back({-1, static_cast<int>(scene.meshes.size()) - 1});
-}
-
 // A wall at x = 0 with a hole |y - 2|, |z| < 0.5, floor and ceiling, and fog behind the wall; a sun shines through the
 // hole at 45 degrees and lands on the floor about x = 2.
 struct HoleInWall {
@@ -35,13 +27,13 @@ struct HoleInWall {
 
     HoleInWall() {
         const vec3 up(0, 1, 0), along(0, 0, 1);
-        add_quad(scene, {0, 0, -4}, 1.5f * up, 8.0f * along);
-        add_quad(scene, {0, 2.5f, -4}, 3.5f * up, 8.0f * along);
-        add_quad(scene, {0, 1.5f, -4}, up, 3.5f * along);
-        add_quad(scene, {0, 1.5f, 0.5f}, up, 3.5f * along);
-        add_quad(scene, {0, 0, -4}, {6, 0, 0}, 8.0f * along);
-        add_quad(scene, {0, 6, -4}, {6, 0, 0}, 8.0f * along);
-        snapshot = scene_of({even_fog(0.2f, {vec3(0, 0, -4), vec3(6, 6, 4)})}, {sun({1, -1, 0}, 10)});
+        add_mesh(scene, quad({0, 0, -4}, 1.5f * up, 8.0f * along));
+        add_mesh(scene, quad({0, 2.5f, -4}, 3.5f * up, 8.0f * along));
+        add_mesh(scene, quad({0, 1.5f, -4}, up, 3.5f * along));
+        add_mesh(scene, quad({0, 1.5f, 0.5f}, up, 3.5f * along));
+        add_mesh(scene, quad({0, 0, -4}, {6, 0, 0}, 8.0f * along));
+        add_mesh(scene, quad({0, 6, -4}, {6, 0, 0}, 8.0f * along));
+        snapshot = snapshot_of({even_medium(0.2f, {vec3(0, 0, -4), vec3(6, 6, 4)})}, {sun_light({1, -1, 0}, 10)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -93,7 +85,7 @@ TEST(Billboard, FindsTheHoleInAWall) {
 
 TEST(Billboard, ClosedHolesHaveNoCards) {
     HoleInWall hole;
-    add_quad(hole.scene, {-0.01f, 1, -1}, {0, 2, 0}, {0, 0, 2});
+    add_mesh(hole.scene, quad({-0.01f, 1, -1}, {0, 2, 0}, {0, 0, 2}));
     hole.snapshot.occluders = Occluders::make(hole.scene, 0, nullptr);
     EXPECT_TRUE(place_cards(hole.snapshot, BillboardSettings{}).empty());
 }
@@ -154,9 +146,9 @@ struct OpenPosts {
     Ray ray{{-5, 1, 9}, {0, 0, -1}, 18};
 
     OpenPosts() {
-        add_quad(scene, {-10, 0, -10}, {20, 0, 0}, {0, 0, 20});
-        for (const float z : {-3.5f, -0.5f, 2.5f}) add_quad(scene, {0, 0, z}, {0, 4, 0}, {0, 0, 1});
-        snapshot = scene_of({even_fog(0.02f, {vec3(-10, 0, -10), vec3(10, 8, 10)})}, {sun({1, -1, 0}, 10)});
+        add_mesh(scene, quad({-10, 0, -10}, {20, 0, 0}, {0, 0, 20}));
+        for (const float z : {-3.5f, -0.5f, 2.5f}) add_mesh(scene, quad({0, 0, z}, {0, 4, 0}, {0, 0, 1}));
+        snapshot = snapshot_of({even_medium(0.02f, {vec3(-10, 0, -10), vec3(10, 8, 10)})}, {sun_light({1, -1, 0}, 10)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -244,7 +236,7 @@ TEST(Billboard, NamesItsLimitations) {
     const HoleInWall hole;
     const Mode& mode = find_mode("billboard");
     EXPECT_TRUE(says(mode.limitations(view_from({1, 1, 0}, {3, 1, 0}), hole.snapshot, {}), limitation::camera_in_card));
-    Snapshot open = scene_of({even_fog(0.2f)}, {sun({0, -1, 0})});
+    Snapshot open = snapshot_of({even_medium(0.2f)}, {sun_light({0, -1, 0})});
     EXPECT_TRUE(says(mode.limitations({}, open, {}), limitation::no_opening));
 }
 }

@@ -25,10 +25,8 @@ namespace {
 constexpr double degree = M_PI / 180;
 
 Light spot(vec3 position, vec3 direction, double inner, double outer, float candela = 1) {
-    Light light = point_light(position, candela);
-    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
-    light.inner_cone = static_cast<float>(inner * degree), light.outer_cone = static_cast<float>(outer * degree);
-    return light;
+    return spot_light(position, direction, candela, static_cast<float>(inner * degree),
+                      static_cast<float>(outer * degree));
 }
 
 std::vector<Scatter> coned(const Snapshot& snapshot, const Settings& settings, const std::vector<Ray>& rays) {
@@ -53,7 +51,7 @@ vec3 random_vector(RandomStream& random, float size) {
 
 Medium random_medium(RandomStream& random, int kind, vec3 place) {
     const float extinction = std::pow(10.0f, -2 + 2 * random.next()), g = 1.2f * random.next() - 0.6f;
-    Medium medium = even_fog(extinction, everywhere(), {PhaseKind::henyey_greenstein, g});
+    Medium medium = even_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g});
     const vec3 half = 2.0f + 3.0f * vec3(random.next(), random.next(), random.next());
     const vec3 middle = place + random_vector(random, 2);
     if (kind > 0) medium.bounds = medium.world_bounds = Box{middle - half, middle + half};
@@ -80,7 +78,7 @@ Case random_case(uint32_t number, int rays) {
     const int kind = number / 10 % 4;
     std::vector<Medium> media{random_medium(random, std::min(kind, 2), place)};
     if (kind == 3) media.push_back(random_medium(random, 1, place));
-    Case result{scene_of(media, {light}), {}};
+    Case result{snapshot_of(media, {light}), {}};
 
     vec3 u, v;
     make_frame(axis, u, v);
@@ -141,7 +139,7 @@ TEST(Cone, WithoutExtinctionIsTheArcTangent) {
     // ∫ dt/|o + t d - l|² over 0..D = (atan((D+b)/s) - atan(b/s))/s.
     const float extinction = 1e-6f;
     const vec3 light(0.4f, 1.1f, -3);
-    const Snapshot snapshot = scene_of({even_fog(extinction)}, {point_light(light)});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {point_light(light)});
     for (const vec3 target : {vec3(0, 0, -5), vec3(0.3f, 1, -3), vec3(0.39f, 1.09f, -2.99f), vec3(5, 2, 7)}) {
         const Ray ray = towards({0, 0.5f, 1}, target, 9);
         const dvec3 q = dvec3(ray.origin) - dvec3(light), d = glm::normalize(dvec3(ray.direction));
@@ -153,18 +151,18 @@ TEST(Cone, WithoutExtinctionIsTheArcTangent) {
 
 TEST(Cone, NothingBehindTheApexAndNothingAtZeroAngle) {
     const Ray behind{{-4, 0, 1}, {1, 0, 0}, 8}, across{{-4, 0, -1}, {1, 0, 0}, 8};
-    const Snapshot narrow = scene_of({even_fog(0.3f)}, {spot(vec3(0), {0, 0, -1}, 5, 20)});
+    const Snapshot narrow = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 5, 20)});
     EXPECT_EQ(coned(narrow, behind).radiance.x, 0);
     EXPECT_GT(coned(narrow, across).radiance.x, 0);
     EXPECT_EQ(coned(narrow, {{0, 0, 0.5f}, {0, 0, 1}, 8}).radiance.x, 0); // away along the axis
-    const Snapshot none = scene_of({even_fog(0.3f)}, {spot(vec3(0), {0, 0, -1}, 0, 0)});
+    const Snapshot none = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 0, 0)});
     EXPECT_EQ(coned(none, across).radiance.x, 0);
     EXPECT_EQ(coned(none, {{0, 0, 4}, {0, 0, -1}, 8}).radiance.x, 0);
 }
 
 TEST(Cone, NinetyDegreesIsHalfOfAPointLight) {
-    const Snapshot half = scene_of({even_fog(0.3f)}, {spot(vec3(0), {0, 0, -1}, 90, 90)});
-    const Snapshot point = scene_of({even_fog(0.3f)}, {point_light(vec3(0))});
+    const Snapshot half = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 90, 90)});
+    const Snapshot point = snapshot_of({even_medium(0.3f)}, {point_light(vec3(0))});
     // From z = -2 to the plane z = 0, and on behind it.
     const Ray beyond = towards({-1, 0.4f, -2}, {1, 0.2f, 2}, 6);
     const Ray until{beyond.origin, beyond.direction, 2 / beyond.direction.z};
@@ -175,7 +173,7 @@ TEST(Cone, TheLensOnlyCutsAway) {
     // A lens of 0.2 m in a cone of 45 degrees: no light before 0.2 m along the axis, the same light behind.
     Settings lens;
     lens.of<ConeSettings>().near_radius = 0.2f;
-    const Snapshot snapshot = scene_of({even_fog(0.3f)}, {spot(vec3(0), {0, 0, -1}, 30, 45)});
+    const Snapshot snapshot = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 30, 45)});
     const Ray near{{-4, 0, -0.19f}, {1, 0, 0}, 8}, far{{-4, 0, -0.21f}, {1, 0, 0}, 8};
     EXPECT_EQ(coned(snapshot, near, lens).radiance.x, 0);
     EXPECT_EQ(coned(snapshot, far, lens).radiance.x, coned(snapshot, far).radiance.x);
@@ -190,7 +188,7 @@ TEST(Cone, StaysSmoothThroughTheLight) {
     for (const float radius : {0.0f, 0.05f}) {
         Light light = point_light(vec3(0));
         light.radius = radius;
-        const Snapshot snapshot = scene_of({even_fog(0.3f)}, {light});
+        const Snapshot snapshot = snapshot_of({even_medium(0.3f)}, {light});
         const float at = coned(snapshot, towards({0, 0, 3}, {1e-7f, 0, 0}, 6)).radiance.x;
         const float beside = coned(snapshot, towards({0, 0, 3}, {2e-7f, 0, 0}, 6)).radiance.x;
         const float through = coned(snapshot, {{0, 0, 3}, {0, 0, -1}, 6}).radiance.x;
@@ -201,9 +199,10 @@ TEST(Cone, StaysSmoothThroughTheLight) {
 
 TEST(Cone, AmbientLightAndEmissionOfOverlappingMedia) {
     // Constant glow per extinction c_m on overlapping slabs: piecewise c (1 - e^-τ).
-    Medium first = even_fog(0.5f, {vec3(-1), vec3(1)}), second = even_fog(1.5f, {vec3(-1, -1, -1), vec3(1, 1, 0)});
+    Medium first = even_medium(0.5f, {vec3(-1), vec3(1)}),
+           second = even_medium(1.5f, {vec3(-1, -1, -1), vec3(1, 1, 0)});
     first.optics.albedo = vec3(0.5f), second.optics.emission = vec3(3), second.optics.albedo = vec3(0);
-    const Snapshot snapshot = scene_of({first, second}, {}, vec3(2));
+    const Snapshot snapshot = snapshot_of({first, second}, {}, vec3(2));
     const Scatter result = coned(snapshot, {{0, 0, 5}, {0, 0, -1}, 20});
     const double t1 = std::exp(-0.5), t2 = std::exp(-2.0);
     EXPECT_NEAR(result.radiance.x / (1 * (1 - t1) + t1 * (0.25 * 1 + 0.75 * 2) * (1 - t2)), 1, 1e-5);
@@ -213,8 +212,8 @@ TEST(Cone, AmbientLightAndEmissionOfOverlappingMedia) {
 TEST(Cone, FollowsTheReferenceInEvenFogUnderALampAndASun) {
     const Light lamp = spot({0.3f, 2, -1}, {0.1f, -1, 0.1f}, 15, 25, 20);
     const Box box{vec3(-3, -1, -3), vec3(3, 3, 3)};
-    Snapshot snapshot = scene_of({even_fog(0.4f, box, {PhaseKind::henyey_greenstein, 0.5f})},
-                                 {lamp, sun({0.5f, -1, 0.2f})}, vec3(0.02f));
+    Snapshot snapshot = snapshot_of({even_medium(0.4f, box, {PhaseKind::henyey_greenstein, 0.5f})},
+                                    {lamp, sun_light({0.5f, -1, 0.2f})}, vec3(0.02f));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.8f, 0.7f), snapshot.lights[0].volume_scale = 1.5f;
     std::vector<Ray> rays;
     for (int i = 0; i < 32; ++i) {
@@ -236,7 +235,7 @@ TEST(Cone, FollowsTheReferenceInEvenFogUnderALampAndASun) {
 }
 
 TEST(Cone, EveryControlDoesWhatItSays) {
-    const Snapshot snapshot = scene_of({even_fog(0.4f)}, {spot({0, 2, 0}, {0, -1, 0}, 10, 20)});
+    const Snapshot snapshot = snapshot_of({even_medium(0.4f)}, {spot({0, 2, 0}, {0, -1, 0}, 10, 20)});
     const Ray ray{{-3, 0, 0}, {1, 0, 0}, 8};
     const float plain = coned(snapshot, ray).radiance.x;
     const auto with = [&](auto change) {
@@ -264,7 +263,7 @@ TEST(Cone, EveryControlDoesWhatItSays) {
 
 TEST(Cone, NamesWhatItDoesNotSee) {
     const Mode& mode = find_mode("cone");
-    Snapshot snapshot = scene_of({grid_fog(1, unit_grid(8, [](vec3 p) { return p.x; }))}, {point_light(vec3(2))});
+    Snapshot snapshot = snapshot_of({medium_of(unit_volume(8, [](vec3 p) { return p.x; }), 1)}, {point_light(vec3(2))});
     EXPECT_TRUE(says(mode.limitations({}, snapshot, {}), limitation::drawn_as_homogeneous));
     EXPECT_EQ(coned(snapshot, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).validity, 0.5f);
     EXPECT_EQ(coned(snapshot, {{5, 5, 3}, {0, 0, -1}, 10}).validity, 1.0f);

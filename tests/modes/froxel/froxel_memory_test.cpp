@@ -10,10 +10,10 @@
 namespace tyndall::test {
 namespace {
 Stage lit_stage(bool lamp = true) {
-    std::vector<Light> lights{sun({0.3f, -1, 0.1f}, 0.1f)};
+    std::vector<Light> lights{sun_light({0.3f, -1, 0.1f}, 0.1f)};
     if (lamp) lights.push_back(point_light({0.5f, 4.5f, 0}, 40));
-    return stage_of({even_fog(0.2f, {vec3(-3), vec3(3)})}, lights,
-                    {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_mesh({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
+    return stage_of({even_medium(0.2f, {vec3(-3), vec3(3)})}, lights,
+                    {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_of({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
 }
 
 View moved_view(int frame) {

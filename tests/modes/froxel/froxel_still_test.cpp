@@ -12,7 +12,7 @@ namespace tyndall::test {
 namespace {
 Stage stage() {
     Stage result = half_shadowed_fog();
-    result.snapshot.media.push_back(even_fog(0.1f, {vec3(-2, 0, -2), vec3(0, 2, 2)}));
+    result.snapshot.media.push_back(even_medium(0.1f, {vec3(-2, 0, -2), vec3(0, 2, 2)}));
     return result;
 }
 

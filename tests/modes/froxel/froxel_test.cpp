@@ -23,7 +23,7 @@ Settings with(const std::vector<std::string>& assignments) {
 TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
     // Sun across the view, not dimmed on its way: L = p E (1 - e^-σt), T = e^-σt, also in the middle of slices.
     const float extinction = 0.15f;
-    const Snapshot snapshot = scene_of({even_fog(extinction, {vec3(-60), vec3(60)})}, {sun({0, -1, 0}, 2)});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction, {vec3(-60), vec3(60)})}, {sun_light({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 25}, {0, 0, 0});
     for (const std::string& way : ways) {
         const ScatterFunction scatter = froxels(view, snapshot, with({way, "terms.light=off"}));
@@ -41,7 +41,7 @@ TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
 
 TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
     // L = (albedo · ambient + j/σ) (1 - e^-σs) through a box of depth s = 4 seen from outside, straight on.
-    Snapshot snapshot = scene_of({even_fog(0.5f, {vec3(-50, -50, -4), vec3(50, 50, 0)})}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-50, -50, -4), vec3(50, 50, 0)})}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(1, 0, 2);
     const View view = view_of({0, 0, 6}, {0, 0, 0}, {65, 37});
     const Scatter result = scattered(froxels(view, snapshot, {}), {{{0, 0, 6}, {0, 0, -1}, 100}})[0];
@@ -53,7 +53,7 @@ TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
 }
 
 TEST(Froxel, FogWithoutEndIsFollowedBehindTheScene) {
-    const Snapshot snapshot = scene_of({even_fog(0.02f)}, {sun({0, -1, 0}, 2)});
+    const Snapshot snapshot = snapshot_of({even_medium(0.02f)}, {sun_light({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 12}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, snapshot, with({"terms.light=off"}));
     for (const float t : {5.0f, 20.0f, 24.0f, 60.0f, 300.0f, 600.0f}) {
@@ -67,9 +67,9 @@ TEST(Froxel, FogWithoutEndIsFollowedBehindTheScene) {
 
 TEST(Froxel, ADarkRoomStaysDark) {
     // A closed room of thin walls in fog that is everywhere, under a sun of 100 000 lux.
-    Mesh room = box_mesh({-3, 0, -4}, {3, 3, 4});
-    const std::vector<Medium> fog{even_fog(0.1f, {vec3(-20), vec3(20)})};
-    const Stage stage = stage_of(fog, {sun({0.4f, -1, 0.3f}, 1e5f)}, {room});
+    Mesh room = box_of({-3, 0, -4}, {3, 3, 4});
+    const std::vector<Medium> fog{even_medium(0.1f, {vec3(-20), vec3(20)})};
+    const Stage stage = stage_of(fog, {sun_light({0.4f, -1, 0.3f}, 1e5f)}, {room});
     const View inside = view_of({1.5f, 1.2f, 3.5f}, {-1, 1.4f, -4});
     const View outside = view_of({1.5f, 1.2f, 15}, {-1, 1.4f, 6});
     for (const int tile : {1, 4, 8, 16})
@@ -115,7 +115,7 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
     for (int i = 0; i < 6; ++i) {
         Light lamp = point_light({0.1f * static_cast<float>(i), 0.1f, 0.3f});
         lamp.radius = 0.15f;
-        const Snapshot snapshot = scene_of({even_fog(0.2f, {vec3(-3), vec3(3)})}, {lamp});
+        const Snapshot snapshot = snapshot_of({even_medium(0.2f, {vec3(-3), vec3(3)})}, {lamp});
         const std::vector<Ray> rays = picture_rays(view, snapshot);
         const double truth = mean_radiance(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
@@ -132,7 +132,7 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
 
 TEST(Froxel, StretchesBehindGlassContinueTheRay) {
     const Stage stage =
-        stage_of({even_fog(0.3f, {vec3(-6), vec3(6)})}, {sun({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
+        stage_of({even_medium(0.3f, {vec3(-6), vec3(6)})}, {sun_light({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
                  {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
     const View view = view_of({0, 0, 5}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, stage.snapshot, {});
@@ -149,11 +149,11 @@ TEST(Froxel, StretchesBehindGlassContinueTheRay) {
 }
 
 Stage busy_stage() {
-    Medium banks = grid_fog(0.6f, unit_grid(16, [](vec3 p) { return p.x * p.y + 0.2f; }));
+    Medium banks = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 0.6f);
     Light soft = point_light({1.4f, 1.2f, 0.4f}, 3);
     soft.radius = 0.1f;
-    return stage_of({even_fog(0.2f, {vec3(-1), vec3(2)}), banks}, {sun({0.4f, -1, -0.3f}, 1), soft},
-                    {box_mesh({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
+    return stage_of({even_medium(0.2f, {vec3(-1), vec3(2)}), banks}, {sun_light({0.4f, -1, -0.3f}, 1), soft},
+                    {box_of({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
                     vec3(0.1f));
 }
 
@@ -226,7 +226,7 @@ TEST(Froxel, PartsOfTheLightsAddUp) {
 }
 
 TEST(Froxel, NoFogIsNothing) {
-    const Stage stage = stage_of({}, {sun({0, -1, 0})}, {box_mesh(vec3(-1), vec3(1))});
+    const Stage stage = stage_of({}, {sun_light({0, -1, 0})}, {box_of(vec3(-1), vec3(1))});
     const View view = view_of({0, 0, 6}, vec3(0));
     for (const Scatter& result : scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot))) {
         EXPECT_EQ(result.radiance, vec3(0));

@@ -1,11 +1,11 @@
 // The exact march against closed forms, quadrature of the light equation, and the sampled march.
+#include "integrate/gauss_legendre.h"
 #include "integrate/ray_batch.h"
 #include "modes/busy_stage.h"
 #include "modes/limitation.h"
 #include "modes/march/limitations.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
-#include "support/integral.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "trace/occlusion/occluders.h"
@@ -25,7 +25,7 @@ TEST(MarchExact, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
     // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
     const float extinction = 1.5f, height = 0.3f;
-    const Stage stage = stage_of({even_fog(extinction, unit_box)}, {sun({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const Stage stage = stage_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
     const Scatter result = marched(stage.snapshot, exact_settings(), {{2, height, 0.5f}, {-1, 0, 0}, 10});
     const double lit = 1 - double(0.4f - 50 + 50);
     const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
@@ -35,9 +35,9 @@ TEST(MarchExact, SunPastAnEdgeIsItsClosedForm) {
 
 TEST(MarchExact, SlantedSunThroughASlitMatchesQuadrature) {
     // A slit of 0.2 in a roof at y = 1; the sun's direction has x/y = 1/2, so light at height 0 comes from x + 1/2.
-    const Light light = sun({-0.5f, -1, 0}, 2);
+    const Light light = sun_light({-0.5f, -1, 0}, 2);
     const Stage stage =
-        stage_of({even_fog(0.8f)}, {light},
+        stage_of({even_medium(0.8f)}, {light},
                  {quad({-40, 1, -40}, {40, 0, 0}, {0, 0, 80}), quad({0.25f, 1, -40}, {40, 0, 0}, {0, 0, 80})});
     Settings settings = exact_settings();
     settings.terms.light = LightTransmittance::off; // the sun's way through fog without end is black
@@ -51,7 +51,7 @@ TEST(MarchExact, PointLightPastAnEdgeMatchesQuadrature) {
     for (const float g : {0.0f, 0.6f, -0.9f}) {
         const Light light = point_light({1, 2, 0}, 7);
         const Stage stage =
-            stage_of({even_fog(0.3f, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light}, {shade(0.5f, 1)});
+            stage_of({even_medium(0.3f, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light}, {shade(0.5f, 1)});
         const Ray ray{{-2, 0, 0}, {1, 0, 0}, 8};
         const double s = double(0.3f), gg = g;
         const auto integrand = [&](double t) {
@@ -67,7 +67,7 @@ TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
     Light light = point_light({0, 3, 0}, 40);
     light.kind = LightKind::spot, light.direction = {0, -1, 0};
     light.inner_cone = 0.15f, light.outer_cone = 0.4f, light.range = 3.2f;
-    const Stage stage = stage_of({even_fog(0.2f)}, {light}, {shade(-0.25f, 1.5f)}); // throws x < -0.5
+    const Stage stage = stage_of({even_medium(0.2f)}, {light}, {shade(-0.25f, 1.5f)}); // throws x < -0.5
     const Ray ray{{-4, 0, 0}, {1, 0, 0}, 8};
     const double inner = std::cos(double(0.15f)), outer = std::cos(double(0.4f)), range = light.range;
     const auto integrand = [&](double t) {
@@ -85,7 +85,7 @@ TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
 TEST(MarchExact, RayThroughTheLightItself) {
     // Inside 0.1 mm the inverse square law is held: s/(4π)·(2·∫ from 1e-4 + 2·1e-4/1e-8), with e^(-s(t+r)) in thin fog.
     const double s = 1e-3f, reach = smallest_radius;
-    const Stage stage = stage_of({even_fog(1e-3f)}, {point_light({0, 0, 0})}, {});
+    const Stage stage = stage_of({even_medium(1e-3f)}, {point_light({0, 0, 0})}, {});
     const double expected = s / four_pi * (2 * (1 / reach - 1.0 / 2) + 2 / reach) * std::exp(-s * 2);
     const Scatter result = marched(stage.snapshot, exact_settings(), {{-2, 0, 0}, {1, 0, 0}, 4});
     EXPECT_NEAR(result.radiance.x / expected, 1, 1e-5); // e^-st is not quite constant over what matters
@@ -95,7 +95,7 @@ TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
     Medium fog;
     fog.kind = DensityKind::height, fog.optics = {0.4f, vec3(0.9f), {PhaseKind::isotropic, 0}, vec3(0)};
     fog.height_base = 0.5f, fog.height_falloff = 2;
-    const Light light = sun({0.6f, -0.8f, 0}, 5);
+    const Light light = sun_light({0.6f, -0.8f, 0}, 5);
     const Stage stage = stage_of({fog}, {light}, {shade(-30, 30)}); // above everything that counts
     const vec3 direction = glm::normalize(vec3(2, 1, 0));
     const Ray ray{{-30, -2, 0}, direction, 30};
@@ -119,9 +119,9 @@ TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
 
 TEST(MarchExact, GlowNeedsNoLight) {
     // Ambient light and emission under a closed roof: (a·A + e/s)(1 - e^-s) for each medium, by its share of both.
-    std::vector<Medium> media{even_fog(2, unit_box), even_fog(1, unit_box)};
+    std::vector<Medium> media{even_medium(2, unit_box), even_medium(1, unit_box)};
     media[0].optics.albedo = vec3(0.5f), media[1].optics.emission = vec3(0.25f);
-    Stage stage = stage_of(media, {sun({0, -1, 0})}, {shade(50, 2)}, vec3(1, 2, 0));
+    Stage stage = stage_of(media, {sun_light({0, -1, 0})}, {shade(50, 2)}, vec3(1, 2, 0));
     const vec3 radiance = marched(stage.snapshot, exact_settings(), {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).radiance;
     const double covered = 1 - std::exp(-3.0);
     EXPECT_NEAR(radiance.x / ((2 * 0.5 + 1 + 0.25) / 3 * covered), 1, 1e-6);
@@ -207,11 +207,12 @@ TEST(MarchExact, HalvingEveryBoundChangesNothing) {
 TEST(MarchExact, ASmallDenseGridDrawsItsShadowInWideHaze) {
     // Kilometres of haze under a striped grid of a metre: its shadow on the ray has to be found and resolved.
     const auto stripes = [](vec3 p) { return 0.5f + 0.5f * std::sin(40 * p.x); };
-    std::vector<Medium> media{grid_fog(8, unit_grid(32, stripes)), even_fog(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
+    std::vector<Medium> media{medium_of(unit_volume(32, stripes), 8),
+                              even_medium(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
     Light lamp = point_light({0.5f, 3, 0.5f}, 5);
-    for (const Light& light : {sun({0.2f, -1, 0}), lamp}) {
+    for (const Light& light : {sun_light({0.2f, -1, 0}), lamp}) {
         const Ray ray{{-850, -1, 0.5f}, {1, 0, 0}, 1700};
-        const Snapshot snapshot = scene_of(media, {light});
+        const Snapshot snapshot = snapshot_of(media, {light});
         const auto integrand = [&](double t) {
             const vec3 point(static_cast<float>(t - 850), -1, 0.5f);
             const Arrival at = arrival(light, point);
@@ -222,7 +223,7 @@ TEST(MarchExact, ASmallDenseGridDrawsItsShadowInWideHaze) {
         const std::vector<Medium> haze{media[1]};
         const double with = integral(integrand, 0, 846, 2000) + integral(integrand, 846, 854, 4000) +
                             integral(integrand, 854, 1700, 2000);
-        const double clear = marched(scene_of(haze, {light}), exact_settings(), ray).radiance.x;
+        const double clear = marched(snapshot_of(haze, {light}), exact_settings(), ray).radiance.x;
         const double found = marched(snapshot, exact_settings(), ray).radiance.x;
         EXPECT_LT(with, clear * 0.9999);
         EXPECT_NEAR((clear - found) / (clear - with), 1, 1e-2) << clear << ' ' << with << ' ' << found;
@@ -233,9 +234,9 @@ TEST(MarchExact, SheetsOfAlphaLetTheirShareThrough) {
     Mesh sheet = shade(50, 2);
     sheet.material = 0; // half transparent
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_fog(1, unit_box)};
-    const float open = marched(stage_of(fog, {sun({0, -1, 0})}, {}).snapshot, exact_settings(), ray).radiance.x;
-    const Stage under = stage_of(fog, {sun({0, -1, 0})}, {sheet});
+    const std::vector<Medium> fog{even_medium(1, unit_box)};
+    const float open = marched(stage_of(fog, {sun_light({0, -1, 0})}, {}).snapshot, exact_settings(), ray).radiance.x;
+    const Stage under = stage_of(fog, {sun_light({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, exact_settings(), ray).radiance.x / open, 0.5, 1e-6);
     Settings settings = exact_settings();
     const Limitations said = find_mode("march").limitations(View{}, under.snapshot, settings);
@@ -243,17 +244,17 @@ TEST(MarchExact, SheetsOfAlphaLetTheirShareThrough) {
 }
 
 TEST(MarchExact, LightsWithoutShadowsAndTheEndOfTheMarch) {
-    Light light = sun({0, -1, 0});
+    Light light = sun_light({0, -1, 0});
     light.shadows = false;
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_fog(6, unit_box)};
+    const std::vector<Medium> fog{even_medium(6, unit_box)};
     const Stage under = stage_of(fog, {light}, {shade(50, 2)});
-    const float expected = marched(scene_of(fog, {light}), exact_settings(), ray).radiance.x;
+    const float expected = marched(snapshot_of(fog, {light}), exact_settings(), ray).radiance.x;
     EXPECT_GT(expected, 0);
     EXPECT_EQ(marched(under.snapshot, exact_settings(), ray).radiance.x, expected);
 
     // A grid ends the march in the cell where less than a hundredth passes.
-    const Snapshot grid = scene_of({grid_fog(20, unit_grid(32, wavy))}, {light});
+    const Snapshot grid = snapshot_of({medium_of(unit_volume(32, wavy), 20)}, {light});
     Settings settings = exact_settings();
     settings.march.min_transmittance = 0.01f;
     const Ray far{{0.5f, 0.5f, 2}, {0, 0, -1}, 10};

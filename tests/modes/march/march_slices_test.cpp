@@ -21,7 +21,7 @@ TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
     // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
     const float height = 0.3f;
-    const Stage stage = stage_of({even_fog(1.5f, unit_box)}, {sun({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const Stage stage = stage_of({even_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
     const Scatter result = marched(stage.snapshot, settings_for(Quality::preview), {{2, height, 0.5f}, {-1, 0, 0}, 10});
     const double lit = 1 - double(0.4f - 50 + 50);
     const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
@@ -59,24 +59,24 @@ TEST(MarchSlices, ApproachesTheExactMarchBySecondOrder) {
 }
 
 TEST(MarchSlices, EveryKindOfLightInAGrid) {
-    const std::vector<Medium> fog{grid_fog(2, unit_grid(24, wavy))};
+    const std::vector<Medium> fog{medium_of(unit_volume(24, wavy), 2)};
     Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
     spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
     spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
-    for (const Light& light : {sun({0.3f, -1, 0.1f}), point_light({0.4f, 0.8f, 0.6f}), spot})
-        EXPECT_LT(worst(stage_of(fog, {light},
-                                 {shade(0.35f, 1.2f), box_mesh(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),
-                        sliced_settings(), busy_rays(64)),
-                  2e-3);
+    for (const Light& light : {sun_light({0.3f, -1, 0.1f}), point_light({0.4f, 0.8f, 0.6f}), spot})
+        EXPECT_LT(
+            worst(stage_of(fog, {light}, {shade(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),
+                  sliced_settings(), busy_rays(64)),
+            2e-3);
 }
 
 TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
     Mesh sheet = shade(50, 2);
     sheet.material = 0; // half transparent
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_fog(1, unit_box)};
-    const float open = marched(stage_of(fog, {sun({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
-    const Stage under = stage_of(fog, {sun({0, -1, 0})}, {sheet});
+    const std::vector<Medium> fog{even_medium(1, unit_box)};
+    const float open = marched(stage_of(fog, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
+    const Stage under = stage_of(fog, {sun_light({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, sliced_settings(), ray).radiance.x / open, 0.5, 1e-4); // 512 steps
     const Limitations said = find_mode("march").limitations(View{}, under.snapshot, sliced_settings());
     EXPECT_TRUE(says(said, limitation::sampled_alpha_shadows));
@@ -86,27 +86,27 @@ TEST(MarchSlices, SurfacesWithAlphaAreSampledBesideOpaqueOnes) {
     // An opaque and a half transparent sheet over parts of the ray: lit by 0, a half and all of the light.
     Mesh half = quad({0.2f, 2, -50}, {0.5f, 0, 0}, {0, 0, 100});
     half.material = 0;
-    const Stage stage = stage_of({even_fog(1e-3f, unit_box)}, {sun({0, -1, 0})}, {shade(0.2f, 1.5f), half});
+    const Stage stage = stage_of({even_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {shade(0.2f, 1.5f), half});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     const float open =
-        marched(stage_of({even_fog(1e-3f, unit_box)}, {sun({0, -1, 0})}, {}).snapshot, sliced_settings(), ray)
+        marched(stage_of({even_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray)
             .radiance.x;
     EXPECT_NEAR(marched(stage.snapshot, sliced_settings(), ray).radiance.x / open, 0.3 + 0.25, 2.0 / 512);
 }
 
 TEST(MarchSlices, LightsWithoutShadowsPassThroughSurfaces) {
-    Light light = sun({0, -1, 0});
+    Light light = sun_light({0, -1, 0});
     light.shadows = false;
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_fog(6, unit_box)};
+    const std::vector<Medium> fog{even_medium(6, unit_box)};
     const Stage under = stage_of(fog, {light}, {shade(50, 2)});
-    const float expected = marched(scene_of(fog, {light}), sliced_settings(), ray).radiance.x;
+    const float expected = marched(snapshot_of(fog, {light}), sliced_settings(), ray).radiance.x;
     EXPECT_GT(expected, 0);
     EXPECT_EQ(marched(under.snapshot, sliced_settings(), ray).radiance.x, expected);
 }
 
 TEST(MarchSlices, TheMarchEndsWhereLittlePasses) {
-    const Snapshot grid = scene_of({grid_fog(20, unit_grid(32, wavy))}, {sun({0, -1, 0})});
+    const Snapshot grid = snapshot_of({medium_of(unit_volume(32, wavy), 20)}, {sun_light({0, -1, 0})});
     Settings settings = sliced_settings();
     settings.march.min_transmittance = 0.1f;
     const Ray far{{0.5f, 0.5f, 2}, {0, 0, -1}, 10};

@@ -41,9 +41,9 @@ INSTANTIATE_TEST_SUITE_P(March, SoftLights, testing::Values(Visibility::interval
 TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     // Edge at x = 0.4, 1.7 m above a level ray through thin fog: what counts is the mean lit length. Brute force over
     // 256² directions of the disc.
-    Light light = sun({0.2f, -1, 0});
+    Light light = sun_light({0.2f, -1, 0});
     light.angle = 0.1f;
-    const Stage stage = stage_of({even_fog(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
+    const Stage stage = stage_of({even_medium(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     double mean = 0;
     constexpr int n = 256;
@@ -56,7 +56,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     mean /= n * n;
     Light hard = light;
     hard.angle = 0;
-    const double full = marched(scene_of(stage.snapshot.media, {hard}), settings(), ray).radiance.x;
+    const double full = marched(snapshot_of(stage.snapshot.media, {hard}), settings(), ray).radiance.x;
     const double found = mean_over_samples(stage.snapshot, settings(), ray, 1024).x;
     EXPECT_GT(mean, 0.1);
     EXPECT_LT(mean, 0.9);
@@ -66,7 +66,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
 TEST_P(SoftLights, SoftLampAgreesWithShadowRaysToItsBall) {
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.1f;
-    const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
+    const Stage stage = stage_of({even_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings rays = exact_settings();
     rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256;
@@ -82,7 +82,7 @@ TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
     // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.2f;
-    const Stage stage = stage_of({even_fog(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
+    const Stage stage = stage_of({even_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings many = settings();
     many.terms.light_points = 8;

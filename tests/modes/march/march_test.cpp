@@ -1,9 +1,9 @@
 // The march against closed forms and quadrature of the light equation.
 
 #include "base/random.h"
+#include "integrate/gauss_legendre.h"
 #include "modes/settings.h"
 #include "scene/light.h"
-#include "support/integral.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
@@ -21,7 +21,7 @@ TEST(March, BeerLambertSlabIsExactForAnyStepCount) {
         for (const float share : {1.0f, 0.5f, 0.1f, 1.0f / 37, 1.0f / 512}) {
             Settings settings;
             settings.march.step_share = share, settings.march.step_depth = 10, settings.march.min_transmittance = 0;
-            const Snapshot snapshot = scene_of({even_fog(extinction, unit_box)}, {});
+            const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {});
             const Ray ray{{0.3f, 0.4f, 3}, {0, 0, -1}, 10};
             EXPECT_NEAR(marched(snapshot, settings, ray).transmittance / std::exp(-extinction), 1, 1e-5) << share;
         }
@@ -29,7 +29,7 @@ TEST(March, BeerLambertSlabIsExactForAnyStepCount) {
 
 TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
     // Constant source: L = ambient · albedo · (1 - T), for any number of steps.
-    Snapshot snapshot = scene_of({even_fog(2, unit_box)}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot = snapshot_of({even_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     Settings settings;
     settings.march.min_transmittance = 0;
@@ -42,7 +42,7 @@ TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
 
 TEST(March, EmissionAbsorptionMatchesClosedForm) {
     // j = 1, sigma = 0.5, s = 3: (j/sigma)(1 - exp(-sigma s)) = 1.553739680.
-    Snapshot snapshot = scene_of({even_fog(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
+    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
     snapshot.media[0].optics.albedo = vec3(0), snapshot.media[0].optics.emission = vec3(1);
     Settings settings;
     settings.march.min_transmittance = 0;
@@ -53,7 +53,7 @@ TEST(March, SunInEvenFogMatchesClosedForm) {
     // Sun straight down on the unit box, level view ray at height y: light path 1-y, so
     // L = w p E exp(-s(1-y)) (1 - exp(-s x)).
     const float extinction = 1.5f, height = 0.3f;
-    const Snapshot snapshot = scene_of({even_fog(extinction, unit_box)}, {sun({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
     const Ray ray{{0.5f, height, 2}, {0, 0, -1}, 10};
     const double expected = 3 / (4 * M_PI) * std::exp(-extinction * (1 - height)) * (1 - std::exp(-extinction));
     for (const Quality quality : {Quality::preview, Quality::final, Quality::reference})
@@ -64,7 +64,7 @@ TEST(March, SlantedSunInEvenFogMatchesClosedForm) {
     // Light path grows along the ray: integrate the closed integrand (algorithm: Beer-Lambert both ways).
     const float extinction = 2;
     const vec3 direction = glm::normalize(vec3(-0.4f, -0.8f, 0.2f));
-    const Snapshot snapshot = scene_of({even_fog(extinction, unit_box)}, {sun(direction)});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light(direction)});
     const Ray ray{{0.2f, 0.3f, 2}, {0, 0, -1}, 10};
     const auto integrand = [&](double t) {
         const vec3 point = ray.at(static_cast<float>(t));
@@ -82,7 +82,7 @@ class PointLightInEvenFog : public testing::TestWithParam<Airlight> {};
 
 TEST_P(PointLightInEvenFog, MatchesTheAirlightIntegral) {
     const auto [extinction, h, a, expected] = GetParam();
-    const Snapshot snapshot = scene_of({even_fog(extinction)}, {point_light({0, h, -a})});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {point_light({0, h, -a})});
     const float far = a + 60 / extinction;
     EXPECT_NEAR(marched(snapshot, sampled_settings(), {{0, 0, 0}, {0, 0, -1}, far}).radiance.x / expected, 1, 1e-3);
 }
@@ -97,7 +97,7 @@ TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
         light.inner_cone = 0.3f, light.outer_cone = 0.6f;
         const float extinction = 0.6f;
         const Snapshot snapshot =
-            scene_of({even_fog(extinction, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light});
+            snapshot_of({even_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light});
         const Ray ray{{0, 0, 0}, {0, 0, -1}, 6};
         const auto integrand = [&](double t) {
             const Arrival at = arrival(light, ray.at(static_cast<float>(t)));
@@ -114,7 +114,7 @@ TEST(March, HeightFogTransmittanceMatchesClosedForm) {
     medium.kind = DensityKind::height, medium.optics = {0.1f, vec3(1), {}, vec3(0)}, medium.height_falloff = 10;
     Settings settings = sampled_settings();
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
-    EXPECT_NEAR(marched(scene_of({medium}, {}), settings, ray).transmittance / 0.177403331, 1, 1e-4);
+    EXPECT_NEAR(marched(snapshot_of({medium}, {}), settings, ray).transmittance / 0.177403331, 1, 1e-4);
 }
 
 TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
@@ -122,17 +122,17 @@ TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
     const float g = 0.6f;
     Settings settings = sampled_settings();
     settings.terms.light = LightTransmittance::off;
-    const Snapshot snapshot =
-        scene_of({even_fog(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})}, {sun({0, 0, 1})});
+    const Snapshot snapshot = snapshot_of({even_medium(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})},
+                                          {sun_light({0, 0, 1})});
     const float towards = marched(snapshot, settings, {{0, 0, 3}, {0, 0, -1}, 10}).radiance.x;
     const float away = marched(snapshot, settings, {{0, 0, -3}, {0, 0, 1}, 10}).radiance.x;
     EXPECT_NEAR(towards / away / std::pow((1 + g) / (1 - g), 3), 1, 1e-4);
 }
 
 TEST(March, ConstantGridEqualsEvenFog) {
-    const Light light = sun({0.3f, -1, -0.2f});
-    const Snapshot grid = scene_of({grid_fog(2, unit_grid(64, [](vec3) { return 1.0f; }))}, {light});
-    const Snapshot even = scene_of({even_fog(2, unit_box)}, {light});
+    const Light light = sun_light({0.3f, -1, -0.2f});
+    const Snapshot grid = snapshot_of({medium_of(unit_volume(64, [](vec3) { return 1.0f; }), 2)}, {light});
+    const Snapshot even = snapshot_of({even_medium(2, unit_box)}, {light});
     for (const vec3 origin : {vec3(0.5f, 0.5f, 3), vec3(0.21f, 0.77f, 3), vec3(0.83f, 0.36f, 3)}) {
         const Ray ray{origin, glm::normalize(vec3(0.02f, -0.03f, -1)), 10};
         const Scatter a = marched(grid, sampled_settings(), ray), b = marched(even, sampled_settings(), ray);
@@ -143,10 +143,10 @@ TEST(March, ConstantGridEqualsEvenFog) {
 
 TEST(March, TwoHalfDensityCopiesEqualOne) {
     const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 3 * p.z); };
-    const SparseVolume volume = unit_grid(32, wavy);
+    const SparseVolume volume = unit_volume(32, wavy);
     const Light light = point_light({0.5f, 1.4f, 0.5f});
-    const Snapshot one = scene_of({grid_fog(3, volume)}, {light});
-    const Snapshot two = scene_of({grid_fog(1.5f, volume), grid_fog(1.5f, volume)}, {light});
+    const Snapshot one = snapshot_of({medium_of(volume, 3)}, {light});
+    const Snapshot two = snapshot_of({medium_of(volume, 1.5f), medium_of(volume, 1.5f)}, {light});
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}, 10};
     const Scatter a = marched(one, sampled_settings(), ray), b = marched(two, sampled_settings(), ray);
     EXPECT_NEAR(a.radiance.x / b.radiance.x, 1, 1e-4);
@@ -156,7 +156,7 @@ TEST(March, TwoHalfDensityCopiesEqualOne) {
 TEST(March, ErrorFallsWithTheSteps) {
     // Wavy fog against a run of 512 steps: first order at least (edges), second in smooth fog.
     const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 13 * p.z); };
-    const Snapshot snapshot = scene_of({grid_fog(3, unit_grid(64, wavy))}, {sun({0.3f, -1, 0.1f})});
+    const Snapshot snapshot = snapshot_of({medium_of(unit_volume(64, wavy), 3)}, {sun_light({0.3f, -1, 0.1f})});
     std::vector<Ray> rays;
     for (int i = 0; i < 256; ++i) {
         const Sample2 at = sample2(i, 5);
@@ -187,7 +187,7 @@ TEST(March, FogWithoutEndKeepsShortStepsInTheScene) {
     // A spot's beam crosses the ray within 4 m of 2 km of thin fog: the preview has to find it.
     Light light = point_light({0, 2, -3}, 50);
     light.kind = LightKind::spot, light.direction = vec3(0, -1, 0), light.inner_cone = 0.1f, light.outer_cone = 0.2f;
-    Snapshot snapshot = scene_of({even_fog(0.01f)}, {light});
+    Snapshot snapshot = snapshot_of({even_medium(0.01f)}, {light});
     snapshot.bounds = {vec3(-3, -1, -6), vec3(3, 3, 1)};
     const Ray ray{{0, 0, 0}, {0, 0, -1}, 2000};
     const float exact = marched(snapshot, exact_settings(), ray).radiance.x;
@@ -196,7 +196,7 @@ TEST(March, FogWithoutEndKeepsShortStepsInTheScene) {
 
 TEST(March, EveryTermCanBeTurned) {
     Snapshot snapshot =
-        scene_of({grid_fog(3, unit_grid(32, [](vec3 p) { return p.x; }))}, {sun({0, -1, 0})}, vec3(0.2f));
+        snapshot_of({medium_of(unit_volume(32, [](vec3 p) { return p.x; }), 3)}, {sun_light({0, -1, 0})}, vec3(0.2f));
     snapshot.media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.7f};
     snapshot.media[0].optics.emission = vec3(0.3f);
     const Ray ray{{0.9f, 0.3f, 3}, {0, 0, -1}, 10};
@@ -211,9 +211,9 @@ TEST(March, EveryTermCanBeTurned) {
 
 TEST(March, NoFogIsClearAndNoLightIsBlack) {
     const Ray ray{{0, 0, 3}, {0, 0, -1}, 10};
-    EXPECT_EQ(marched(scene_of({}, {sun({0, -1, 0})}), {}, ray).transmittance, 1);
-    EXPECT_EQ(marched(scene_of({}, {sun({0, -1, 0})}), {}, ray).radiance, vec3(0));
-    EXPECT_EQ(marched(scene_of({even_fog(1, unit_box)}, {}), {}, ray).radiance, vec3(0));
+    EXPECT_EQ(marched(snapshot_of({}, {sun_light({0, -1, 0})}), {}, ray).transmittance, 1);
+    EXPECT_EQ(marched(snapshot_of({}, {sun_light({0, -1, 0})}), {}, ray).radiance, vec3(0));
+    EXPECT_EQ(marched(snapshot_of({even_medium(1, unit_box)}, {}), {}, ray).radiance, vec3(0));
 }
 }
 }

@@ -54,19 +54,10 @@ Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int order
     return estimate(path_mode(snapshot, orders), ray, samples, all_light);
 }
 
-void add_surfaces(const Scene& scene, Snapshot& snapshot) {
-    snapshot.scene = &scene;
-    snapshot.occluders = Occluders::make(scene, 0, nullptr);
-    snapshot.bounds.grow(snapshot.occluders->bounds());
-}
-
 Material lambert(vec3 base_color, vec3 emission) {
     Material material;
     material.base_color = base_color, material.emission = emission;
     return material;
 }
 
-Mesh floor_at(float height, float half, int material) {
-    return quad({-half, height, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, material);
-}
 }

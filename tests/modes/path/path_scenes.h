@@ -28,11 +28,5 @@ ScatterFunction path_mode(const Snapshot& snapshot, int orders = all_orders);
 
 Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders);
 
-// Surfaces of a scene, added to a snapshot that points to it.
-void add_surfaces(const Scene& scene, Snapshot& snapshot);
-
 Material lambert(vec3 base_color, vec3 emission = vec3(0));
-
-// A floor of `half` metres to each side at a height, facing up and down alike.
-Mesh floor_at(float height, float half, int material = -1);
 }

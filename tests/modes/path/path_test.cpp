@@ -39,12 +39,14 @@ Medium with_albedo(Medium medium, vec3 albedo) {
 }
 
 Medium noise_grid(float extinction, Phase phase) {
-    Medium medium = grid_fog(extinction, unit_grid(32, [](vec3 p) {
-                                 const uint32_t cell =
-                                     hash(static_cast<uint32_t>(p.x * 32), static_cast<uint32_t>(p.y * 32),
-                                          static_cast<uint32_t>(p.z * 32));
-                                 return std::max(0.0f, 2 * to_unit(cell) - 0.8f);
-                             }));
+    Medium medium = medium_of(unit_volume(32,
+                                          [](vec3 p) {
+                                              const uint32_t cell =
+                                                  hash(static_cast<uint32_t>(p.x * 32), static_cast<uint32_t>(p.y * 32),
+                                                       static_cast<uint32_t>(p.z * 32));
+                                              return std::max(0.0f, 2 * to_unit(cell) - 0.8f);
+                                          }),
+                              extinction);
     medium.optics.phase = phase;
     return medium;
 }
@@ -52,9 +54,10 @@ Medium noise_grid(float extinction, Phase phase) {
 TEST(Path, WhiteFurnaceIsWhite) {
     // Albedo 1 in even surroundings: every ray sees radiance 1, whatever the fog.
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
-    for (const Medium& medium : {even_fog(3, unit_box, forward(0.8f)), even_fog(3, unit_box, {PhaseKind::rayleigh, 0}),
-                                 noise_grid(8, forward(-0.5f)), noise_grid(2, isotropic)}) {
-        Snapshot snapshot = scene_of({medium}, {}, vec3(1));
+    for (const Medium& medium :
+         {even_medium(3, unit_box, forward(0.8f)), even_medium(3, unit_box, {PhaseKind::rayleigh, 0}),
+          noise_grid(8, forward(-0.5f)), noise_grid(2, isotropic)}) {
+        Snapshot snapshot = snapshot_of({medium}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 512), 1, 0.005);
     }
@@ -64,7 +67,7 @@ TEST(Path, NightlyWhiteFurnaceIsWhiteToTwoPerMille) {
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const float g : {-0.5f, 0.0f, 0.8f}) {
         Snapshot snapshot =
-            scene_of({noise_grid(6, forward(g)), even_fog(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
+            snapshot_of({noise_grid(6, forward(g)), even_medium(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 8192), 1, 0.002);
     }
@@ -73,8 +76,8 @@ TEST(Path, NightlyWhiteFurnaceIsWhiteToTwoPerMille) {
 TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
     Scene scene;
     scene.materials = {lambert(vec3(1))};
-    add_mesh(scene, box_mesh(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot = scene_of({noise_grid(4, forward(0.6f)), even_fog(1, unit_box)}, {}, vec3(1));
+    add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.6f)), even_medium(1, unit_box)}, {}, vec3(1));
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 512), 1, 0.006);
@@ -84,8 +87,8 @@ TEST(Path, GlowingFurnaceIsEven) {
     // A closed box whose walls glow with 1 - base colour: everything inside has radiance 1, fog of albedo 1 too.
     Scene scene;
     scene.materials = {lambert(vec3(0.6f, 0.3f, 0), vec3(0.4f, 0.7f, 1))};
-    add_mesh(scene, box_mesh(vec3(-1), vec3(2), 0));
-    Snapshot snapshot = scene_of({noise_grid(4, forward(0.5f)), even_fog(0.3f, unit_box)}, {});
+    add_mesh(scene, box_of(vec3(-1), vec3(2), 0));
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.5f)), even_medium(0.3f, unit_box)}, {});
     add_surfaces(scene, snapshot);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 1.5f}, glm::normalize(vec3(0.1f, 0, -1))}, 512), 1, 0.01);
 }
@@ -99,13 +102,13 @@ struct SlabCase {
 class PathSlab : public testing::TestWithParam<SlabCase> {};
 
 Estimate slab_share(const SlabCase& c, bool reflected, int samples) {
-    Medium fog = with_albedo(even_fog(c.depth, slab, forward(c.g)), vec3(c.albedo));
+    Medium fog = with_albedo(even_medium(c.depth, slab, forward(c.g)), vec3(c.albedo));
     static Scene scene; // a black floor under the slab and the camera keeps light from below away
     if (scene.meshes.empty()) {
         scene.materials = {lambert(vec3(0))};
-        add_mesh(scene, floor_at(-2, 1e5f, 0));
+        add_mesh(scene, floor_of(-2, 1e5f, 0));
     }
-    Snapshot snapshot = scene_of({fog}, {}, vec3(1));
+    Snapshot snapshot = snapshot_of({fog}, {}, vec3(1));
     add_surfaces(scene, snapshot);
     if (reflected) return traced(snapshot, {{0.5f, 3, 0.5f}, {0, -1, 0}}, samples);
     snapshot.background.color = vec3(1);
@@ -135,8 +138,8 @@ TEST(Path, RadianceOfASunlitSlabAsPublished) {
     } rows[] = {{1, 0.28616, 0.14864}, {0.9, 0.30277, 0.14731}, {0.7, 0.34188, 0.13963}, {0.3, 0.45353, 0.09425}};
     for (const auto& row : rows) {
         const float sine = static_cast<float>(std::sqrt(1 - row.mu0 * row.mu0));
-        const Light light = sun({sine, -static_cast<float>(row.mu0), 0}, static_cast<float>(pi / row.mu0));
-        const Snapshot snapshot = scene_of({with_albedo(even_fog(2, slab), vec3(0.8f))}, {light});
+        const Light light = sun_light({sine, -static_cast<float>(row.mu0), 0}, static_cast<float>(pi / row.mu0));
+        const Snapshot snapshot = snapshot_of({with_albedo(even_medium(2, slab), vec3(0.8f))}, {light});
         const vec3 down = glm::normalize(vec3(0, -0.5f, std::sqrt(0.75f)));
         expect_close(traced(snapshot, {vec3(0, 3, 0), down}, 1024), row.above, 0.01, "above");
         expect_close(traced(snapshot, {vec3(0, -2, 0), vec3(0, 0.5f, down.z)}, 1024), row.below, 0.01, "below");
@@ -148,7 +151,7 @@ TEST(Path, OneOrderIsTheClosedFormOfSingleScattering) {
     const double albedo = 0.9, depth = 2, mu0 = 1, mu = 0.5;
     const double factor = albedo / (4 * (mu + mu0)) * (1 - std::exp(-depth * (1 / mu + 1 / mu0)));
     EXPECT_NEAR(factor, 0.149628187, 1e-8);
-    const Snapshot snapshot = scene_of({with_albedo(even_fog(2, slab), vec3(0.9f))}, {sun({0, -1, 0}, pi)});
+    const Snapshot snapshot = snapshot_of({with_albedo(even_medium(2, slab), vec3(0.9f))}, {sun_light({0, -1, 0}, pi)});
     const Ray ray{{0, 3, 0}, glm::normalize(vec3(0, -0.5f, std::sqrt(0.75f)))};
     expect_close(traced(snapshot, ray, 512, 1), factor, 0.005);
 }
@@ -159,13 +162,13 @@ TEST(Path, PointLightInEvenFogIsTheAirlightIntegral) {
     } rows[] = {
         {1, 1, 1, 0.01745864f}, {0.1f, 1, 5, 0.01151431f}, {0.5f, 0.1f, 2, 0.40195407f}, {2, 0.5f, 0.5f, 0.06983456f}};
     for (const auto& row : rows) {
-        const Snapshot snapshot = scene_of({even_fog(row.extinction)}, {point_light({0, row.h, -row.a})});
+        const Snapshot snapshot = snapshot_of({even_medium(row.extinction)}, {point_light({0, row.h, -row.a})});
         expect_close(traced(snapshot, {{0, 0, 0}, {0, 0, -1}}, 1024, 1), row.expected, 0.01);
     }
 }
 
 TEST(Path, EmissionAbsorptionIsItsClosedForm) {
-    Snapshot snapshot = scene_of({with_albedo(even_fog(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
+    Snapshot snapshot = snapshot_of({with_albedo(even_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
     snapshot.media[0].optics.emission = vec3(1);
     expect_close(traced(snapshot, {{0, 0, 5}, {0, 0, -1}, 20}, 1024), 1.553739680, 0.005);
 }
@@ -174,8 +177,8 @@ TEST(Path, SurfaceUnderFogIsItsClosedForm) {
     // Sun at 60 degrees onto a floor below one metre of fog, seen straight down: base/π · E mu0 · e^(-s/mu0) · e^(-s).
     Scene scene;
     scene.materials = {lambert({0.8f, 0.4f, 0.2f})};
-    add_mesh(scene, floor_at(-0.5f, 100, 0));
-    Snapshot snapshot = scene_of({even_fog(0.7f, slab)}, {sun({std::sqrt(0.75f), -0.5f, 0}, 3)});
+    add_mesh(scene, floor_of(-0.5f, 100, 0));
+    Snapshot snapshot = snapshot_of({even_medium(0.7f, slab)}, {sun_light({std::sqrt(0.75f), -0.5f, 0}, 3)});
     add_surfaces(scene, snapshot);
     const Estimate got = estimate(path_mode(snapshot, 1), {{0, 4, 0}, {0, -1, 0}}, 64, surface_light);
     expect_close(got, dvec3(0.8, 0.4, 0.2) * (3 * 0.5 / M_PI * std::exp(-0.7 * 2 - 0.7)), 0.001);
@@ -186,9 +189,9 @@ TEST(Path, LightBouncesBetweenSurfaces) {
     // radiance of the lower = rho · (1 + up) with up = sigma · lower; lower = rho / (1 - rho sigma).
     Scene scene;
     scene.materials = {lambert(vec3(0.5f)), lambert(vec3(0.4f), vec3(1))};
-    add_mesh(scene, floor_at(0, 3000, 0));
-    add_mesh(scene, floor_at(1, 3000, 1));
-    Snapshot snapshot = scene_of({}, {});
+    add_mesh(scene, floor_of(0, 3000, 0));
+    add_mesh(scene, floor_of(1, 3000, 1));
+    Snapshot snapshot = snapshot_of({}, {});
     add_surfaces(scene, snapshot);
     const Ray ray{{0, 0.5f, 0}, {0, -1, 0}};
     expect_close(traced(snapshot, ray, 1024), 0.5 / (1 - 0.5 * 0.4), 0.01);
@@ -205,7 +208,7 @@ TEST(Path, GlowOnFogIsTheSameAimedAtOrFoundByChance) {
         scene.materials = {lambert(vec3(0), vec3(5, 3, 1))};
         scene.materials[0].alpha_mode = aimed ? AlphaMode::opaque : AlphaMode::blend;
         add_mesh(scene, quad({-0.5f, 1.2f, -0.5f}, {2, 0, 0}, {0, 0, 2}, 0));
-        Snapshot snapshot = scene_of({noise_grid(4, forward(0.5f))}, {});
+        Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.5f))}, {});
         add_surfaces(scene, snapshot);
         results[aimed] = traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 2048);
     }
@@ -222,7 +225,7 @@ TEST(Path, BlendSurfacesLetTheirShareThrough) {
     scene.materials[0].base_color = vec3(0);
     add_mesh(scene, quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 0));
     add_mesh(scene, quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, 0));
-    Snapshot snapshot = scene_of({even_fog(0.5f, {vec3(-2), vec3(2)})}, {});
+    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-2), vec3(2)})}, {});
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     const Ray ray{{0.1f, 0.2f, 5}, {0, 0, -1}};
@@ -235,11 +238,12 @@ TEST(Path, BlendSurfacesLetTheirShareThrough) {
 
 TEST(Path, GridOfOneValueIsEvenFog) {
     const Ray ray{{0.4f, 0.45f, 3}, glm::normalize(vec3(0.02f, 0.05f, -1))};
-    const SparseVolume full = unit_grid(32, [](vec3) { return 0.5f; });
-    Medium grid = with_albedo(grid_fog(4, full), vec3(0.9f));
-    const Medium even = with_albedo(even_fog(2, grid.bricks->bounds), vec3(0.9f));
-    const Light light = sun({0.3f, -1, -0.2f});
-    const Estimate a = traced(scene_of({grid}, {light}), ray, 1024), b = traced(scene_of({even}, {light}), ray, 1024);
+    const SparseVolume full = unit_volume(32, [](vec3) { return 0.5f; });
+    Medium grid = with_albedo(medium_of(full, 4), vec3(0.9f));
+    const Medium even = with_albedo(even_medium(2, grid.bricks->bounds), vec3(0.9f));
+    const Light light = sun_light({0.3f, -1, -0.2f});
+    const Estimate a = traced(snapshot_of({grid}, {light}), ray, 1024),
+                   b = traced(snapshot_of({even}, {light}), ray, 1024);
     // The outermost half voxel of a grid fades out: its mass is the same to 3/32 of a percent only across the middle.
     EXPECT_NEAR(a.value.x, b.value.x, sigmas * std::hypot(a.error.x, b.error.x) + 0.02 * b.value.x);
 }
@@ -248,14 +252,14 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
     Scene scene;
     scene.materials = {lambert(vec3(0.5f))};
     add_mesh(scene, quad({0.3f, 1.1f, -1}, {0.3f, 0, 0}, {0, 0, 3}, 0));
-    add_mesh(scene, floor_at(-0.2f, 5, 0));
+    add_mesh(scene, floor_of(-0.2f, 5, 0));
     Medium banks = noise_grid(3, forward(0.6f));
     banks.optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     Light spot = point_light({0.5f, 2, 0.5f}, 4);
     spot.kind = LightKind::spot, spot.direction = {0, -1, 0}, spot.inner_cone = 0.2f, spot.outer_cone = 0.5f;
     spot.volume_scale = 2;
-    Snapshot snapshot = scene_of({banks, even_fog(0.2f, {vec3(-1), vec3(2)})},
-                                 {sun({0.3f, -1, -0.2f}, 2), spot, point_light({0.2f, 0.3f, 0.4f}, 0.1f)});
+    Snapshot snapshot = snapshot_of({banks, even_medium(0.2f, {vec3(-1), vec3(2)})},
+                                    {sun_light({0.3f, -1, -0.2f}, 2), spot, point_light({0.2f, 0.3f, 0.4f}, 0.1f)});
     add_surfaces(scene, snapshot);
     Settings fine = exact_settings();
     fine.march.step_voxels = 0.1f, fine.march.step_share = 1.0f / 4000;
@@ -271,9 +275,9 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
 
 TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
     // Level ray in height fog under a sun overhead: even along the ray. Light path above y: s e^-y.
-    Medium fog = even_fog(0.2f);
+    Medium fog = even_medium(0.2f);
     fog.kind = DensityKind::height, fog.height_falloff = 1;
-    Snapshot snapshot = scene_of({fog}, {sun({0, -1, 0}, 3)});
+    Snapshot snapshot = snapshot_of({fog}, {sun_light({0, -1, 0}, 3)});
     snapshot.bounds = Box{};
     const double density = 0.2 * std::exp(-0.5);
     const double expected = 3 / (4 * M_PI) * std::exp(-density) * (1 - std::exp(-4 * density));
@@ -283,20 +287,20 @@ TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
 }
 
 TEST(Path, MistFarBelowALevelSunTakesNothing) {
-    Medium mist = even_fog(0.2f);
+    Medium mist = even_medium(0.2f);
     mist.kind = DensityKind::height, mist.height_falloff = 1;
     const Box high{vec3(-1, 199, -1), vec3(1, 201, 1)};
-    const Snapshot snapshot = scene_of({mist, even_fog(0.5f, high)}, {sun({1, 0, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({mist, even_medium(0.5f, high)}, {sun_light({1, 0, 0}, 3)});
     const double expected = 3 / (4 * M_PI) * std::exp(-0.5) * (1 - std::exp(-1.0));
     expect_close(traced(snapshot, {{0, 200, 4}, {0, 0, -1}}, 256, 1), expected, 0.01);
 }
 
 TEST(Path, ThickPlumesWithGapsHideNothingBehindThem) {
     // Two opaque halves with a gap between them; behind the gap thin haze is lit.
-    const SparseVolume walls = unit_grid(32, [](vec3 p) { return p.x > 0.4f && p.x < 0.6f ? 0.0f : 1.0f; });
-    Medium plume = with_albedo(grid_fog(400, walls), vec3(0));
+    const SparseVolume walls = unit_volume(32, [](vec3 p) { return p.x > 0.4f && p.x < 0.6f ? 0.0f : 1.0f; });
+    Medium plume = with_albedo(medium_of(walls, 400), vec3(0));
     const Box behind{vec3(-1, -1, -3), vec3(2, 2, -1)};
-    const Snapshot snapshot = scene_of({plume, even_fog(0.2f, behind)}, {sun({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({plume, even_medium(0.2f, behind)}, {sun_light({0, -1, 0}, 3)});
     const double expected = 3 / (4 * M_PI) * std::exp(-0.2 * 1.5) * (1 - std::exp(-0.4));
     expect_close(traced(snapshot, {{0.5f, 0.5f, 4}, {0, 0, -1}}, 256, 1), expected, 0.03);
 }
@@ -305,15 +309,15 @@ TEST(Path, LampVeryFarAwayIsASun) {
     Light lamp = point_light({0, 2e7f, 0}, 4e14f);
     Medium fog = noise_grid(3, forward(0.4f));
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}};
-    const Estimate far = traced(scene_of({fog}, {lamp}), ray, 512, 1),
-                   near = traced(scene_of({fog}, {sun({0, -1, 0})}), ray, 512, 1);
+    const Estimate far = traced(snapshot_of({fog}, {lamp}), ray, 512, 1),
+                   near = traced(snapshot_of({fog}, {sun_light({0, -1, 0})}), ray, 512, 1);
     EXPECT_NEAR(far.value.x, near.value.x, sigmas * std::hypot(far.error.x, near.error.x));
     EXPECT_LT(far.error.x, 0.02 * far.value.x);
 }
 
 TEST(Path, LightsArePartsOfTheWhole) {
     const Snapshot snapshot =
-        scene_of({noise_grid(3, forward(0.4f))}, {sun({0.3f, -1, -0.2f}), point_light({0.5f, 2, 0.5f})});
+        snapshot_of({noise_grid(3, forward(0.4f))}, {sun_light({0.3f, -1, -0.2f}), point_light({0.5f, 2, 0.5f})});
     const ScatterFunction scatter = path_mode(snapshot);
     const std::vector<Ray> rays(16, Ray{{0.4f, 0.45f, 3}, {0, 0, -1}});
     for (uint32_t i = 0; i < 50; ++i) {

@@ -35,7 +35,8 @@ double mean(const Image<vec3>& image) {
 
 // A sun at an angle to the right of a camera that looks along -z.
 Snapshot sun_at(float angle) {
-    return scene_of({even_fog(0.1f, Box{vec3(-50), vec3(50)})}, {sun(-vec3(std::sin(angle), 0, -std::cos(angle)))});
+    return snapshot_of({even_medium(0.1f, Box{vec3(-50), vec3(50)})},
+                       {sun_light(-vec3(std::sin(angle), 0, -std::cos(angle)))});
 }
 
 TEST(RadialBlur, LeavesThePictureAloneWhenTheLightIsBehind) {
@@ -47,7 +48,7 @@ TEST(RadialBlur, LeavesThePictureAloneWhenTheLightIsBehind) {
     }
     // A lamp behind, and one at the eye.
     for (const vec3 place : {vec3(0, 0, 3), vec3(0)}) {
-        const Snapshot lamp = scene_of({even_fog(0.1f)}, {point_light(place)});
+        const Snapshot lamp = snapshot_of({even_medium(0.1f)}, {point_light(place)});
         EXPECT_EQ(mean(blur(view, lamp, Settings{}).radiance), 0);
     }
 }
@@ -132,7 +133,8 @@ TEST(RadialBlur, ItsDiscIsRound) {
 TEST(RadialBlur, LightsAddUp) {
     View view = view_towards({0, 0, -1}, {48, 27});
     view.per_light = true;
-    const Snapshot both = scene_of({even_fog(0.1f)}, {sun({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
+    const Snapshot both =
+        snapshot_of({even_medium(0.1f)}, {sun_light({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
     const Addition addition = blur(view, both, Settings{});
     ASSERT_EQ(addition.per_light.size(), 2u);
     for (size_t i = 0; i < addition.radiance.pixels.size(); ++i) {

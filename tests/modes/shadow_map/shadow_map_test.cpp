@@ -1,6 +1,7 @@
 // The march with shadow maps against closed forms, the reference and traced shadows.
 
 #include "base/parallel.h"
+#include "integrate/gauss_legendre.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -9,9 +10,7 @@
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "support/integral.h"
 #include "support/limitations.h"
-#include "support/meshes.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
 #include "trace/occlusion/occluders.h"
@@ -69,7 +68,7 @@ struct HalfShadowed {
 
     explicit HalfShadowed(Light light, float extinction = 0.8f) {
         add_mesh(scene, quad({-2, 1.2f, -2}, {1.8f, 0, 0}, {1.5f, 0, 5}));
-        snapshot = scene_of({even_fog(extinction, unit_box)}, {std::move(light)});
+        snapshot = snapshot_of({even_medium(extinction, unit_box)}, {std::move(light)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -85,7 +84,7 @@ Light lamp_above() {
 TEST(ShadowMapMarch, SunInEvenFogMatchesClosedFormAtEveryDepth) {
     // Sun straight down, level ray at height y: L = w p E e^(-s(1-y)) (1 - e^(-s x)), for any number of steps.
     const float extinction = 1.5f, height = 0.3f;
-    const Snapshot snapshot = scene_of({even_fog(extinction, unit_box)}, {sun({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
     for (const float depth : {0.01f, 0.1f, 0.37f, 0.8f, 1.0f, 2.0f}) {
         const double x = std::min(depth, 1.0f);
         const double expected = 3 / (4 * M_PI) * std::exp(-extinction * (1 - height)) * (1 - std::exp(-extinction * x));
@@ -109,7 +108,7 @@ TEST(ShadowMapMarch, LocalLightsInEvenFogMatchQuadratureAtEveryDepth) {
             for (const float depth : {1.9f, 2.1f, 3.0f, 6.0f}) {
                 Settings settings;
                 settings.of<ShadowMapSettings>().spacing = spacing;
-                const Snapshot snapshot = scene_of({even_fog(extinction)}, {light});
+                const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {light});
                 const Ray ray{{0, 0, 0}, {0, 0, -1}, depth};
                 const auto integrand = [&](double t) {
                     const Arrival at = arrival(light, ray.at(static_cast<float>(t)));
@@ -122,7 +121,7 @@ TEST(ShadowMapMarch, LocalLightsInEvenFogMatchQuadratureAtEveryDepth) {
 }
 
 TEST(ShadowMapMarch, RayThroughALightIsFinite) {
-    const Snapshot snapshot = scene_of({even_fog(0.5f)}, {point_light({0, 0, -2})});
+    const Snapshot snapshot = snapshot_of({even_medium(0.5f)}, {point_light({0, 0, -2})});
     for (const float off : {0.0f, 1e-6f, 1e-3f}) {
         const Scatter result = run(snapshot, Settings{}, {{off, 0, 0}, {0, 0, -1}, 5});
         EXPECT_TRUE(is_finite(result.radiance)) << off;
@@ -131,7 +130,7 @@ TEST(ShadowMapMarch, RayThroughALightIsFinite) {
 }
 
 TEST(ShadowMapMarch, FogThatEmitsAndAmbientLightAreTheirClosedForms) {
-    Snapshot snapshot = scene_of({even_fog(2, unit_box)}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot = snapshot_of({even_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(0.4f);
     const Scatter result = run(snapshot, Settings{}, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10});
     const double covered = 1 - std::exp(-2.0);
@@ -140,7 +139,7 @@ TEST(ShadowMapMarch, FogThatEmitsAndAmbientLightAreTheirClosedForms) {
 }
 
 TEST(ShadowMapMarch, HalfShadowedBoxConvergesToTheReference) {
-    for (const Light& light : {sun({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
+    for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
         const HalfShadowed box(light);
         const std::vector<Ray> rays = picture_rays();
         Settings exact = exact_settings();
@@ -165,7 +164,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
     // 40 mm that is one ray in six, off by one of 28 steps that near the lamp weighs up to twice its share: 3 %. All
     // kinds of light-side transmittance.
     const std::vector<Ray> rays = picture_rays();
-    for (const Light& light : {sun({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)})
+    for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)})
         for (const LightTransmittance transmittance : {LightTransmittance::off, LightTransmittance::average,
                                                        LightTransmittance::grid, LightTransmittance::marched}) {
             const HalfShadowed box(light);
@@ -184,7 +183,7 @@ TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
     // The number of rays that differ falls with the texel, so their root mean square by 4 from 64 to 1024 texels; half
     // of that is asked for, as it is few rays.
     const std::vector<Ray> rays = picture_rays();
-    for (const Light& light : {sun({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
+    for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
         const HalfShadowed box(light);
         Settings settings;
         const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
@@ -198,7 +197,7 @@ TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
 }
 
 TEST(ShadowMapMarch, PartsOfLightsAddUp) {
-    HalfShadowed box(sun({0.35f, -1, 0.2f}));
+    HalfShadowed box(sun_light({0.35f, -1, 0.2f}));
     box.snapshot.lights.push_back(lamp_above());
     const ScatterFunction scatter = find_mode("shadow-map").prepare(tiny_view(), box.snapshot, Settings{}, nullptr);
     const std::vector<Ray> rays = picture_rays(4);
@@ -212,10 +211,10 @@ TEST(ShadowMapMarch, PartsOfLightsAddUp) {
 
 TEST(ShadowMapMarch, TwoHalfDensityCopiesEqualOne) {
     const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 3 * p.z); };
-    const SparseVolume volume = unit_grid(32, wavy);
+    const SparseVolume volume = unit_volume(32, wavy);
     const Light light = point_light({0.5f, 1.4f, 0.5f});
-    const Snapshot one = scene_of({grid_fog(3, volume)}, {light});
-    const Snapshot two = scene_of({grid_fog(1.5f, volume), grid_fog(1.5f, volume)}, {light});
+    const Snapshot one = snapshot_of({medium_of(volume, 3)}, {light});
+    const Snapshot two = snapshot_of({medium_of(volume, 1.5f), medium_of(volume, 1.5f)}, {light});
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}, 10};
     const Scatter a = run(one, Settings{}, ray), b = run(two, Settings{}, ray);
     EXPECT_NEAR(a.radiance.x / b.radiance.x, 1, 1e-4);
@@ -223,7 +222,7 @@ TEST(ShadowMapMarch, TwoHalfDensityCopiesEqualOne) {
 }
 
 TEST(ShadowMapMarch, StyleDimsTheFogsOwnLightOnly) {
-    const Snapshot snapshot = scene_of({even_fog(1.5f, unit_box)}, {sun({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({even_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)});
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
     Settings settings;
     settings.style.view_depth = 0.25f, settings.style.light_depth = 0.5f;
@@ -239,14 +238,14 @@ TEST(ShadowMapMarch, StyleDimsTheFogsOwnLightOnly) {
 TEST(ShadowMapMarch, FogWithoutEndKeepsStepsInTheScene) {
     const HalfShadowed box(lamp_above());
     Snapshot endless = box.snapshot;
-    endless.media = {even_fog(0.01f)};
+    endless.media = {even_medium(0.01f)};
     Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 2000};
     const float exact = run("march", endless, exact_settings(), {ray})[0].radiance.x;
     EXPECT_NEAR(run(endless, Settings{}, ray).radiance.x / exact, 1, 0.02);
 }
 
 TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
-    HalfShadowed box(sun({0.35f, -1, 0.2f}));
+    HalfShadowed box(sun_light({0.35f, -1, 0.2f}));
     const auto said = [&](std::string_view mode, const Settings& settings) {
         return find_mode(mode).limitations(tiny_view(), box.snapshot, settings);
     };
@@ -260,7 +259,7 @@ TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
     EXPECT_TRUE(says(said("march", settings), limitation::hard_shadows));
 
     EXPECT_FALSE(says(said("shadow-map", Settings{}), limitation::long_steps));
-    box.snapshot.media = {grid_fog(1, unit_grid(64, [](vec3) { return 1.0f; }))};
+    box.snapshot.media = {medium_of(unit_volume(64, [](vec3) { return 1.0f; }), 1)};
     settings.of<ShadowMapSettings>().steps = 2;
     EXPECT_TRUE(says(said("shadow-map", settings), limitation::long_steps));
     const Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 10};

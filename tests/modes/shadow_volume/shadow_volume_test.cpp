@@ -26,48 +26,6 @@
 
 namespace tyndall::test {
 namespace {
-struct Stage {
-    std::shared_ptr<Scene> scene = std::make_shared<Scene>();
-    Snapshot snapshot;
-};
-
-Mesh box_between(vec3 low, vec3 high) {
-    Mesh mesh;
-    for (int i = 0; i < 8; ++i)
-        mesh.positions.push_back({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
-    for (const glm::uvec4 s : {glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6), glm::uvec4(0, 1, 5, 4),
-                               glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5)})
-        mesh.triangles.push_back({s.x, s.y, s.z}), mesh.triangles.push_back({s.x, s.z, s.w});
-    return mesh;
-}
-
-Mesh sheet(vec3 corner, vec3 a, vec3 b) {
-    Mesh mesh;
-    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
-
-Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient = vec3(0)) {
-    Stage stage;
-    for (Mesh& mesh : meshes) {
-        stage.scene->meshes.push_back(std::move(mesh));
-        stage.scene->instances.push_back({-1, static_cast<int>(stage.scene->meshes.size()) - 1});
-    }
-    stage.snapshot = scene_of(std::move(media), std::move(lights), ambient);
-    stage.snapshot.scene = stage.scene.get();
-    stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
-    stage.snapshot.bounds.grow(stage.snapshot.occluders->bounds());
-    return stage;
-}
-
-Light spot_light(vec3 position, vec3 direction, float candela) {
-    Light light = point_light(position, candela);
-    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
-    light.inner_cone = 0.25f, light.outer_cone = 0.5f;
-    return light;
-}
-
 // The rays of a small picture, packet by packet, as the renderer asks.
 struct Picture {
     View view;
@@ -127,13 +85,12 @@ double rmse(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
 
 const Box room{vec3(-3, 0, -3), vec3(3, 4, 3)};
 std::vector<Mesh> furniture() {
-    return {box_between({-1, 1, -1}, {-0.2f, 1.6f, 0.4f}), box_between({0.4f, 2, -0.5f}, {1.2f, 2.1f, 0.9f}),
-            sheet({-2, 2.6f, -0.2f}, {1.7f, 0, 0.3f}, {0, 0.4f, 1}),
-            sheet({0.2f, 0.5f, -2}, {0, 1.5f, 0}, {1, 0, 0.4f})};
+    return {box_of({-1, 1, -1}, {-0.2f, 1.6f, 0.4f}), box_of({0.4f, 2, -0.5f}, {1.2f, 2.1f, 0.9f}),
+            quad({-2, 2.6f, -0.2f}, {1.7f, 0, 0.3f}, {0, 0.4f, 1}), quad({0.2f, 0.5f, -2}, {0, 1.5f, 0}, {1, 0, 0.4f})};
 }
 std::vector<Light> all_lights() {
-    return {sun({0.4f, -1, 0.2f}, 2), point_light({0.3f, 2.8f, 0.2f}, 3),
-            spot_light({-1, 3.5f, 1.5f}, {0.3f, -1, -0.5f}, 9)};
+    return {sun_light({0.4f, -1, 0.2f}, 2), point_light({0.3f, 2.8f, 0.2f}, 3),
+            spot_light({-1, 3.5f, 1.5f}, {0.3f, -1, -0.5f}, 9, 0.25f, 0.5f)};
 }
 const Camera cameras[] = {look_at({2.5f, 1.5f, 5}, {0, 1.5f, 0}, {0, 1, 0}, 0.9f),
                           look_at({-0.5f, 0.6f, -0.2f}, {1, 1.2f, 1}, {0, 1, 0}, 1.3f)}; // the second in a shadow
@@ -142,7 +99,7 @@ TEST(ShadowVolume, SunUnderARoofByHand) {
     // Without light-side dimming (the sun is level with the roof's end of the fog) half the path is lit.
     const Box thin{vec3(-4, -0.001f, -1), vec3(4, 0.001f, 1)};
     const Stage stage =
-        stage_of({even_fog(0.5f, thin)}, {sun({0, -1, 0}, 3)}, {sheet({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
+        stage_of({even_medium(0.5f, thin)}, {sun_light({0, -1, 0}, 3)}, {quad({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
     Picture picture;
     picture.rays.assign(16, {{-4, 0, 0}, {1, 0, 0}, 8});
     picture.view.camera = look_at({-4, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1);
@@ -157,7 +114,7 @@ TEST(ShadowVolume, SunUnderARoofByHand) {
 TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
     for (const Light& light : all_lights()) {
         const Stage stage =
-            stage_of({even_fog(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
+            stage_of({even_medium(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
         for (const Camera& camera : cameras) {
             const Picture picture = picture_of(camera, stage.snapshot, 20);
             const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
@@ -173,10 +130,10 @@ TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
 }
 
 TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
-    Medium height = even_fog(0.4f, room);
+    Medium height = even_medium(0.4f, room);
     height.kind = DensityKind::height, height.height_base = 0.5f, height.height_falloff = 0.8f;
     height.optics.emission = vec3(0.02f, 0.01f, 0);
-    Medium other = even_fog(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
+    Medium other = even_medium(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
     other.optics.albedo = vec3(0.9f, 0.5f, 0.2f);
     const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
@@ -185,7 +142,7 @@ TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
 }
 
 TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
-    const Stage stage = stage_of({even_fog(0.3f, room)}, all_lights(), furniture());
+    const Stage stage = stage_of({even_medium(0.3f, room)}, all_lights(), furniture());
     Camera flat = cameras[0];
     flat.ortho_height = 4;
     const Picture picture = picture_of(flat, stage.snapshot, 20);
@@ -205,9 +162,9 @@ TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
 
 TEST(ShadowVolume, SampledFogApproachesTheReference) {
     const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 4 * p.z); };
-    const Stage stage =
-        stage_of({grid_fog(2, unit_grid(32, wavy))}, {sun({0.4f, -1, 0.2f}, 2), point_light({0.4f, 1.3f, 0.6f}, 1)},
-                 {box_between({0.2f, 0.7f, 0.2f}, {0.5f, 0.8f, 0.6f})});
+    const Stage stage = stage_of({medium_of(unit_volume(32, wavy), 2)},
+                                 {sun_light({0.4f, -1, 0.2f}, 2), point_light({0.4f, 1.3f, 0.6f}, 1)},
+                                 {box_of({0.2f, 0.7f, 0.2f}, {0.5f, 0.8f, 0.6f})});
     const Picture picture =
         picture_of(look_at({0.5f, 0.5f, 2.5f}, {0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.6f), stage.snapshot, 9);
     const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
@@ -231,25 +188,26 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
 }
 
 TEST(ShadowVolume, EndlessFogAndFarEnds) {
-    const Stage stage = stage_of({even_fog(0.2f)}, {sun({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
+    const Stage stage =
+        stage_of({even_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
     Picture picture = picture_of(cameras[0], stage.snapshot, 1e6f);
     for (const Scatter& result : drawn("shadow-volume", picture, stage.snapshot, {})) {
         EXPECT_TRUE(is_finite(result.radiance));
         EXPECT_GE(result.radiance.x, 0);
     }
     // Closed form: an isotropic sun that nothing dims.
-    Light light = sun({0, 0, -1}, 2);
-    Medium fog = even_fog(1e-4f);
+    Light light = sun_light({0, 0, -1}, 2);
+    Medium fog = even_medium(1e-4f);
     fog.bounds = fog.world_bounds = {vec3(-1e6f, -1e6f, -1), vec3(1e6f, 1e6f, 1)};
     Picture level;
     level.view.camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
     level.rays.assign(16, {{0, 0, 0}, {1, 0, 0}, 1e6f}), level.positions.assign(16, vec2(320, 180));
-    const Scatter result = drawn("shadow-volume", level, scene_of({fog}, {light}), {})[0];
+    const Scatter result = drawn("shadow-volume", level, snapshot_of({fog}, {light}), {})[0];
     EXPECT_NEAR(result.radiance.x * 4 * std::numbers::pi / 2, 1 - std::exp(-1e-4 * 1e6), 2e-4);
 }
 
 TEST(ShadowVolume, ShellsAreALookAndSaySo) {
-    const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture());
+    const Stage stage = stage_of({even_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, brighter;
     shells.of<ShadowVolumeSettings>().draw = brighter.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -267,7 +225,7 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
 
 TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     const vec3 ambient(0.1f, 0.2f, 0.3f);
-    const Stage stage = stage_of({even_fog(0.3f, room)}, {sun({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
+    const Stage stage = stage_of({even_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, measured;
     shells.of<ShadowVolumeSettings>().draw = measured.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -284,9 +242,9 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
 }
 
 TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
-    Light soft = sun({0, -1, 0});
+    Light soft = sun_light({0, -1, 0});
     soft.angle = 0.01f;
-    Stage stage = stage_of({even_fog(0.1f, room)}, {soft}, furniture());
+    Stage stage = stage_of({even_medium(0.1f, room)}, {soft}, furniture());
     const auto said = [](const Snapshot& snapshot) {
         return find_mode("shadow-volume").limitations(View{}, snapshot, {});
     };
@@ -300,7 +258,7 @@ TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
 }
 
 TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
-    const Stage stage = stage_of({even_fog(0.3f, room)}, all_lights(), furniture());
+    const Stage stage = stage_of({even_medium(0.3f, room)}, all_lights(), furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     const std::vector<Scatter> alone = drawn("shadow-volume", picture, stage.snapshot, {});
     const ScatterFunction scatter = find_mode("shadow-volume").prepare(picture.view, stage.snapshot, {}, nullptr);

@@ -8,6 +8,7 @@
 #include "scene/light.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"

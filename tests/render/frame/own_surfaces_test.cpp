@@ -5,6 +5,7 @@
 #include "scene/light_kind.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"

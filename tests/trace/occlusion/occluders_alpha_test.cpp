@@ -3,6 +3,7 @@
 #include "support/meshes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/shadow_rays.h"
+#include "trace/small_scenes.h"
 
 #include <gtest/gtest.h>
 

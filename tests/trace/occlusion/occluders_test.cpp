@@ -7,6 +7,7 @@
 #include "support/random_points.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/shadow_rays.h"
+#include "trace/small_scenes.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ Node moving_node() {
 
 TEST(Occluders, BoxShadowsExactlyThePointsBehindIt) {
     Scene scene;
-    add_mesh(scene, box_mesh(vec3(-1), vec3(1)));
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
     const auto occluders = occluders_of(scene);
     EXPECT_EQ(occluders->triangle_count(), 12u);
     EXPECT_EQ(occluders->bounds().low, vec3(-1));
@@ -168,7 +169,7 @@ TEST(Occluders, NothingButBadTrianglesIsEmpty) {
 // The packaged Embree aborts on such rays: they must never reach it.
 TEST(Occluders, UnfitRaysHitNothingAndAreBlocked) {
     Scene scene;
-    add_mesh(scene, box_mesh(vec3(-1), vec3(1)));
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
     const auto occluders = occluders_of(scene);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Ray unfit[] = {{vec3(nan, 0, 5), vec3(0, 0, -1)},       {vec3(0, 0, 5), vec3(0, nan, -1)},
@@ -198,7 +199,7 @@ TEST(Occluders, UnfitRaysHitNothingAndAreBlocked) {
 TEST(Occluders, ClosedBoxHasNoLeaks) {
     Scene scene;
     const Box box{vec3(99.3f, -0.2f, 7.1f), vec3(101.7f, 1.9f, 8.4f)};
-    add_mesh(scene, box_mesh(box.low, box.high));
+    add_mesh(scene, box_of(box.low, box.high));
     const auto occluders = occluders_of(scene);
     int leaks = 0;
     for (uint32_t packet = 0; packet < 6250; ++packet) {
@@ -222,7 +223,7 @@ TEST(Occluders, ClosedBoxHasNoLeaks) {
 TEST(Occluders, RaysFromASurfaceMissItAtTheShadowOffset) {
     for (const float size : {0.01f, 1.0f, 300.0f}) {
         Scene scene;
-        add_mesh(scene, box_mesh(vec3(size, 0.3f * size, -size), vec3(2.3f * size, 1.7f * size, 0.7f * size)));
+        add_mesh(scene, box_of(vec3(size, 0.3f * size, -size), vec3(2.3f * size, 1.7f * size, 0.7f * size)));
         const auto occluders = occluders_of(scene);
         const vec3 center(1.6f * size, size, -0.1f * size);
         int blocked = 0;
@@ -243,12 +244,12 @@ TEST(Occluders, RaysFromASurfaceMissItAtTheShadowOffset) {
 
 TEST(Occluders, WhatDoesNotMoveIsShared) {
     Scene scene;
-    add_mesh(scene, box_mesh(vec3(-1), vec3(1)));
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
     const auto first = Occluders::make(scene, 0, nullptr);
     EXPECT_TRUE(Occluders::make(scene, 1, first.get())->shares_with(*first));
     EXPECT_FALSE(Occluders::make(scene, 1, nullptr)->shares_with(*first));
 
-    add_mesh(scene, box_mesh(vec3(4), vec3(5)), moving_node());
+    add_mesh(scene, box_of(vec3(4), vec3(5)), moving_node());
     const auto start = Occluders::make(scene, 0, nullptr);
     const auto same_time = Occluders::make(scene, 0, start.get());
     const auto later = Occluders::make(scene, 0.5, start.get());
@@ -321,7 +322,7 @@ TEST(Occluders, SameBitsAtAnyThreadCount) {
 TEST(Occluders, TheRayTracerLeavesThreadsAlone) {
     set_thread_count(3);
     Scene scene;
-    add_mesh(scene, box_mesh(vec3(-1), vec3(1)));
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
     occluders_of(scene);
     EXPECT_EQ(thread_count(), 3);
     set_thread_count(0);
@@ -329,7 +330,7 @@ TEST(Occluders, TheRayTracerLeavesThreadsAlone) {
 
 TEST(Occluders, InstructionSetIsFixedOnceUsed) {
     Scene scene;
-    add_mesh(scene, box_mesh(vec3(-1), vec3(1)));
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
     occluders_of(scene);
     EXPECT_NO_THROW(set_embree_isa("auto"));
     EXPECT_NO_THROW(set_embree_isa("avx2"));

@@ -2,6 +2,7 @@
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "trace/sampling/lamp_samples.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -25,13 +26,6 @@ std::vector<View::Lamp> seen(const Light& light, const View& view = ahead()) {
     return lamps_in(view, snapshot);
 }
 
-Light spot(vec3 direction, float outer) {
-    Light light;
-    light.kind = LightKind::spot, light.position = {0, 0, -5}, light.direction = glm::normalize(direction);
-    light.outer_cone = outer;
-    return light;
-}
-
 TEST(LampsIn, APointShinesAllAround) {
     Light light;
     light.position = {0, 0, -5}, light.radius = 0.5f;
@@ -44,7 +38,7 @@ TEST(LampsIn, APointShinesAllAround) {
 }
 
 TEST(LampsIn, ABeamAcrossTheViewHasItsOwnAngle) {
-    const std::vector<View::Lamp> lamps = seen(spot({0, -1, 0}, 0.2f));
+    const std::vector<View::Lamp> lamps = seen(spot_light({0, 0, -5}, {0, -1, 0}, 1, 0, 0.2f));
     ASSERT_EQ(lamps.size(), 1u);
     EXPECT_NEAR(lamps[0].axis.y, 1, 1e-4f); // down, where rows grow
     EXPECT_NEAR(lamps[0].half_angle, 0.2f, 1e-4f);
@@ -52,7 +46,7 @@ TEST(LampsIn, ABeamAcrossTheViewHasItsOwnAngle) {
 
 TEST(LampsIn, ASlantedBeamLooksWider) {
     // sin ψ = sin 0.2 / sin 30°.
-    const std::vector<View::Lamp> lamps = seen(spot({0.5f, 0, -std::sqrt(0.75f)}, 0.2f));
+    const std::vector<View::Lamp> lamps = seen(spot_light({0, 0, -5}, {0.5f, 0, -std::sqrt(0.75f)}, 1, 0, 0.2f));
     EXPECT_NEAR(lamps[0].axis.x, 1, 1e-4f);
     EXPECT_NEAR(lamps[0].half_angle, std::asin(std::sin(0.2f) / 0.5f), 1e-4f);
 }
@@ -60,7 +54,7 @@ TEST(LampsIn, ASlantedBeamLooksWider) {
 // Points of the cone's surface lie within the beam of the picture, and some at its very edge.
 TEST(LampsIn, TheBeamHoldsTheCone) {
     const View view = ahead();
-    const Light light = spot({0.6f, -0.5f, 0.4f}, 0.3f);
+    const Light light = spot_light({0, 0, -5}, {0.6f, -0.5f, 0.4f}, 1, 0, 0.3f);
     const View::Lamp lamp = seen(light)[0];
     const vec3 side = glm::normalize(glm::cross(light.direction, vec3(0, 0, 1)));
     const vec3 other = glm::cross(light.direction, side);
@@ -78,9 +72,9 @@ TEST(LampsIn, TheBeamHoldsTheCone) {
 }
 
 TEST(LampsIn, FromInsideABeamItIsAllAround) {
-    EXPECT_EQ(seen(spot({0.1f, 0, 1}, 0.2f))[0].half_angle, pi);
-    EXPECT_EQ(seen(spot({0.1f, 0, -1}, 0.2f))[0].half_angle, pi);
-    EXPECT_EQ(seen(spot({0, -1, 0}, pi / 2))[0].half_angle, pi);
+    EXPECT_EQ(seen(spot_light({0, 0, -5}, {0.1f, 0, 1}, 1, 0, 0.2f))[0].half_angle, pi);
+    EXPECT_EQ(seen(spot_light({0, 0, -5}, {0.1f, 0, -1}, 1, 0, 0.2f))[0].half_angle, pi);
+    EXPECT_EQ(seen(spot_light({0, 0, -5}, {0, -1, 0}, 1, 0, pi / 2))[0].half_angle, pi);
 }
 
 TEST(LampsIn, NothingBehindTheCameraNorOfTheSun) {

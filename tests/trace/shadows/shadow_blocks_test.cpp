@@ -6,6 +6,7 @@
 #include "support/meshes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/maps/shadow_map.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -25,7 +26,7 @@ struct Street {
         add_mesh(scene, quad({-40, 0, -100}, {80, 0, 0}, {0, 0, 110}));
         for (int i = 0; i < 10; ++i) {
             const float z = -10.0f * static_cast<float>(i);
-            add_mesh(scene, box_mesh(vec3(3, 0, z - 2), vec3(5, 4, z)));
+            add_mesh(scene, box_of(vec3(3, 0, z - 2), vec3(5, 4, z)));
         }
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);

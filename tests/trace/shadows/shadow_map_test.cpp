@@ -8,6 +8,7 @@
 #include "support/random_points.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/maps/shadow_map.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -82,7 +83,7 @@ TEST(ShadowMap, SpotStoresTheDistanceToAWall) {
 TEST(ShadowMap, CubeStoresTheDistanceToTheWallsOfARoom) {
     // Light off the middle of a room: the distance along unit direction d is min over axes of (wall - p) / d.
     const Box room{vec3(-2, -1, -3), vec3(2, 1.5f, 3)};
-    const Stage stage({box_mesh(room.low, room.high)});
+    const Stage stage({box_of(room.low, room.high)});
     const vec3 p(0.5f, 0.2f, -0.7f);
     const ShadowMap map = stage.map(light_of(LightKind::point, p, {0, -1, 0}));
     ASSERT_EQ(map.pictures.size(), 6u);
@@ -98,7 +99,7 @@ TEST(ShadowMap, CubeStoresTheDistanceToTheWallsOfARoom) {
 TEST(ShadowMap, CubeFacesMeetWithoutSeams) {
     // A ball of radius 1 around the light: the same depth everywhere, so the 16-texel filter sees a sharp step at it,
     // on edges and corners of the cube too.
-    const Stage stage({box_mesh(vec3(-1), vec3(1))});
+    const Stage stage({box_of(vec3(-1), vec3(1))});
     const ShadowMap map = stage.map(light_of(LightKind::point, vec3(0), {0, -1, 0}), {128, 1, 2, 0});
     for (const vec3 d : {vec3(1, 1, 0), vec3(1, -1, 0), vec3(0, 1, 1), vec3(-1, 0, 1), vec3(1, 1, 1), vec3(-1, -1, 1)})
         for (int i = 0; i < 64; ++i) {
@@ -110,7 +111,7 @@ TEST(ShadowMap, CubeFacesMeetWithoutSeams) {
 }
 
 TEST(ShadowMap, WideSpotHasACube) {
-    const Stage stage({box_mesh(vec3(-2), vec3(2))});
+    const Stage stage({box_of(vec3(-2), vec3(2))});
     Light light = light_of(LightKind::spot, vec3(0), {0, -1, 0});
     light.outer_cone = 80 * pi / 180;
     const ShadowMap map = stage.map(light);
@@ -200,7 +201,7 @@ TEST(ShadowMap, BiasMovesSurfacesAway) {
 // A street of blocks to the horizon.
 Stage street() {
     std::vector<Mesh> meshes{quad({-40, 0, -200}, {80, 0, 0}, {0, 0, 210})};
-    for (int i = 0; i < 20; ++i) meshes.push_back(box_mesh(vec3(3, 0, -10.0f * i - 2), vec3(5, 4, -10.0f * i)));
+    for (int i = 0; i < 20; ++i) meshes.push_back(box_of(vec3(3, 0, -10.0f * i - 2), vec3(5, 4, -10.0f * i)));
     Stage stage(std::move(meshes), {vec3(-40, 0, -200), vec3(40, 10, 10)});
     stage.view.camera = look_at({0, 1.7f, 8}, {0, 1.7f, -100}, {0, 1, 0}, 0.8f);
     stage.view.size = {160, 90};
@@ -269,7 +270,7 @@ TEST(ShadowMap, TexelsStayWhereTheyAreWhenTheCameraMoves) {
 
 TEST(ShadowMap, OrbitSeesTheSameShadows) {
     // Catalogue 24: wherever the camera stands, a point away from edges is lit or not as a ray says.
-    Stage stage({box_mesh(vec3(-1, -1, -1), vec3(1, 0, 1)), quad({-6, -2, -6}, {12, 0, 0}, {0, 0, 12})});
+    Stage stage({box_of(vec3(-1, -1, -1), vec3(1, 0, 1)), quad({-6, -2, -6}, {12, 0, 0}, {0, 0, 12})});
     const Light light = light_of(LightKind::sun, vec3(0), {0.5f, -1, 0.2f});
     for (int degrees = 0; degrees < 360; degrees += 15) {
         const float turn = static_cast<float>(degrees) * pi / 180;
@@ -304,7 +305,7 @@ TEST(ShadowMap, SameBitsOnAnyThreads) {
 }
 
 TEST(ShadowMap, LightsWithoutShadowsHaveNone) {
-    const Stage stage({box_mesh(vec3(-1), vec3(1))});
+    const Stage stage({box_of(vec3(-1), vec3(1))});
     Light light = light_of(LightKind::sun, vec3(0), {0, -1, 0});
     light.shadows = false;
     EXPECT_TRUE(stage.map(light).empty());

@@ -6,6 +6,7 @@
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 #include "trace/shadows/shadow_rays.h"
+#include "trace/small_scenes.h"
 
 #include "scene/camera.h"
 #include "trace/moment.h"

@@ -1,8 +1,8 @@
 // Shadow volumes against triangles counted one by one, and against the slices of
 // trace/shadows/intervals/shadow_slices.h.
-#include "support/meshes.h"
 #include "support/random_points.h"
 #include "trace/shadows/volumes/shadow_view.h"
+#include "trace/small_scenes.h"
 
 #include "trace/shadows/intervals/shadow_slices.h"
 
@@ -115,13 +115,13 @@ std::vector<Mesh> random_boxes(int count) {
     for (int i = 0; i < count; ++i) {
         const vec3 low = random_point(static_cast<uint32_t>(i), 5, {vec3(-3), vec3(2)});
         const vec3 size = random_point(static_cast<uint32_t>(i), 6, {vec3(0.1f), vec3(1.5f)});
-        meshes.push_back(box_mesh(low, low + size));
+        meshes.push_back(box_of(low, low + size));
     }
     return meshes;
 }
 
 TEST(ShadowMesh, JoinsWhatIsAtTheSamePlace) {
-    const ShadowMesh box = make_shadow_mesh(triangles_of({box_mesh(vec3(0), vec3(1))}));
+    const ShadowMesh box = make_shadow_mesh(triangles_of({box_of(vec3(0), vec3(1))}));
     EXPECT_EQ(box.corners.size(), 8u);
     EXPECT_EQ(box.edges.size(), 18u); // 12 and a diagonal on each side
     EXPECT_EQ(box.triangles.size(), 12u);
@@ -136,7 +136,7 @@ TEST(ShadowMesh, JoinsWhatIsAtTheSamePlace) {
 
 TEST(ShadowVolumes, TheSilhouetteIsWhereFacingChanges) {
     // A sun along an axis sees a box as a square of four edges, each between two faces; two of the caps face it.
-    const Stage stage = stage_of({box_mesh(vec3(0), vec3(1))}, sun_from({0.1f, 1, 0.2f}));
+    const Stage stage = stage_of({box_of(vec3(0), vec3(1))}, sun_from({0.1f, 1, 0.2f}));
     EXPECT_EQ(stage.volumes.sides.size(), 6u); // seen over a corner: a hexagon
     for (const ShadowVolumes::Side& side : stage.volumes.sides) EXPECT_EQ(std::abs(side.volumes), 2);
     // A single square is its own silhouette, once.
@@ -266,7 +266,7 @@ TEST(ShadowVolumes, EyesInPlanesOfSidesAndRaysThroughCorners) {
     // through corners, along the light and through it.
     std::vector<Mesh> meshes;
     for (int i = 0; i < 8; ++i)
-        if (i != 3) meshes.push_back(box_mesh(vec3(i & 1, i >> 1 & 1, i >> 2), vec3(i & 1, i >> 1 & 1, i >> 2) + 1.0f));
+        if (i != 3) meshes.push_back(box_of(vec3(i & 1, i >> 1 & 1, i >> 2), vec3(i & 1, i >> 1 & 1, i >> 2) + 1.0f));
     meshes.push_back(quad({-2, 2, -2}, {5, 0, 0}, {0, 0, 5}));
     for (const LightPoint& light :
          {sun_from({0, 1, 0}), sun_from({1, 1, 0}), sun_from({1, 1, 1}), lamp_at({0, 4, 0}), lamp_at({1, 3, 1})}) {

@@ -14,33 +14,6 @@ namespace tyndall {
 namespace {
 using namespace test;
 
-Light sun(vec3 direction) {
-    Light light;
-    light.kind = LightKind::sun;
-    light.direction = glm::normalize(direction);
-    return light;
-}
-
-Light point_light(vec3 position, float radius = 0) {
-    Light light;
-    light.position = position, light.radius = radius;
-    return light;
-}
-
-Light spot_light(vec3 position, vec3 target, float outer_cone) {
-    Light light = point_light(position);
-    light.kind = LightKind::spot;
-    light.direction = glm::normalize(target - position);
-    light.outer_cone = outer_cone;
-    return light;
-}
-
-Snapshot snapshot_of(std::vector<Medium> media) {
-    Snapshot snapshot;
-    snapshot.media = std::move(media);
-    return snapshot;
-}
-
 std::vector<float> depths_at(const LightDepth& depth, const std::vector<vec3>& points) {
     std::vector<float> result;
     for (size_t first = 0; first < points.size(); first += 16) {
@@ -59,6 +32,11 @@ std::vector<float> depths_at(const LightDepth& depth, const std::vector<vec3>& p
 float depth_at(const LightDepth& depth, vec3 point) { return depths_at(depth, {point})[0]; }
 
 // The path from a point to the light, in double where it matters.
+Light with_radius(Light light, float radius) {
+    light.radius = radius;
+    return light;
+}
+
 double exact_depth(const std::vector<Medium>& media, const Light& light, vec3 point) {
     if (light.kind == LightKind::sun) return optical_depth(media, {point, -light.direction});
     const vec3 towards = light.position - point;
@@ -88,20 +66,20 @@ const Box around{vec3(-3, -2, -4), vec3(5, 6, 3)};
 TEST(LightDepth, HomogeneousFogIsExact) {
     const mat4 turned = glm::rotate(glm::scale(glm::translate(mat4(1), vec3(1, 2, -1)), vec3(1, 2, 0.5f)), 0.7f,
                                     glm::normalize(vec3(1, 2, 3)));
-    const std::vector<Medium> media = {homogeneous(0.3f, {vec3(-1), vec3(1.5f, 1, 2)}, turned),
-                                       homogeneous(0.2f, {vec3(-2, 0, -3), vec3(2, 1, 1)})};
-    expect_exact(media, sun(vec3(0.3f, -1, 0.2f)), around);
-    expect_exact(media, sun(vec3(0, -1, 0)), around);
+    const std::vector<Medium> media = {placed(even_medium(0.3f, {vec3(-1), vec3(1.5f, 1, 2)}), turned),
+                                       even_medium(0.2f, {vec3(-2, 0, -3), vec3(2, 1, 1)})};
+    expect_exact(media, sun_light(vec3(0.3f, -1, 0.2f)), around);
+    expect_exact(media, sun_light(vec3(0, -1, 0)), around);
     expect_exact(media, point_light(vec3(0.5f, 3, -1)), around);
-    expect_exact(media, point_light(vec3(0.5f, 0.5f, -1), 0.75f), around);
-    expect_exact(media, spot_light(vec3(4, 5, 2), vec3(0), 0.5f), around);
+    expect_exact(media, with_radius(point_light(vec3(0.5f, 0.5f, -1)), 0.75f), around);
+    expect_exact(media, spot_light(vec3(4, 5, 2), {-4, -5, -2}, 1, 0, 0.5f), around);
 }
 
 TEST(LightDepth, FogWithoutEndIsExactForLocalLightsAndHidesTheSun) {
-    const std::vector<Medium> media = {homogeneous(0.3f)};
+    const std::vector<Medium> media = {even_medium(0.3f)};
     expect_exact(media, point_light(vec3(9, 3, -1)), around);
     const Snapshot snapshot = snapshot_of(media);
-    const LightDepth depth = make_light_depth(snapshot, sun(vec3(0, -1, 0)), LightTransmittance::grid, 16);
+    const LightDepth depth = make_light_depth(snapshot, sun_light(vec3(0, -1, 0)), LightTransmittance::grid, 16);
     EXPECT_EQ(std::exp(-depth_at(depth, vec3(1, 2, 3))), 0);
 }
 
@@ -110,13 +88,13 @@ TEST(LightDepth, HeightFogIsExact) {
         const std::vector<Medium> endless = {height_fog(0.3f, 0.5f, falloff)};
         const std::vector<Medium> boxed = {height_fog(0.3f, 0.5f, falloff, {vec3(-2, -1, -3), vec3(3, 4, 2)})};
         for (const std::vector<Medium>& media : {endless, boxed}) {
-            expect_exact(media, sun(vec3(0.3f, -1, 0.2f)), around);
+            expect_exact(media, sun_light(vec3(0.3f, -1, 0.2f)), around);
             expect_exact(media, point_light(vec3(2, 3, -1)), around);
             expect_exact(media, point_light(vec3(2, -1.5f, -1)), around);
-            expect_exact(media, spot_light(vec3(4, 0.5f, 2), vec3(0), 0.5f), around);
+            expect_exact(media, spot_light(vec3(4, 0.5f, 2), {-4, -0.5f, -2}, 1, 0, 0.5f), around);
         }
-        expect_exact(boxed, sun(vec3(1, 0, 0)), around);
-        expect_exact(boxed, sun(vec3(0.1f, 1, 0)), around);
+        expect_exact(boxed, sun_light(vec3(1, 0, 0)), around);
+        expect_exact(boxed, sun_light(vec3(0.1f, 1, 0)), around);
     }
 }
 
@@ -124,7 +102,7 @@ TEST(LightDepth, LowSunInHeightFog) {
     // σ H / sin(elevation) · exp(-(y - base) / H)
     const Snapshot snapshot = snapshot_of({height_fog(0.02f, 1, 4)});
     const float elevation = 0.05f;
-    const LightDepth depth = make_light_depth(snapshot, sun(vec3(std::cos(elevation), -std::sin(elevation), 0)),
+    const LightDepth depth = make_light_depth(snapshot, sun_light(vec3(std::cos(elevation), -std::sin(elevation), 0)),
                                               LightTransmittance::grid, 16);
     for (const float y : {1.0f, 3.0f, 9.0f, 30.0f}) {
         const double expected = 0.02 * 4 / std::sin(double(elevation)) * std::exp(-(y - 1) / 4.0);
@@ -136,14 +114,14 @@ TEST(LightDepth, LowSunInHeightFog) {
 TEST(LightDepth, GridKnowsBeforeBesideAndBehind) {
     const Snapshot snapshot = snapshot_of({medium_of(constant_box(16, 1), 0.25f)});
     const float across = 16 * 0.25f; // the rim fades over a voxel to each side: the same integral
-    const LightDepth down = make_light_depth(snapshot, sun(vec3(0, -1, 0)), LightTransmittance::grid, 64);
+    const LightDepth down = make_light_depth(snapshot, sun_light(vec3(0, -1, 0)), LightTransmittance::grid, 64);
     EXPECT_NEAR(depth_at(down, vec3(7, 30, 7)), 0, 1e-6);
     EXPECT_NEAR(depth_at(down, vec3(7, -30, 7)), across, 1e-3);
     EXPECT_NEAR(depth_at(down, vec3(7, 7.5f, 7)), across / 2, 1e-3);
     EXPECT_EQ(depth_at(down, vec3(30, -30, 7)), 0);
 
     for (const Light& light :
-         {spot_light(vec3(7.5f, 60, 7.5f), vec3(7.5f, 0, 7.5f), 0.3f), point_light(vec3(7.5f, 60, 7.5f))}) {
+         {spot_light(vec3(7.5f, 60, 7.5f), {0, -1, 0}, 1, 0, 0.3f), point_light(vec3(7.5f, 60, 7.5f))}) {
         const LightDepth depth = make_light_depth(snapshot, light, LightTransmittance::grid, 64);
         EXPECT_EQ(depth.grid.kind, LightKind::spot);
         EXPECT_NEAR(depth_at(depth, vec3(7.5f, 40, 7.5f)), 0, 1e-6);
@@ -159,8 +137,8 @@ TEST(LightDepth, GridKnowsBeforeBesideAndBehind) {
 
 TEST(LightDepth, OffAverageAndInactive) {
     const Snapshot snapshot =
-        snapshot_of({medium_of(constant_box(16, 1), 0.25f), homogeneous(0.1f, {vec3(0), vec3(10)})});
-    const Light light = sun(vec3(0, -1, 0));
+        snapshot_of({medium_of(constant_box(16, 1), 0.25f), even_medium(0.1f, {vec3(0), vec3(10)})});
+    const Light light = sun_light(vec3(0, -1, 0));
     EXPECT_EQ(depth_at(make_light_depth(snapshot, light, LightTransmittance::off, 32), vec3(5)), 0);
 
     const LightDepth average = make_light_depth(snapshot, light, LightTransmittance::average, 32);
@@ -188,10 +166,10 @@ TEST(LightDepth, OffAverageAndInactive) {
 
 TEST(LightDepth, MarchedIsExact) {
     const std::vector<Medium> media = {medium_of(volume_of(ivec3(0), ivec3(30, 20, 17), exact_noise), 0.05f),
-                                       homogeneous(0.01f, {vec3(0), vec3(10)})};
+                                       even_medium(0.01f, {vec3(0), vec3(10)})};
     const Snapshot snapshot = snapshot_of(media);
-    for (const Light& light : {sun(vec3(0.3f, -1, 0.2f)), point_light(vec3(9, 8, 7), 0.5f),
-                               spot_light(vec3(9, 40, 7), vec3(9, 0, 9), 0.4f)}) {
+    for (const Light& light : {sun_light(vec3(0.3f, -1, 0.2f)), with_radius(point_light(vec3(9, 8, 7)), 0.5f),
+                               spot_light(vec3(9, 40, 7), {0, -40, 2}, 1, 0, 0.4f)}) {
         const LightDepth depth = make_light_depth(snapshot, light, LightTransmittance::marched, 16);
         for (const vec3 point : points_in({vec3(-5), vec3(35)}, 64)) {
             const double expected = exact_depth(media, light, point);
@@ -204,7 +182,7 @@ TEST(LightDepth, MediaShareOneGrid) {
     const SparseVolume volume = volume_of(ivec3(0), ivec3(30, 20, 17), exact_noise);
     const Snapshot one = snapshot_of({medium_of(volume, 0.05f)});
     const Snapshot two = snapshot_of({medium_of(volume, 0.02f), medium_of(volume, 0.03f)});
-    const Light light = sun(vec3(0.3f, -1, 0.2f));
+    const Light light = sun_light(vec3(0.3f, -1, 0.2f));
     const LightDepth a = make_light_depth(one, light, LightTransmittance::grid, 32);
     const LightDepth b = make_light_depth(two, light, LightTransmittance::grid, 32);
     for (const vec3 point : points_in({vec3(0), vec3(30, 20, 17)}, 64))
@@ -213,9 +191,9 @@ TEST(LightDepth, MediaShareOneGrid) {
 
 TEST(LightDepth, NoFogAndNothingInTheCone) {
     const Snapshot none = snapshot_of({});
-    EXPECT_EQ(depth_at(make_light_depth(none, sun(vec3(0, -1, 0)), LightTransmittance::grid, 64), vec3(1)), 0);
+    EXPECT_EQ(depth_at(make_light_depth(none, sun_light(vec3(0, -1, 0)), LightTransmittance::grid, 64), vec3(1)), 0);
     const Snapshot fog = snapshot_of({medium_of(constant_box(16, 1))});
-    const Light away = spot_light(vec3(7, 40, 7), vec3(7, 80, 7), 0.3f);
+    const Light away = spot_light(vec3(7, 40, 7), {0, 1, 0}, 1, 0, 0.3f);
     const LightDepth depth = make_light_depth(fog, away, LightTransmittance::grid, 64);
     EXPECT_TRUE(depth.grid.empty());
     EXPECT_EQ(depth_at(depth, vec3(7, 60, 7)), 0);
@@ -224,7 +202,8 @@ TEST(LightDepth, NoFogAndNothingInTheCone) {
 TEST(LightDepth, MemoryIsBounded) {
     const Medium fog = medium_of(constant_box(16, 1));
     const Medium* const media[] = {&fog};
-    for (const Light& light : {sun(vec3(0, -1, 0)), point_light(vec3(7)), spot_light(vec3(7, 40, 7), vec3(7), 0.3f)}) {
+    for (const Light& light :
+         {sun_light(vec3(0, -1, 0)), point_light(vec3(7)), spot_light(vec3(7, 40, 7), {0, -1, 0}, 1, 0, 0.3f)}) {
         const LightDepthGrid grid = fitted_grid(media, light, 100000);
         EXPECT_LE(int64_t{grid.size.x} * grid.size.y * grid.size.z * 4, int64_t{256} << 20);
         EXPECT_GE(int64_t{grid.size.x} * grid.size.y * grid.size.z * 4, int64_t{100} << 20);
@@ -239,7 +218,8 @@ TEST(LightDepth, FarFromTheOrigin) {
         const Snapshot snapshot = snapshot_of({medium_of(volume, 0.05f)});
         std::vector<vec3> points = points_in({vec3(0), vec3(30, 20, 17)}, 64);
         for (vec3& point : points) point = glm::floor(point * 64.0f) / 64.0f + shift;
-        return depths_at(make_light_depth(snapshot, sun(vec3(0.3f, -1, 0.2f)), LightTransmittance::grid, 64), points);
+        return depths_at(make_light_depth(snapshot, sun_light(vec3(0.3f, -1, 0.2f)), LightTransmittance::grid, 64),
+                         points);
     };
     const std::vector<float> near = depths(vec3(0)), far = depths(vec3(65536, 0, -32768));
     for (size_t i = 0; i < near.size(); ++i) EXPECT_NEAR(near[i], far[i], 2e-3) << i;

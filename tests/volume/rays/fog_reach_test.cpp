@@ -1,25 +1,12 @@
-#include "volume/medium.h"
+#include "volume/fog_fixtures.h"
 #include "volume/rays/fog_reach.h"
 
 #include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {
-Medium even_medium(float extinction, Box box = everywhere()) {
-    Medium medium;
-    medium.optics.extinction = extinction;
-    medium.bounds = medium.world_bounds = box;
-    return medium;
-}
-
 const Ray forward{vec3(0), vec3(0, 0, -1), infinity};
 
-Medium height_medium(float extinction, float base, float falloff) {
-    Medium medium = even_medium(extinction);
-    medium.kind = DensityKind::height;
-    medium.height_base = base, medium.height_falloff = falloff;
-    return medium;
-}
 }
 
 TEST(FogReach, IsNothingWithoutFog) {
@@ -47,7 +34,7 @@ TEST(FogReach, FollowsEndlessFogToOpticalDepth20) {
 }
 
 TEST(FogReach, LosesLessThanAMillionthOfFogThatThinsOut) {
-    const std::vector media{height_medium(0.1f, 0, 25)};
+    const std::vector media{height_fog(0.1f, 0, 25)};
     for (const float rise : {1.0f, 0.3f, 0.01f}) {
         Ray ray{vec3(0, 2, 0), glm::normalize(vec3(1, rise, 0)), infinity};
         const double whole = optical_depth(media[0], Ray{ray.origin, ray.direction, 1e9f});
@@ -62,7 +49,7 @@ TEST(FogReach, LosesLessThanAMillionthOfFogThatThinsOut) {
 }
 
 TEST(FogReach, GoesDownIntoFogBelow) {
-    const std::vector media{height_medium(0.5f, 0, 2)};
+    const std::vector media{height_fog(0.5f, 0, 2)};
     const Ray down{vec3(0, 100, 0), vec3(0, -1, 0), infinity};
     const float reach = fog_reach(media, down);
     EXPECT_GT(reach, 130);

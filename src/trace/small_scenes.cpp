@@ -1,0 +1,104 @@
+#include "trace/small_scenes.h"
+
+#include "scene/scene.h"
+#include "trace/occlusion/occluders.h"
+#include "volume/bricks/bricks.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace tyndall {
+Medium even_medium(float extinction, Box box, Phase phase, vec3 albedo) {
+    Medium medium;
+    medium.name = "even";
+    medium.optics = {extinction, albedo, phase, vec3(0)};
+    medium.bounds = medium.world_bounds = box;
+    return medium;
+}
+
+SparseVolume unit_volume(int voxels, const std::function<float(vec3)>& density) {
+    SparseVolume volume;
+    volume.index_to_world = glm::scale(dmat4(1), dvec3(1.0 / voxels));
+    volume.index_to_world[3] = glm::dvec4(dvec3(0.5 / voxels), 1);
+    volume.active_low = ivec3(0), volume.active_high = ivec3(voxels - 1);
+    for (int x = 0; x < voxels; x += 8)
+        for (int y = 0; y < voxels; y += 8)
+            for (int z = 0; z < voxels; z += 8) {
+                Leaf& leaf = volume.leaves.emplace_back(Leaf{{x, y, z}, {}});
+                for (int i = 0; i < 512; ++i) {
+                    const ivec3 voxel = leaf.origin + ivec3(i / 64, i / 8 % 8, i % 8);
+                    leaf.values[static_cast<size_t>(i)] = density((vec3(voxel) + 0.5f) / static_cast<float>(voxels));
+                }
+            }
+    return volume;
+}
+
+Medium medium_of(const SparseVolume& volume, float extinction) {
+    Medium medium = even_medium(extinction);
+    medium.name = "grid", medium.kind = DensityKind::bricks;
+    medium.bricks = make_bricks(volume);
+    medium.world_bounds = medium.bounds = medium.bricks->bounds;
+    return medium;
+}
+
+Light sun_light(vec3 direction, float lux) {
+    Light light;
+    light.name = "sun", light.kind = LightKind::sun;
+    light.direction = glm::normalize(direction), light.intensity = vec3(lux);
+    return light;
+}
+
+Light point_light(vec3 position, float candela) {
+    Light light;
+    light.name = "point", light.position = position, light.intensity = vec3(candela);
+    return light;
+}
+
+Light spot_light(vec3 position, vec3 direction, float candela, float inner_cone, float outer_cone) {
+    Light light = point_light(position, candela);
+    light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
+    light.inner_cone = inner_cone, light.outer_cone = outer_cone;
+    return light;
+}
+
+Mesh quad(vec3 corner, vec3 a, vec3 b, int material) {
+    Mesh mesh;
+    mesh.positions = {corner, corner + a, corner + a + b, corner + b};
+    mesh.uvs = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    mesh.material = material;
+    return mesh;
+}
+
+Mesh box_of(vec3 low, vec3 high, int material) {
+    Mesh mesh;
+    for (int corner = 0; corner < 8; ++corner)
+        mesh.positions.push_back(
+            {corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z});
+    for (const glm::uvec4 side : {glm::uvec4(0, 2, 3, 1), glm::uvec4(4, 5, 7, 6), glm::uvec4(0, 1, 5, 4),
+                                  glm::uvec4(2, 6, 7, 3), glm::uvec4(0, 4, 6, 2), glm::uvec4(1, 3, 7, 5)}) {
+        mesh.triangles.push_back({side.x, side.y, side.z});
+        mesh.triangles.push_back({side.x, side.z, side.w});
+    }
+    mesh.material = material;
+    return mesh;
+}
+
+Mesh floor_of(float height, float half, int material) {
+    return quad({-half, height, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, material);
+}
+
+Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights, vec3 ambient) {
+    Snapshot snapshot;
+    snapshot.media = std::move(media), snapshot.lights = std::move(lights), snapshot.ambient = ambient;
+    for (const Medium& medium : snapshot.media)
+        if (!std::isinf(medium.world_bounds.low.x)) snapshot.bounds.grow(medium.world_bounds);
+    if (snapshot.bounds.empty()) snapshot.bounds = Box{vec3(-10), vec3(10)};
+    return snapshot;
+}
+
+void add_surfaces(const Scene& scene, Snapshot& snapshot) {
+    snapshot.scene = &scene;
+    snapshot.occluders = Occluders::make(scene, 0, nullptr);
+    snapshot.bounds.grow(snapshot.occluders->bounds());
+}
+}

@@ -1,0 +1,33 @@
+// Scenes of a few media, lights and meshes made in memory: what proofs and tests hold the program against.
+#pragma once
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "trace/snapshot.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/medium.h"
+
+#include <functional>
+
+namespace tyndall {
+Medium even_medium(float extinction, Box box = everywhere(), Phase phase = {}, vec3 albedo = vec3(1));
+
+// A grid of voxels³ that fills the box 0..1; density at voxel centres.
+SparseVolume unit_volume(int voxels, const std::function<float(vec3)>& density);
+
+Medium medium_of(const SparseVolume& volume, float extinction = 1);
+
+Light sun_light(vec3 direction, float lux = 1);
+Light point_light(vec3 position, float candela = 1);
+Light spot_light(vec3 position, vec3 direction, float candela, float inner_cone, float outer_cone);
+
+// A parallelogram: corner, and the two edges from it.
+Mesh quad(vec3 corner, vec3 a, vec3 b, int material = -1);
+Mesh box_of(vec3 low, vec3 high, int material = -1);
+// A square of 2 · half at a height.
+Mesh floor_of(float height, float half, int material = -1);
+
+Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights = {}, vec3 ambient = vec3(0));
+
+// Has the scene's surfaces in the snapshot; the scene must outlive it.
+void add_surfaces(const Scene& scene, Snapshot& snapshot);
+}
