@@ -37,11 +37,13 @@ std::vector<const StressCase*> chosen_cases(const std::string& patterns) {
     return chosen;
 }
 
-bool any_work(const std::vector<const StressCase*>& cases, const std::vector<Mode>& chosen) {
-    return std::ranges::any_of(cases, [&](const StressCase* stress) {
+// The cases of these that are for any of the modes, or for what all share.
+std::vector<const StressCase*> cases_for(std::span<const Mode> chosen, std::vector<const StressCase*> cases) {
+    std::erase_if(cases, [&](const StressCase* stress) {
         const auto takes = [&](const Mode& mode) { return takes_part(*stress, mode); };
-        return stress->modes.empty() || std::ranges::any_of(chosen, takes);
+        return !stress->modes.program() && std::ranges::none_of(chosen, takes);
     });
+    return cases;
 }
 
 std::vector<std::string> columns(const std::vector<StressResult>& results) {
@@ -62,13 +64,13 @@ void write_files(const std::filesystem::path& directory, const StressReport& rep
 }
 
 int run(const Options& texts, const Globals& globals) {
-    const std::vector<const StressCase*> cases = chosen_cases(texts.cases);
+    const std::vector<Mode> chosen = chosen_modes(texts.modes);
+    const std::vector<const StressCase*> cases = cases_for(chosen, chosen_cases(texts.cases));
+    if (cases.empty()) fail(ExitCode::usage, "--modes", "none of these takes part in the cases chosen");
     if (texts.list) {
         print_report(stress_list(cases));
         return 0;
     }
-    const std::vector<Mode> chosen = chosen_modes(texts.modes);
-    if (!any_work(cases, chosen)) fail(ExitCode::usage, "--modes", "none of these takes part in the cases chosen");
     const std::filesystem::path directory = texts.output;
     OutputPlaces places;
     if (!texts.output.empty())

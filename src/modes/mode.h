@@ -60,6 +60,12 @@ struct Mode {
     bool adds_fluence = false;        // whether it can add light that scatters more than once (fluence.orders)
     bool interactive = false;         // whether it keeps up with a hand on the camera
     bool samples_soft_lights = false; // whether soft lights add noise, and not bias
+
+    // What the stability suite holds a technique to that is not artistic.
+    bool resolves_density = true; // of grids, in every detail
+    bool casts_shadows = true;
+    bool resolves_lamps = true; // what is next to a lamp, pixel by pixel
+    bool adapts_steps = true;   // to how thick fog is
 };
 
 // The one table (modes/table.cpp).

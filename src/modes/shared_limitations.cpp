@@ -8,6 +8,7 @@
 #include "trace/view.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
 
 #include <algorithm>
 
@@ -72,15 +73,16 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
     Box fog;
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     fog.low = glm::max(fog.low, snapshot.bounds.low), fog.high = glm::min(fog.high, snapshot.bounds.high);
-    std::vector<Ray> rays;
+    std::vector<Ray> in_scene, in_fog;
     for (const vec2 at : {vec2(0.5f), vec2(0.1f), vec2(0.9f, 0.1f), vec2(0.1f, 0.9f), vec2(0.9f)}) {
-        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
-        const Interval inside = clip(fog, ray.origin, ray.direction, {0, infinity});
-        if (inside.empty()) continue;
-        ray.t_max = inside.high;
-        rays.push_back(ray);
+        const Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
+        const auto add = [&](Interval stretch, std::vector<Ray>& rays) {
+            if (!stretch.empty()) rays.push_back({ray.origin, ray.direction, stretch.high});
+        };
+        add(clip(fog, ray.origin, ray.direction, {0, infinity}), in_scene);
+        add({0, fog_reach(snapshot.media, ray)}, in_fog);
     }
-    return rays;
+    return in_scene.empty() ? in_fog : in_scene;
 }
 
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {

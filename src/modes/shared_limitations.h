@@ -54,7 +54,8 @@ void add_single_scattering(const View& view, const Snapshot& snapshot, Limitatio
 // Where fog dims the light to it within a cell of a light grid that has so many cells across the fog.
 void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations);
 
-// Rays through the middle and towards the corners of the image, to the end of fog and scene.
+// Rays through the middle and towards the corners of the image, to the end of fog and scene; of unbounded fog that the
+// scene takes no part of, to where nothing is seen through it.
 std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
 
 // Where so many steps along a ray are too few for the detail of a grid; with `fixed`, for its light in thick fog too.

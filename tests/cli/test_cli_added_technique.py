@@ -42,6 +42,11 @@ class Added(ProgramTest):
         self.assertIn("mist", self.succeed("plan", self.scene, "--target-error", "0.05").stdout)
         self.assertIn("mist", self.succeed("explain", self.scene, "--pixel", "10,10").stdout)
 
+    def test_the_stability_suite_holds_it_to_what_its_row_claims(self):
+        told = self.succeed("stress", "--modes", "mist", "--list").stdout
+        self.assertIn("thin-fog", told)
+        self.assertNotIn("lamp-in-froxel", told)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -12,8 +12,6 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view sampled = "march froxel shadow-map shadow-volume path";
-constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 // Within a step or cell the fog is one sample of what spreads by 0.95 of its mean (`roughness`), less where that is
 // smoothed. The light of wisps has a root mean square of 2.7 of its mean: spread evenly it is off by
 // sqrt(2.7 * 2.7 - 1) = 2.5.
@@ -166,17 +164,17 @@ std::vector<StressCase> stress_data() {
                    small_block,
                    {0.01, "error of the optical depth over the picture", mass_off, 1e-4, "shadow-map shadow-volume"}),
         StressCase("flat-grid", group, "a sheet of few voxels seen from all sides", "thickness", "voxels", {4, 2, 1},
-                   sampled, detail, flat_block, {0.1}),
+                   Claim::density, detail, flat_block, {0.1}),
         StressCase("ramp", group, "a ramp of density over the faces of leaves", "side", "voxels", {8, 32, 64},
                    seen_modes, {}, ramp, {1e-5, "largest error of the transmittance", ramp_off}),
-        StressCase("wisps", group, "thin dense wisps get thinner than steps", "side", "voxels", {8, 16, 32, 64}, all,
-                   detail, wisps, {0.1}),
-        StressCase("rough-grid", group, "rough fog gets thick", "extinction", "1/m", {0.5, 3, 20, 200}, all, detail,
-                   rough, {0.1}),
-        StressCase("eye-in-grid", group, "the eye stands in rough fog", "extinction", "1/m", {0.5, 3, 20}, all, detail,
-                   in_rough, {0.1}),
-        StressCase("shaft-in-grid", group, "a narrow shaft through rough fog", "width", "m", {0.6, 0.2, 0.05}, sampled,
-                   shafts, rough_in_shadow, {0.15}),
+        StressCase("wisps", group, "thin dense wisps get thinner than steps", "side", "voxels", {8, 16, 32, 64},
+                   Claim::physical, detail, wisps, {0.1}),
+        StressCase("rough-grid", group, "rough fog gets thick", "extinction", "1/m", {0.5, 3, 20, 200}, Claim::physical,
+                   detail, rough, {0.1}),
+        StressCase("eye-in-grid", group, "the eye stands in rough fog", "extinction", "1/m", {0.5, 3, 20},
+                   Claim::physical, detail, in_rough, {0.1}),
+        StressCase("shaft-in-grid", group, "a narrow shaft through rough fog", "width", "m", {0.6, 0.2, 0.05},
+                   Claim::density, shafts, rough_in_shadow, {0.15}),
     };
 }
 }

@@ -16,7 +16,6 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view remembering = "froxel shadow-map cone";
 constexpr int long_enough = 8; // frames until a history has settled
 // The light of eight frames lies along a way nearly as long as the beam is wide: half of it elsewhere.
 const std::vector<Excuse> trail_of_froxels{{&limitation::moving_light, 0.5}};
@@ -197,30 +196,28 @@ double nudge(Trial& trial) {
 std::vector<StressCase> stress_history() {
     constexpr std::string_view group = "froxels and history";
     return {
-        StressCase("light-out", group, "a light goes out", "frames since", "", {4, 2, 1}, remembering, {}, lit,
+        StressCase("light-out", group, "a light goes out", "frames since", "", {4, 2, 1}, Claim::history, {}, lit,
                    {0.02, "share of its light that is left", left_when_out}),
-        StressCase("light-dims", group, "a light is dimmed", "to", "", {0.98, 0.9, 0.7, 0.3}, remembering, {}, lit,
+        StressCase("light-dims", group, "a light is dimmed", "to", "", {0.98, 0.9, 0.7, 0.3}, Claim::history, {}, lit,
                    {0.1, "share of it that is left or missing four frames later", left_when_dimmed}),
         StressCase("moving-light", group, "a spot moves on", "way per frame", "m", {0.002, 0.005, 0.02, 0.1},
-                   remembering, trail_of_froxels, lit_by_moving,
+                   Claim::history, trail_of_froxels, lit_by_moving,
                    {0.05, "relative RMSE above that without a history", trail}),
         StressCase("uncovered", group, "the eye moves past a pillar", "way per frame", "m",
-                   {0.001, 0.005, 0.02, 0.05, 0.2}, remembering, blur_of_froxels, pillar,
+                   {0.001, 0.005, 0.02, 0.05, 0.2}, Claim::history, blur_of_froxels, pillar,
                    {0.05, "relative RMSE above that without a history", uncovered}),
-        StressCase("cut", group, "cuts: camera, lens, picture size, scene", "cut", "", {0, 1, 2, 3}, remembering, {},
+        StressCase("cut", group, "cuts: camera, lens, picture size, scene", "cut", "", {0, 1, 2, 3}, Claim::history, {},
                    lit, {0, "difference from a frame without history", after_cut}),
         StressCase("bad-frame", group, "a frame of NaN or infinite light is forgotten", "light", "",
-                   {NAN, INFINITY, -INFINITY}, remembering, unseen, lit, {-1, to_truth, after_bad_frame}),
-        StressCase("still", group, "a still picture with a history", "frames", "", {8}, remembering, unseen, lit,
+                   {NAN, INFINITY, -INFINITY}, Claim::history, unseen, lit, {-1, to_truth, after_bad_frame}),
+        StressCase("still", group, "a still picture with a history", "frames", "", {8}, Claim::history, unseen, lit,
                    {-1, to_truth, with_history}),
         StressCase("deep-view", group, "fog goes on far into the picture", "depth", "m", {5, 50, 500, 5000},
-                   "march froxel shadow-map shadow-volume cone path", {}, deep),
+                   Claim::physical, {}, deep),
         StressCase("near-wall", group, "a wall comes near: no half slice is lost", "distance", "m", {4, 1, 0.2, 0.03},
-                   "march froxel shadow-map shadow-volume cone path", {}, near_wall,
-                   {0.03, to_truth, nullptr, 2e-3, "march froxel shadow-volume cone"}),
+                   Claim::physical, {}, near_wall, {0.03, to_truth, nullptr, 2e-3, "march froxel shadow-volume cone"}),
         StressCase("nudge", group, "the eye moves a centimetre in thick fog", "extinction", "1/m", {0.1, 1, 5, 20},
-                   "march froxel shadow-map shadow-volume cone", blurred, thick_around,
-                   {0.01, "change of the mean beyond the truth's", nudge}),
+                   Claim::noise_free, blurred, thick_around, {0.01, "change of the mean beyond the truth's", nudge}),
     };
 }
 }

@@ -12,15 +12,12 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 // One place in a step is looked at. Where light fills a fifth of it, that is off by sqrt(1 / 0.2 - 1) = 2 of the light.
 const std::vector<Excuse> glow{{&limitation::few_steps_for_glow, 2},
                                {&limitation::light_grid_cells},
                                {&limitation::deep_steps},
                                {&limitation::deep_froxels}};
 // Froxels spread what a lamp sends through them, so that only their mean is light.
-constexpr std::string_view rays = "march shadow-map shadow-volume cone path";
-constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
 constexpr float degree = pi / 180;
 
 Medium haze(float extinction = 0.2f) { return even_medium(extinction, {vec3(-6), vec3(6)}); }
@@ -140,38 +137,39 @@ StressScene lamp_in_thick_fog(double extinction) {
 std::vector<StressCase> stress_lamps() {
     constexpr std::string_view group = "lamps in even fog";
     return {
-        StressCase("eye-in-cone", group, "the eye enters a spot's cone", "eye to axis", "m", {4, 2, 1, 0.5, 0}, all,
-                   glow, eye_in_cone),
-        StressCase("eye-at-apex", group, "the eye comes near a spot", "eye to lamp", "m", {3, 1, 0.3, 0.05, 0.001}, all,
-                   glow, eye_in_apex),
+        StressCase("eye-in-cone", group, "the eye enters a spot's cone", "eye to axis", "m", {4, 2, 1, 0.5, 0},
+                   Claim::physical, glow, eye_in_cone),
+        StressCase("eye-at-apex", group, "the eye comes near a spot", "eye to lamp", "m", {3, 1, 0.3, 0.05, 0.001},
+                   Claim::physical, glow, eye_in_apex),
         StressCase("down-the-axis", group, "the view turns to run along a spot's axis", "view to axis", "degrees",
-                   {90, 30, 10, 1, 0}, rays, glow, down_the_axis),
+                   {90, 30, 10, 1, 0}, Claim::lamps, glow, down_the_axis),
         StressCase("near-lamp", group, "rays pass a small lamp closer and closer", "middle ray to lamp", "m",
-                   {0.3, 0.1, 0.01, 0}, rays, glow, near_lamp),
+                   {0.3, 0.1, 0.01, 0}, Claim::lamps, glow, near_lamp),
         StressCase("near-point", group, "the same of a lamp without size", "middle ray to lamp", "m",
-                   {0.3, 0.1, 0.01, 1e-3}, rays, glow, near_point),
+                   {0.3, 0.1, 0.01, 1e-3}, Claim::lamps, glow, near_point),
         StressCase("lamp-in-froxel", group, "the mean light of a lamp within a froxel", "middle ray to lamp", "m",
                    {0.3, 0.1, 0.01, 0}, "froxel", {}, near_lamp, {0.05, "error of the mean", error_of_mean}),
         StressCase("through-lamp", group, "no step where a ray meets the lamp itself", "middle ray to lamp", "m",
-                   {1e-3, 1e-4, 1e-6}, all, {}, near_lamp,
+                   {1e-3, 1e-4, 1e-6}, Claim::physical, {}, near_lamp,
                    {0.01, "change of the mean when the offset is doubled", step_at_lamp}),
         StressCase("along-edge", group, "rays become parallel to a cone's edge", "ray to edge", "degrees",
-                   {20, 5, 1, 0.01, 0}, all, glow, along_edge),
+                   {20, 5, 1, 0.01, 0}, Claim::physical, glow, along_edge),
         StressCase("mirror-cone", group, "no light behind a spot, where its cone goes on mathematically", "half angle",
-                   "degrees", {5, 20, 45, 70}, all, {}, behind_apex, {0, "brightest pixel", light_there}),
+                   "degrees", {5, 20, 45, 70}, Claim::physical, {}, behind_apex, {0, "brightest pixel", light_there}),
         StressCase("wide-cone", group, "needles, right angles and cones of no width", "half angle", "degrees",
-                   {60, 85, 90, 20, 5, 1, 0}, all, glow, wide),
+                   {60, 85, 90, 20, 5, 1, 0}, Claim::physical, glow, wide),
         StressCase("hard-edge", group, "the soft edge of a cone gets hard", "inner to outer angle", "",
-                   {0, 0.5, 0.9, 0.999, 1}, all, glow, hard_edge),
+                   {0, 0.5, 0.9, 0.999, 1}, Claim::physical, glow, hard_edge),
         StressCase("lens", group, "a lens that cuts a cone adds no light", "lens radius", "m", {0.05, 0.2, 0.5, 1.5},
                    "cone", {}, clipped, {1e-5, "most a pixel gains, by the mean", brighter_than_whole}),
-        StressCase("short-range", group, "the range of a lamp gets short", "range", "m", {100, 5, 2, 0.5, 0.1}, all,
-                   glow, short_range),
-        StressCase("many-lamps", group, "many spots at once", "spots", "", {1, 4, 16, 48}, all, glow, many),
+        StressCase("short-range", group, "the range of a lamp gets short", "range", "m", {100, 5, 2, 0.5, 0.1},
+                   Claim::physical, glow, short_range),
+        StressCase("many-lamps", group, "many spots at once", "spots", "", {1, 4, 16, 48}, Claim::physical, glow, many),
         StressCase("lamp-between-cells", group, "a lamp wanders through one pixel", "way", "pixels",
-                   {0, 0.25, 0.5, 0.75, 1}, all, glow, moving_lamp, {0.05, "error of the mean", error_of_mean}),
+                   {0, 0.25, 0.5, 0.75, 1}, Claim::physical, glow, moving_lamp,
+                   {0.05, "error of the mean", error_of_mean}),
         StressCase("lamp-in-thick-fog", group, "a small lamp in fog that gets thick", "extinction", "1/m",
-                   {0.1, 1, 5, 20}, exact, glow, lamp_in_thick_fog),
+                   {0.1, 1, 5, 20}, Claim::noise_free, glow, lamp_in_thick_fog),
         StressCase("traced-lamp", group, "the same, as thick as light paths find their way", "extinction", "1/m",
                    {0.1, 1, 2}, "path", {}, lamp_in_thick_fog),
     };

@@ -8,8 +8,6 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
-constexpr std::string_view exact = "march froxel shadow-map shadow-volume cone";
 
 const Box unit{vec3(-1), vec3(1)};
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
@@ -97,19 +95,21 @@ std::vector<StressCase> stress_scattering() {
     constexpr std::string_view group = "scattering";
     return {
         StressCase("forward-lobe", group, "looking past the sun through a lobe that gets narrow", "g", "",
-                   {0, 0.5, 0.8, 0.95, 0.99}, all, {}, towards_sun, {0.05, "error of the mean", error_of_mean}),
-        StressCase("backward-lobe", group, "the same of fog that sends light back", "g", "", {-0.3, -0.8, -0.99}, all,
-                   {}, towards_sun),
-        StressCase("phase-sign", group, "fog of positive g is bright around the sun", "g", "", {0.2, 0.5, 0.8}, all, {},
-                   into_sun, {0.01, "error of bright to dark side, ((1+g)/(1-g))^3", ratio_off}),
+                   {0, 0.5, 0.8, 0.95, 0.99}, Claim::physical, {}, towards_sun,
+                   {0.05, "error of the mean", error_of_mean}),
+        StressCase("backward-lobe", group, "the same of fog that sends light back", "g", "", {-0.3, -0.8, -0.99},
+                   Claim::physical, {}, towards_sun),
+        StressCase("phase-sign", group, "fog of positive g is bright around the sun", "g", "", {0.2, 0.5, 0.8},
+                   Claim::physical, {}, into_sun, {0.01, "error of bright to dark side, ((1+g)/(1-g))^3", ratio_off}),
         StressCase("phase-kinds", group, "isotropic, Rayleigh, Schlick, hardly Henyey-Greenstein", "kind", "",
-                   {0, 1, 2, 3, 4}, all, {}, kinds),
-        StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8}, exact,
-                   {}, in_even_light, {0.005, "error of the mean against the closed form", even_light_off}),
-        StressCase("linear", group, "twice the light is twice the picture", "sun", "times", {2, 1e-6, 1e6, 1e12}, exact,
-                   {}, dim_or_bright, {1e-4, "relative RMSE of the picture by the light's strength", not_linear}),
-        StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0},
-                   "march froxel shadow-map shadow-volume cone billboard radial-blur path", {}, two_colours,
+                   {0, 1, 2, 3, 4}, Claim::physical, {}, kinds),
+        StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8},
+                   Claim::noise_free, {}, in_even_light,
+                   {0.005, "error of the mean against the closed form", even_light_off}),
+        StressCase("linear", group, "twice the light is twice the picture", "sun", "times", {2, 1e-6, 1e6, 1e12},
+                   Claim::noise_free, {}, dim_or_bright,
+                   {1e-4, "relative RMSE of the picture by the light's strength", not_linear}),
+        StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0}, Claim::all, {}, two_colours,
                    {1e-5, "relative RMSE of the sum", sum_off}),
     };
 }

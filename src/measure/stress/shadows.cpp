@@ -16,8 +16,6 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view shadowed = "march froxel shadow-map shadow-volume path";
-constexpr std::string_view all = "march froxel shadow-map shadow-volume cone path";
 const Excuse as_froxels{&limitation::coarse_shafts}, as_noise{&limitation::grainy_edges};
 // A spot's light is three times as much as its shadows leave of it.
 const Excuse sun_unseen{&limitation::sun_without_shadows}, unseen{&limitation::no_shadows, 3};
@@ -234,44 +232,43 @@ double short_rays_off(Trial& trial) {
 std::vector<StressCase> stress_shadows() {
     constexpr std::string_view group = "shadows";
     return {
-        StressCase("slit", group, "sun through a slit that gets narrow", "width", "m", {2, 0.5, 0.1, 0.02}, all, narrow,
-                   slit, fine),
+        StressCase("slit", group, "sun through a slit that gets narrow", "width", "m", {2, 0.5, 0.1, 0.02},
+                   Claim::physical, narrow, slit, fine),
         StressCase("lit-floor", group, "a lit floor does not shadow itself", "sun's elevation", "degrees",
-                   {89, 45, 10, 3, 1}, all, {}, lit_floor, sharp),
+                   {89, 45, 10, 3, 1}, Claim::physical, {}, lit_floor, sharp),
         StressCase("orbit", group, "the eye goes round a shaft of shadow", "azimuth", "degrees",
-                   {0, 60, 120, 180, 240, 300}, all, {sun_unseen}, orbit, sharp),
+                   {0, 60, 120, 180, 240, 300}, Claim::physical, {sun_unseen}, orbit, sharp),
         StressCase("against-the-sun", group, "rays become parallel to the sun's", "ray to sun", "degrees",
-                   {30, 5, 1, 0.01, 0}, all, {sun_unseen}, along_the_sun, sharp),
+                   {30, 5, 1, 0.01, 0}, Claim::physical, {sun_unseen}, along_the_sun, sharp),
         StressCase("fence", group, "wires get thinner than texels and froxels", "wire", "m", {0.12, 0.03, 0.008, 0.002},
-                   all, {as_froxels, as_noise, sun_unseen, unseen}, fence, fine),
+                   Claim::physical, {as_froxels, as_noise, sun_unseen, unseen}, fence, fine),
         StressCase("holed-sheet", group, "one hole: whole, in pieces, turned, half turned, doubled", "mesh", "",
-                   {0, 1, 2, 3, 4}, shadowed, {}, holed, fine),
+                   {0, 1, 2, 3, 4}, Claim::shadows, {}, holed, fine),
         StressCase("sun-in-a-face", group, "the sun lies in the plane of a face", "angle", "radians",
-                   {0.1, 1e-2, 1e-4, 1e-7, 0}, shadowed, {}, coplanar, sharp),
+                   {0.1, 1e-2, 1e-4, 1e-7, 0}, Claim::shadows, {}, coplanar, sharp),
         StressCase("stack", group, "several blockers in one place are one", "blockers", "", {2, 3, 5},
-                   "march froxel shadow-map shadow-volume", {}, one_blocker,
-                   {1e-3, "relative RMSE against one", stack_off}),
+                   Claim::shadows | Claim::noise_free, {}, one_blocker, {1e-3, "relative RMSE against one", stack_off}),
         StressCase("eye-in-shadow", group, "the eye stands in a shadow", "below the blocker", "m", {3, 1, 0.3, 0.01},
-                   all, {sun_unseen}, eye_in_shadow, sharp),
-        StressCase("size", group, "shadows a thousand kilometres long", "blocker", "m", {1, 1e-3, 1e3, 1e6}, shadowed,
-                   {}, long_shadow, sharp),
+                   Claim::physical, {sun_unseen}, eye_in_shadow, sharp),
+        StressCase("size", group, "shadows a thousand kilometres long", "blocker", "m", {1, 1e-3, 1e3, 1e6},
+                   Claim::shadows, {}, long_shadow, sharp),
         StressCase("dark-room", group, "the sun does not get through thin walls", "wall", "m", {0.5, 0.1, 0.02, 0.005},
-                   shadowed, {}, dark_room, {1e-3, "light inside by light without walls", leak}),
+                   Claim::shadows, {}, dark_room, {1e-3, "light inside by light without walls", leak}),
         StressCase("closed-roof", group, "no light through the seams of triangles", "squares", "per side", {1, 8, 64},
-                   shadowed, {}, tessellated, {0, "brightest pixel", brightest}),
+                   Claim::shadows, {}, tessellated, {0, "brightest pixel", brightest}),
         StressCase("soft-sun", group, "the disc of the sun gets large", "half angle", "radians", {0, 0.005, 0.05, 0.2},
-                   shadowed, hard, soft),
-        StressCase("soft-lamp", group, "a lamp gets large", "radius", "m", {0, 0.02, 0.1, 0.3}, shadowed, hard,
+                   Claim::shadows, hard, soft),
+        StressCase("soft-lamp", group, "a lamp gets large", "radius", "m", {0, 0.02, 0.1, 0.3}, Claim::shadows, hard,
                    soft_lamp),
-        StressCase("glass", group, "a pane that takes a part of the light", "alpha", "", {1, 0.8, 0.4, 0.1}, shadowed,
-                   {{&limitation::no_alpha_shadows}, {&limitation::no_partial_shadows}, as_froxels}, glass),
-        StressCase("cut-out", group, "a sheet with a hole in its texture", "hole", "", {0.5, 0.1, 0.02, 0.9}, shadowed,
-                   {{&limitation::no_alpha_shadows}, as_froxels, as_noise}, cut_out),
+        StressCase("glass", group, "a pane that takes a part of the light", "alpha", "", {1, 0.8, 0.4, 0.1},
+                   Claim::shadows, {{&limitation::no_alpha_shadows}, {&limitation::no_partial_shadows}, as_froxels},
+                   glass),
+        StressCase("cut-out", group, "a sheet with a hole in its texture", "hole", "", {0.5, 0.1, 0.02, 0.9},
+                   Claim::shadows, {{&limitation::no_alpha_shadows}, as_froxels, as_noise}, cut_out),
         StressCase("shade-at-lamp", group, "a slit comes close to its lamp", "lamp to slit", "m", {1, 0.3, 0.03, 0.003},
-                   all, {as_froxels, as_noise, unseen}, lamp_in_holes, fine),
+                   Claim::physical, {as_froxels, as_noise, unseen}, lamp_in_holes, fine),
         StressCase("short-rays", group, "rays that end where they start", "length", "m", {1e-5, 1e-9, 0},
-                   "march froxel shadow-map shadow-volume cone billboard path", {}, short_rays,
-                   {1e-3, "most light scattered or taken away", short_rays_off}),
+                   Claim::along_rays, {}, short_rays, {1e-3, "most light scattered or taken away", short_rays_off}),
     };
 }
 }

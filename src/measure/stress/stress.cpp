@@ -83,7 +83,22 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
 }
 }
 
-bool takes_part(const StressCase& stress, const Mode& mode) { return names(stress.modes, mode.name); }
+bool takes_part(const StressCase& stress, const Mode& mode) {
+    if (!stress.modes.claims) return stress.modes.name == mode.name;
+    const bool physical = mode.accuracy != Accuracy::look;
+    const std::pair<Claim, bool> made[] = {{Claim::along_rays, mode.surfaces != Surfaces::post},
+                                           {Claim::physical, physical},
+                                           {Claim::noise_free, physical && !error_is_noise(mode)},
+                                           {Claim::density, physical && mode.resolves_density},
+                                           {Claim::shadows, physical && mode.casts_shadows},
+                                           {Claim::lamps, physical && mode.resolves_lamps},
+                                           {Claim::history, mode.remembers},
+                                           {Claim::fluence, mode.adds_fluence},
+                                           {Claim::adaptive, physical && mode.adapts_steps}};
+    return std::ranges::all_of(made, [&](const auto& one) {
+        return one.second || !(*stress.modes.claims & static_cast<uint16_t>(one.first));
+    });
+}
 
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
                                      const StressControl& control) {
@@ -91,7 +106,7 @@ std::vector<StressResult> run_stress(const StressCase& stress, std::span<const M
     std::vector<const Mode*> taking;
     for (const Mode& mode : modes)
         if (takes_part(stress, mode)) taking.push_back(&mode);
-    if (stress.modes.empty()) taking.push_back(nullptr);
+    if (stress.modes.program()) taking.push_back(nullptr);
 
     std::vector<StressResult> results;
     for (const Mode* mode : taking) results.push_back({&stress, std::string(mode ? mode->name : "program"), {}, 0});

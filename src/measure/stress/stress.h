@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,12 +33,41 @@ struct Excuse {
     double up_to = 0;
 };
 
+// What the rows of techniques say of them. All but `all`, `along_rays`, `history` and `fluence` are of physical ones.
+enum class Claim : uint16_t {
+    all = 0,
+    along_rays = 1,
+    physical = 2,
+    noise_free = 4,
+    density = 8,
+    shadows = 16,
+    lamps = 32,
+    history = 64,
+    fluence = 128,
+    adaptive = 256
+};
+
+// The techniques that a case is for: those that make all these claims, or one by its name. By itself: a part of the
+// program that all modes share.
+struct Participants {
+    std::optional<uint16_t> claims{};
+    std::string_view name{};
+
+    constexpr Participants() = default;
+    constexpr Participants(Claim claim) : claims(static_cast<uint16_t>(claim)) {}
+    constexpr Participants(const char* one) : name(one) {}
+    bool program() const { return !claims && name.empty(); }
+};
+constexpr Participants operator|(Claim a, Claim b) {
+    return static_cast<Claim>(static_cast<uint16_t>(a) | static_cast<uint16_t>(b));
+}
+
 struct StressCase {
     std::string_view id, group, title; // title: what is put to the test
     std::string_view sweep, unit;      // the condition that is swept
     std::vector<double> values;        // from mild to hard
-    std::string_view modes;            // names between spaces; empty = a part of the program that all modes share
-    std::vector<Excuse> excuses;       // empty: every mode has to hold throughout
+    Participants modes;
+    std::vector<Excuse> excuses; // empty: every mode has to hold throughout
     StressScene (*scene)(double value) = nullptr;
     StressMeasure measure{};
 };

@@ -10,6 +10,6 @@ StressScene looking_at(Medium medium);
 float blob(vec3 p);
 float roughness(vec3 p);
 
-constexpr std::string_view seen_modes = "march froxel shadow-map shadow-volume"; // that sample a grid, without noise
+constexpr Participants seen_modes = Claim::density | Claim::noise_free;
 inline const Light noon_light = sun_light({0.3f, -1, -0.2f}, 10);
 }

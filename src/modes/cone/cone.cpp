@@ -151,6 +151,8 @@ Mode cone_mode() {
             .rungs = cone_rungs,
             .color = "#56B4E9",
             .remembers = true,
-            .interactive = true};
+            .interactive = true,
+            .resolves_density = false,
+            .casts_shadows = false};
 }
 }

@@ -186,6 +186,7 @@ Mode froxel_mode() {
             .color = "#E69F00",
             .remembers = true,
             .adds_fluence = true,
-            .interactive = true};
+            .interactive = true,
+            .resolves_lamps = false};
 }
 }

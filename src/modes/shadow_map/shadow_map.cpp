@@ -60,6 +60,7 @@ Mode shadow_map_mode() {
             .rungs = shadow_map_rungs,
             .color = "#009E73",
             .remembers = true,
-            .interactive = true};
+            .interactive = true,
+            .adapts_steps = false};
 }
 }
