@@ -7,6 +7,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 namespace tyndall {
+Phase forward_phase(float g) { return {PhaseKind::henyey_greenstein, g}; }
+
 Medium even_medium(float extinction, Box box, Phase phase, vec3 albedo) {
     Medium medium;
     medium.name = "even";
@@ -85,6 +87,12 @@ Mesh box_of(vec3 low, vec3 high, int material) {
 
 Mesh floor_of(float height, float half, int material) {
     return quad({-half, height, -half}, {2 * half, 0, 0}, {0, 0, 2 * half}, material);
+}
+
+Material lambert(vec3 base_color, vec3 emission) {
+    Material material;
+    material.base_color = base_color, material.emission = emission;
+    return material;
 }
 
 Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights, vec3 ambient) {

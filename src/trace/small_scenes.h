@@ -9,6 +9,8 @@
 #include <functional>
 
 namespace tyndall {
+Phase forward_phase(float g);
+
 Medium even_medium(float extinction, Box box = everywhere(), Phase phase = {}, vec3 albedo = vec3(1));
 
 // A grid of voxels³ that fills the box 0..1; density at voxel centres.
@@ -27,6 +29,8 @@ Mesh box_of(vec3 low, vec3 high, int material = -1);
 Mesh floor_of(float height, float half, int material = -1);
 
 Snapshot snapshot_of(std::vector<Medium> media, std::vector<Light> lights = {}, vec3 ambient = vec3(0));
+
+Material lambert(vec3 base_color, vec3 emission = vec3(0));
 
 // Has the scene's surfaces in the snapshot; the scene must outlive it.
 void add_surfaces(const Scene& scene, Snapshot& snapshot);

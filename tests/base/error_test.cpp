@@ -1,6 +1,6 @@
 #include "base/text.h"
 #include "base/utf8.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,7 @@ Stage busy_stage() {
                               even_medium(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
     media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.5f}, media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     media[1].optics.phase = {PhaseKind::rayleigh, 0};
-    Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
-    spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
-    spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
+    const Light spot = spot_light({0.3f, 1.5f, 0.4f}, {0.1f, -1, 0.1f}, 2, 0.3f, 0.5f);
     return stage_of(media, {sun_light({0.3f, -1, 0.1f}), spot},
                     {shade(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}, vec3(0.1f));
 }
@@ -28,15 +26,4 @@ std::vector<Ray> busy_rays(int count) {
     return rays;
 }
 
-double mean_of(const std::vector<Scatter>& results) {
-    double sum = 0;
-    for (const Scatter& result : results) sum += luminance(result.radiance);
-    return sum / results.size();
-}
-
-double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(luminance(a[i].radiance) - luminance(b[i].radiance), 2);
-    return std::sqrt(sum / a.size());
-}
 }

@@ -1,6 +1,5 @@
-// A stage with a bit of everything, rays through it, and how their answers compare.
+// A stage with a bit of everything, and rays through it.
 #pragma once
-#include "integrate/ray_batch.h"
 #include "support/tiny_scenes.h"
 
 namespace tyndall::test {
@@ -10,8 +9,4 @@ float wavy(vec3 p);
 Stage busy_stage();
 
 std::vector<Ray> busy_rays(int count);
-
-double mean_of(const std::vector<Scatter>& results);
-
-double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b);
 }

@@ -30,8 +30,6 @@ namespace tyndall::test {
 namespace {
 const Box unit_box{vec3(0), vec3(1)};
 
-Phase forward(float g) { return {PhaseKind::henyey_greenstein, g}; }
-
 FluenceSettings grid_settings(int orders, int resolution, int paths) { return {orders, resolution, paths}; }
 
 // ∫ dV / (4π r²) over the cube of side 1, r from its middle: the mean distance from there to its sides.
@@ -97,12 +95,12 @@ TEST(Fluence, ScattersALobeIntoAWiderLobe) {
             const auto around = [&](double a) {
                 const vec3 travel = static_cast<float>(c) * axis +
                                     static_cast<float>(s) * (std::cos(float(a)) * x + std::sin(float(a)) * y);
-                return phase_value_of<double>(forward(k), c) *
-                       phase_value_of<double>(forward(g), glm::dot(travel, -eye_ray));
+                return phase_value_of<double>(forward_phase(k), c) *
+                       phase_value_of<double>(forward_phase(g), glm::dot(travel, -eye_ray));
             };
             return integral(around, 0, 2 * std::numbers::pi, 20);
         };
-        const vec3 got = scattered_fluence(at, eye_ray, forward(g));
+        const vec3 got = scattered_fluence(at, eye_ray, forward_phase(g));
         EXPECT_NEAR(got.x, 2 * integral(over_cosine, -1, 1, 60), 2e-5 * got.x);
         EXPECT_NEAR(got.y, 1 / (4 * pi), 1e-7f);
         EXPECT_EQ(got.z, 0);
@@ -148,8 +146,8 @@ TEST(Fluence, HasTheSameBitsAtAnyThreadCount) {
     Scene scene;
     scene.materials = {lambert(vec3(0.5f))};
     add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot =
-        snapshot_of({even_medium(3, unit_box, forward(0.6f))}, {sun_light({1, -1, 0.5f}), point_light({2, 2, 2})});
+    Snapshot snapshot = snapshot_of({even_medium(3, unit_box, forward_phase(0.6f))},
+                                    {sun_light({1, -1, 0.5f}), point_light({2, 2, 2})});
     add_surfaces(scene, snapshot);
     const int threads = thread_count();
     set_thread_count(1);
@@ -167,7 +165,7 @@ Settings with_orders(Settings settings, int orders) {
 }
 
 TEST(Fluence, ChangesNoBitOfSingleScattering) {
-    const Snapshot snapshot = snapshot_of({even_medium(2, unit_box, forward(0.5f))}, {sun_light({1, -1, 0.5f})});
+    const Snapshot snapshot = snapshot_of({even_medium(2, unit_box, forward_phase(0.5f))}, {sun_light({1, -1, 0.5f})});
     const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.8f, 64);
     for (const Visibility visibility : {Visibility::rays, Visibility::intervals, Visibility::exact}) {
         Settings settings;
@@ -180,7 +178,7 @@ TEST(Fluence, ChangesNoBitOfSingleScattering) {
 
 // Everything that the cube sends out, by path, and by march with the grid, in all ways that march has.
 void expect_power_of_path(float g, int lines, double precision) {
-    Medium fog = even_medium(1.5f, unit_box, forward(g));
+    Medium fog = even_medium(1.5f, unit_box, forward_phase(g));
     fog.optics.albedo = vec3(0.9f);
     Medium grid = medium_of(unit_volume(16, [](vec3) { return 1.0f; }), 1.5f);
     grid.optics = fog.optics;
@@ -226,8 +224,8 @@ TEST(Fluence, LooksTheSameInFroxels) {
     std::vector<Scatter> march = light("march", all_orders), froxel = light("froxel", all_orders);
     for (size_t i = 0; i < rays.size(); ++i)
         march[i].radiance -= march_once[i].radiance, froxel[i].radiance -= froxel_once[i].radiance;
-    EXPECT_GT(mean_light(march), 0.05 * mean_light(march_once));
-    EXPECT_NEAR(mean_light(froxel), mean_light(march), 0.02 * mean_light(march));
+    EXPECT_GT(mean_of(march), 0.05 * mean_of(march_once));
+    EXPECT_NEAR(mean_of(froxel), mean_of(march), 0.02 * mean_of(march));
     EXPECT_LT(relative_rmse(froxel, march), relative_rmse(froxel_once, march_once));
 }
 

@@ -1,4 +1,5 @@
 #include "modes/mode.h"
+#include "support/expect.h"
 
 #include "base/error.h"
 #include "modes/settings.h"
@@ -11,14 +12,8 @@
 namespace tyndall {
 namespace {
 std::string refusal(std::string_view assignment) {
-    try {
-        Settings settings;
-        apply_setting(settings, assignment);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code, ExitCode::usage);
-        return error.what();
-    }
-    return "accepted";
+    Settings settings;
+    return error_text(ExitCode::usage, [&] { apply_setting(settings, assignment); });
 }
 
 TEST(Settings, EveryRowReadsBackWhatWasSet) {
@@ -61,12 +56,7 @@ TEST(Modes, TheTableFindsEachModeAndNamesThemAll) {
         EXPECT_EQ(&find_mode(mode.name), &mode);
         EXPECT_FALSE(mode.summary.empty());
     }
-    try {
-        find_mode("marhc");
-        FAIL() << "found a mode that is not there";
-    } catch (const Error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("march"));
-    }
+    EXPECT_THAT(error_text(ExitCode::usage, [] { find_mode("marhc"); }), testing::HasSubstr("march"));
 }
 }
 }

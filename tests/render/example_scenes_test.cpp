@@ -4,8 +4,8 @@
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "support/run_mode.h"
 #include "support/scratch.h"
-#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -17,36 +17,15 @@
 
 namespace tyndall {
 namespace {
+using namespace test;
+
 const std::filesystem::path source_dir = TYNDALL_SOURCE_DIR;
 
 // Fog light of pixel centres at a small size, without jitter.
 std::vector<Scatter> fog_light(const Snapshot& snapshot, const Camera& camera, const Settings& settings) {
-    const ivec2 size{64, 36};
-    const ScatterFunction scatter = find_mode("march").prepare(View{}, snapshot, settings, nullptr);
-    std::vector<Scatter> results(static_cast<size_t>(size.x) * size.y);
-    for (size_t first = 0; first < results.size(); first += 16) {
-        Ray rays[16];
-        uint32_t ids[16] = {};
-        for (size_t i = 0; i < 16; ++i) {
-            const int pixel = static_cast<int>(first + i);
-            rays[i] = camera_ray(camera, size, vec2(pixel % size.x, pixel / size.x) + 0.5f);
-            rays[i].t_max = 20;
-        }
-        Hits hits;
-        snapshot.occluders->closest(rays, 0, hits);
-        for (size_t i = 0; i < 16; ++i) rays[i].t_max = std::min(rays[i].t_max, hits.t[i]);
-        scatter({rays, ids, {}, {}}, std::span(results).subspan(first, 16));
-    }
-    return results;
-}
-
-double relative_error(const std::vector<Scatter>& a, const std::vector<Scatter>& reference) {
-    double squared = 0, sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        squared += std::pow(luminance(a[i].radiance - reference[i].radiance), 2);
-        sum += luminance(reference[i].radiance);
-    }
-    return std::sqrt(squared * a.size()) / sum;
+    View view;
+    view.camera = camera, view.size = {64, 36};
+    return run_mode("march", view, snapshot, settings, picture_rays(view, snapshot, 20));
 }
 
 TEST(ExampleScenes, MarchConvergesOnTheWindow) {
@@ -62,7 +41,7 @@ TEST(ExampleScenes, MarchConvergesOnTheWindow) {
     };
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     for (const int steps : {16, 32, 64, 128}) {
-        const double level = std::log2(steps), error = std::log2(relative_error(run(steps), run(8 * steps)));
+        const double level = std::log2(steps), error = std::log2(relative_rmse(run(steps), run(8 * steps)));
         ++n, x += level, y += error, xx += level * level, xy += level * error;
     }
     const double slope = (n * xy - x * y) / (n * xx - x * x);
@@ -80,7 +59,7 @@ TEST(ExampleScenes, HalvingTheBoundsOfTheReferenceChangesNothing) {
         settings.march.step_depth /= 2, settings.march.step_voxels /= 2, settings.march.step_share /= 2;
         settings.march.near_light /= 2;
         const auto halved = fog_light(snapshot, camera, settings);
-        EXPECT_LT(relative_error(reference, halved), 1e-4) << name;
+        EXPECT_LT(relative_rmse(reference, halved), 1e-4) << name;
         EXPECT_GT(halved[0].steps, reference[0].steps) << name;
     }
 }
@@ -100,7 +79,7 @@ TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
     const Settings settings = settings_for(Quality::preview);
     const auto grown = fog_light(make_snapshot(direct, moment_of(direct, 12)), camera, settings);
     const auto read = fog_light(make_snapshot(baked, moment_of(baked, 12)), camera, settings);
-    EXPECT_LT(relative_error(read, grown), 1e-3); // half floats on disk and in the bricks
+    EXPECT_LT(relative_rmse(read, grown), 1e-3); // half floats on disk and in the bricks
 }
 
 TEST(ExampleScenes, AllLoadWithoutWarnings) {

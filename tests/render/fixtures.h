@@ -1,8 +1,10 @@
 // Scenes of a few planes, and modes of one line, so that every pixel has a closed form.
 #pragma once
+#include "base/image.h"
 #include "base/math.h"
 #include "integrate/ray_batch.h"
 
+#include <cstring>
 #include <vector>
 
 namespace tyndall {
@@ -44,4 +46,16 @@ ScatterFunction prepare_nothing(const View&, const Snapshot&, const Settings&, H
 
 // Light that depends on everything a mode is told, neighbours included.
 ScatterFunction prepare_everything(const View&, const Snapshot&, const Settings&, History*);
+
+// Of pictures: whether they agree in every bit, and the pixels from `low` to before `high`.
+template<class T> bool same_bits(const Image<T>& a, const Image<T>& b) {
+    return a.size == b.size && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(T)) == 0;
+}
+
+template<class T> Image<T> cut(const Image<T>& image, ivec2 low, ivec2 high) {
+    Image<T> result(high - low);
+    for (int y = low.y; y < high.y; ++y)
+        for (int x = low.x; x < high.x; ++x) result.at(x - low.x, y - low.y) = image.at(x, y);
+    return result;
+}
 }

@@ -1,13 +1,10 @@
 #include "scene/camera.h"
+#include "support/expect.h"
 
 #include <gtest/gtest.h>
 
 namespace tyndall {
 namespace {
-void expect_near(vec3 a, vec3 b, float tolerance = 1e-6f) {
-    EXPECT_LE(glm::length(a - b), tolerance) << a.x << " " << a.y << " " << a.z;
-}
-
 void expect_frame(const Camera& camera) {
     const mat3 frame(camera.right, camera.up, -camera.forward);
     const mat3 product = glm::transpose(frame) * frame;

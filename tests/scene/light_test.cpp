@@ -33,9 +33,7 @@ TEST(Light, RangeFadesToNothing) {
 }
 
 TEST(Light, SpotIsFullInsideAndNothingOutside) {
-    Light light = point_light(vec3(0), 9);
-    light.kind = LightKind::spot, light.direction = {0, -1, 0};
-    light.inner_cone = glm::radians(10.0f), light.outer_cone = glm::radians(30.0f);
+    Light light = spot_light(vec3(0), {0, -1, 0}, 9, glm::radians(10.0f), glm::radians(30.0f));
     const auto at = [&](float degrees) {
         const float angle = glm::radians(degrees);
         return arrival(light, 3.0f * vec3(std::sin(angle), -std::cos(angle), 0)).irradiance.x;

@@ -1,6 +1,8 @@
 #include "support/run_mode.h"
 
+#include "scene/camera.h"
 #include "scene/light.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 
 namespace tyndall::test {
@@ -18,6 +20,43 @@ std::vector<Scatter> taken(const ScatterFunction& scatter, const std::vector<Ray
     }
     return results;
 }
+}
+
+View view_of(vec3 eye, vec3 target, ivec2 size, float vertical_fov) {
+    View view;
+    view.camera = look_at(eye, target, {0, 1, 0}, vertical_fov);
+    view.size = size;
+    return view;
+}
+
+std::vector<Ray> picture_rays(const View& view, const Snapshot& snapshot, float far) {
+    std::vector<Ray> rays;
+    for (int y = 0; y < view.size.y; ++y)
+        for (int x = 0; x < view.size.x; ++x) {
+            rays.push_back(camera_ray(view.camera, view.size, vec2(x, y) + 0.5f));
+            Hits hits;
+            hits.instance.fill(-1);
+            const std::span one{&rays.back(), 1};
+            if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->closest(one, 0, hits);
+            rays.back().t_max = hits.instance[0] >= 0 ? hits.t[0] : far;
+        }
+    return rays;
+}
+
+double mean_of(const std::vector<Scatter>& results) {
+    double sum = 0;
+    for (const Scatter& result : results) sum += luminance(result.radiance);
+    return sum / static_cast<double>(results.size());
+}
+
+double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::pow(luminance(a[i].radiance - b[i].radiance), 2);
+    return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+double relative_rmse(const std::vector<Scatter>& results, const std::vector<Scatter>& truth) {
+    return rms_difference(results, truth) / mean_of(truth);
 }
 
 std::vector<Scatter> scattered(const ScatterFunction& scatter, const std::vector<Ray>& rays, size_t packet) {

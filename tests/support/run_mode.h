@@ -1,10 +1,20 @@
-// Modes on a list of rays, and the settings that tests hold them to.
+// Modes on a list of rays, how their answers compare, and the settings that tests hold them to.
 #pragma once
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "trace/view.h"
 
 namespace tyndall::test {
+View view_of(vec3 eye, vec3 target, ivec2 size = {64, 36}, float vertical_fov = 0.8f);
+
+// One ray through the centre of every pixel, up to the first surface or `far`.
+std::vector<Ray> picture_rays(const View& view, const Snapshot& snapshot, float far = 1000);
+
+// Of luminance: the mean, the root mean square of the differences, and that by the mean of the truth.
+double mean_of(const std::vector<Scatter>& results);
+double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b);
+double relative_rmse(const std::vector<Scatter>& results, const std::vector<Scatter>& truth);
+
 // Light along the rays, taken in packets; `per_light` gets each light's part of it.
 std::vector<Scatter> scattered(const ScatterFunction& scatter, const std::vector<Ray>& rays, size_t packet = 16);
 std::vector<Scatter> run_mode(std::string_view mode, const View& view, const Snapshot& snapshot,

@@ -32,6 +32,13 @@ std::vector<std::string> Scratch::names() const {
     return result;
 }
 
+std::map<std::string, std::string> Scratch::contents() const {
+    std::map<std::string, std::string> result;
+    for (const std::string& name : names())
+        if (std::filesystem::is_regular_file(path_ / name)) result[name] = bytes_of(path_ / name);
+    return result;
+}
+
 std::string bytes_of(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};

@@ -1,6 +1,7 @@
 // A directory of its own for a test, removed at the end.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ public:
 
     // Names of files and folders in it, sorted.
     std::vector<std::string> names() const;
+
+    // Its files by name, with their bytes.
+    std::map<std::string, std::string> contents() const;
 
 private:
     std::filesystem::path path_;

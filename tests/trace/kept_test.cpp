@@ -1,6 +1,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
+#include "support/run_mode.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/kept_shadows.h"
 #include "trace/small_scenes.h"
@@ -31,12 +32,6 @@ Snapshot next_of(const Snapshot& before) {
 
 KeptKey number(int value) { return KeptKey().add(value); }
 
-template<class T> Keyed<T> from_to(T a, T b) {
-    Keyed<T> keyed;
-    keyed.times = {0, 1}, keyed.values = {a, b};
-    return keyed;
-}
-
 // A floor that stays, a box that may move, noise fog and a lamp whose brightness is animated.
 Scene lamp_scene() {
     Scene scene;
@@ -54,13 +49,6 @@ Scene lamp_scene() {
     lamp.intensity = from_to(10.0f, 20.0f);
     scene.lights = {lamp};
     return scene;
-}
-
-View view_at(vec3 eye) {
-    View view;
-    view.camera = look_at(eye, {0, 1, 0}, {0, 1, 0}, 0.8f);
-    view.size = {64, 48};
-    return view;
 }
 
 SharedFloats grid_of(const Snapshot& snapshot) {
@@ -191,7 +179,7 @@ TEST(Kept, SurfacesThatStandStillAreSharedWithAllMadeOfThem) {
 
 TEST(Kept, LightDepthIsMadeOnceForFramesAndUsers) {
     Scene scene = lamp_scene();
-    const View view = view_at({4, 2, 4});
+    const View view = view_of({4, 2, 4}, {0, 1, 0}, {64, 48});
     const Snapshot first = make_snapshot(scene, {0, 0}), second = make_snapshot(scene, {1, 0.5}, &first);
     ASSERT_EQ(first.lights.size(), 1u);
     EXPECT_NE(first.lights[0].intensity, second.lights[0].intensity);
@@ -201,7 +189,7 @@ TEST(Kept, LightDepthIsMadeOnceForFramesAndUsers) {
     EXPECT_EQ(grid_of(second), grid);
     EXPECT_EQ(froxels_of(second, view), froxels);
     EXPECT_EQ(*grid_of(make_snapshot(scene, {1, 0.5})), *grid);
-    EXPECT_NE(froxels_of(second, view_at({4, 2, 4.5f})), froxels);
+    EXPECT_NE(froxels_of(second, view_of({4, 2, 4.5f}, {0, 1, 0}, {64, 48})), froxels);
 
     // All it depends on.
     const auto changed = [&](auto change) {
@@ -222,7 +210,7 @@ TEST(Kept, LightDepthIsMadeOnceForFramesAndUsers) {
 TEST(Kept, ShadowsAreMadeOnceWhileAllStandsStill) {
     Scene scene = lamp_scene();
     scene.nodes[0].translation = from_to(vec3(0), vec3(1, 0, 0)); // between 0 s and 1 s
-    const View view = view_at({4, 2, 4}), aside = view_at({4, 2, 4.5f});
+    const View view = view_of({4, 2, 4}, {0, 1, 0}, {64, 48}), aside = view_of({4, 2, 4.5f}, {0, 1, 0}, {64, 48});
     const ShadowMapOptions options{64, 2, 1, 0};
     const Snapshot first = make_snapshot(scene, {0, 1}), second = make_snapshot(scene, {1, 2}, &first);
     const Light light = first.lights.at(0);

@@ -40,13 +40,6 @@ MediumSource file_source(const std::filesystem::path& file) {
     return source;
 }
 
-template<class T> Keyed<T> from_to(T a, T b) {
-    Keyed<T> keyed;
-    keyed.times = {0, 1};
-    keyed.values = {a, b};
-    return keyed;
-}
-
 TEST(Snapshot, EvaluatesLightsAndDropsDarkOnes) {
     Scene scene;
     Node node;

@@ -50,6 +50,8 @@ LoadedScene loaded(const Scene& scene) {
 
 void take_scene(ViewState& state, const std::shared_ptr<Scene>& scene) { take_scene(state, loaded(*scene)); }
 
+void act(ViewState& state, const char* line) { apply(state, parse_action(line)); }
+
 Request request_for(std::shared_ptr<Scene> scene, const char* mode) {
     Request request;
     request.scene = std::move(scene);

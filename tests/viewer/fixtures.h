@@ -1,7 +1,7 @@
 // A small scene in memory: fog, a sun, a plane and two cameras.
 #pragma once
 #include "base/math.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <filesystem>
@@ -23,6 +23,9 @@ std::shared_ptr<Scene> small_scene(const std::filesystem::path& file = "small.js
 // A scene that no file was read for, as if it had been.
 LoadedScene loaded(const Scene& scene);
 void take_scene(ViewState& state, const std::shared_ptr<Scene>& scene);
+
+// What a line of the script does.
+void act(ViewState& state, const char* line);
 
 Request request_for(std::shared_ptr<Scene> scene, const char* mode = "march");
 }

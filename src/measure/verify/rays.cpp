@@ -15,8 +15,6 @@
 #include "volume/medium.h"
 #include "volume/phase.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
 namespace tyndall {
 bool Check::holds() const { return std::abs(measured - expected) <= tolerance; }
 
@@ -38,8 +36,6 @@ std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyCo
     }
     return std::move(checks.list);
 }
-
-Phase forward_phase(float g) { return {PhaseKind::henyey_greenstein, g}; }
 
 Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density) {
     return medium_of(unit_volume(voxels, density), extinction);

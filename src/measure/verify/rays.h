@@ -30,7 +30,6 @@ std::vector<CheckGroup> invariance_checks();
 std::vector<Check> run_checks(std::span<const CheckGroup> groups, const VerifyControl& control);
 
 // --- scenes ------------------------------------------------------------------------------------------------------
-Phase forward_phase(float g);
 Medium noise_medium(float extinction, Phase phase = forward_phase(0), vec3 albedo = vec3(1)); // rough, fills 0..1
 Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density);  // fills 0..1
 

@@ -17,12 +17,6 @@ void add(Checks& checks, const std::string& name, const RayLight& light, double 
     checks.add(name, light.value, expected, 3 * light.error, "3 standard errors");
 }
 
-Material lambert(vec3 base_color, vec3 emission = vec3(0)) {
-    Material material;
-    material.base_color = base_color, material.emission = emission;
-    return material;
-}
-
 void check_furnace(Checks& checks) {
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const float g : {-0.5f, 0.0f, 0.8f}) {

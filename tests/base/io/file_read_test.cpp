@@ -1,5 +1,5 @@
 #include "base/io/file.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 
 namespace tyndall {
 namespace {

@@ -1,6 +1,6 @@
 #include "base/io/file.h"
 #include "base/io/temporary.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
 #include "base/io/frames.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

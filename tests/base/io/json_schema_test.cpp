@@ -1,7 +1,7 @@
 #include "base/io/file.h"
 #include "base/io/json.h"
 #include "base/io/schema_problem.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gmock/gmock.h>

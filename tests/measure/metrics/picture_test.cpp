@@ -1,4 +1,5 @@
 #include "measure/metrics/pictures.h"
+#include "support/expect.h"
 
 #include "base/error.h"
 #include "measure/metrics/comparison.h"
@@ -16,13 +17,7 @@ Picture picture(const Image<vec3>& beauty) {
 }
 
 std::string refusal(const Picture& test, const Picture& reference) {
-    try {
-        check_same_frame(test, reference);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code, ExitCode::refused);
-        return error.what();
-    }
-    return "";
+    return error_text(ExitCode::refused, [&] { check_same_frame(test, reference); });
 }
 
 const ivec2 size{16, 12};
@@ -30,7 +25,7 @@ const ivec2 size{16, 12};
 
 TEST(Comparison, FramesHaveToMatch) {
     const Picture reference = picture(shaft(size, 0, 0));
-    EXPECT_EQ(refusal(reference, reference), "");
+    check_same_frame(reference, reference);
     Picture other = picture(shaft({16, 13}, 0, 0));
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("16 x 13"));
     other = reference, other.low = {1, 0};

@@ -40,32 +40,6 @@ struct HoleInWall {
     }
 };
 
-View view_from(vec3 eye, vec3 target) {
-    View view;
-    view.camera = look_at(eye, target, {0, 1, 0}, 0.8f);
-    view.size = {160, 90};
-    return view;
-}
-
-std::vector<Ray> picture_rays(const View& view, const Snapshot& snapshot) {
-    std::vector<Ray> rays;
-    for (int y = 0; y < view.size.y; ++y)
-        for (int x = 0; x < view.size.x; ++x) {
-            Ray ray = camera_ray(view.camera, view.size, vec2(x, y) + 0.5f);
-            Hits hits;
-            snapshot.occluders->closest({&ray, 1}, 0, hits);
-            ray.t_max = std::min(hits.t[0], 20.0f);
-            rays.push_back(ray);
-        }
-    return rays;
-}
-
-double mean(const std::vector<Scatter>& results) {
-    double sum = 0;
-    for (const Scatter& result : results) sum += result.radiance.x;
-    return sum / static_cast<double>(results.size());
-}
-
 TEST(Billboard, FindsTheHoleInAWall) {
     const HoleInWall hole;
     const std::vector<BeamCard> cards = place_cards(hole.snapshot, BillboardSettings{});
@@ -92,7 +66,7 @@ TEST(Billboard, ClosedHolesHaveNoCards) {
 
 TEST(Billboard, DrawsTheBeamAndNothingBeside) {
     const HoleInWall hole;
-    const View view = view_from({2, 1.5f, 7}, {1.5f, 1, 0});
+    const View view = view_of({2, 1.5f, 7}, {1.5f, 1, 0}, {160, 90});
     const auto at = [&](vec3 target) {
         const Ray ray{view.camera.position, glm::normalize(target - view.camera.position), 12};
         return run_mode("billboard", view, hole.snapshot, {}, {ray})[0];
@@ -110,10 +84,10 @@ TEST(Billboard, DrawsTheBeamAndNothingBeside) {
 
 TEST(Billboard, IsAboutAsBrightAsTheLightInTheFog) {
     const HoleInWall hole;
-    const View view = view_from({2, 1.5f, 7}, {1.5f, 1, 0});
-    const std::vector<Ray> rays = picture_rays(view, hole.snapshot);
-    const double truth = mean(marched(hole.snapshot, exact_settings(), rays));
-    const double drawn = mean(run_mode("billboard", view, hole.snapshot, {}, rays));
+    const View view = view_of({2, 1.5f, 7}, {1.5f, 1, 0}, {160, 90});
+    const std::vector<Ray> rays = picture_rays(view, hole.snapshot, 20);
+    const double truth = mean_of(marched(hole.snapshot, exact_settings(), rays));
+    const double drawn = mean_of(run_mode("billboard", view, hole.snapshot, {}, rays));
     EXPECT_GT(drawn, 0.2 * truth);
     EXPECT_LT(drawn, 2 * truth);
 }
@@ -127,9 +101,9 @@ TEST(Billboard, DoesNotPopOnAnOrbit) {
         for (int step = 0; step < 40; ++step) {
             const float turn = 0.2f + static_cast<float>(step) * 0.5f * pi / 180;
             const View view =
-                view_from(vec3(1.5f, 1.8f, 0) + 6.0f * vec3(std::sin(turn), 0, std::cos(turn)), {1.5f, 1, 0});
+                view_of(vec3(1.5f, 1.8f, 0) + 6.0f * vec3(std::sin(turn), 0, std::cos(turn)), {1.5f, 1, 0}, {160, 90});
             const double now =
-                mean(run_mode("billboard", view, hole.snapshot, settings, picture_rays(view, hole.snapshot)));
+                mean_of(run_mode("billboard", view, hole.snapshot, settings, picture_rays(view, hole.snapshot, 20)));
             if (step > 0) {
                 EXPECT_NEAR(now / before, 1, 0.02) << step << " facing " << static_cast<int>(facing);
             }
@@ -142,7 +116,7 @@ TEST(Billboard, DoesNotPopOnAnOrbit) {
 struct OpenPosts {
     Scene scene;
     Snapshot snapshot;
-    View view = view_from({-5, 1, 9}, {-5, 1, 0}); // beside all cards
+    View view = view_of({-5, 1, 9}, {-5, 1, 0}, {160, 90}); // beside all cards
     Ray ray{{-5, 1, 9}, {0, 0, -1}, 18};
 
     OpenPosts() {
@@ -203,8 +177,7 @@ TEST(Billboard, GapsAndVeilAreSetApart) {
 
 TEST(Billboard, SpotsWithNothingBeforeThemHaveOneCard) {
     HoleInWall hole;
-    Light lamp = point_light({3, 4, 0}, 50);
-    lamp.kind = LightKind::spot, lamp.direction = {0, -1, 0}, lamp.inner_cone = 0.1f, lamp.outer_cone = 0.2f;
+    Light lamp = spot_light({3, 4, 0}, {0, -1, 0}, 50, 0.1f, 0.2f);
     hole.snapshot.lights = {lamp};
     const std::vector<BeamCard> cards = place_cards(hole.snapshot, BillboardSettings{});
     ASSERT_EQ(cards.size(), 1u);
@@ -221,7 +194,7 @@ TEST(Billboard, HandPlacedCardsAreDrawn) {
     Settings settings;
     settings.of<BillboardSettings>().cards = 0, settings.of<BillboardSettings>().streaks = 0,
     settings.of<BillboardSettings>().specks = 0;
-    const View view = view_from({4, 3, 7}, {4, 3, 0});
+    const View view = view_of({4, 3, 7}, {4, 3, 0}, {160, 90});
     const Ray ray{{4, 3, 7}, {0, 0, -1}, 20};
     const vec3 light = run_mode("billboard", view, hole.snapshot, settings, {ray})[0].radiance;
     EXPECT_GT(light.x, 0);
@@ -235,7 +208,8 @@ TEST(Billboard, HandPlacedCardsAreDrawn) {
 TEST(Billboard, NamesItsLimitations) {
     const HoleInWall hole;
     const Mode& mode = find_mode("billboard");
-    EXPECT_TRUE(says(mode.limitations(view_from({1, 1, 0}, {3, 1, 0}), hole.snapshot, {}), limitation::camera_in_card));
+    EXPECT_TRUE(says(mode.limitations(view_of({1, 1, 0}, {3, 1, 0}, {160, 90}), hole.snapshot, {}),
+                     limitation::camera_in_card));
     Snapshot open = snapshot_of({even_medium(0.2f)}, {sun_light({0, -1, 0})});
     EXPECT_TRUE(says(mode.limitations({}, open, {}), limitation::no_opening));
 }

@@ -17,7 +17,6 @@
 #include "base/random.h"
 #include "integrate/gauss_legendre.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace tyndall::test {

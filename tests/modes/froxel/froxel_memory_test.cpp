@@ -57,13 +57,12 @@ TEST_P(FroxelHistory, ALightSwitchedOffIsForgotten) {
     History history;
     double before = 0;
     for (int frame = 0; frame < 8; ++frame)
-        before = mean_radiance(picture(moved_view(frame), stage.snapshot, settings(), &history));
+        before = mean_of(picture(moved_view(frame), stage.snapshot, settings(), &history));
     Snapshot off = stage.snapshot;
     off.lights.pop_back();
     double after = 0;
-    for (int frame = 8; frame < 12; ++frame)
-        after = mean_radiance(picture(moved_view(frame), off, settings(), &history));
-    const double without = mean_radiance(picture(moved_view(11), dark.snapshot, settings(), nullptr));
+    for (int frame = 8; frame < 12; ++frame) after = mean_of(picture(moved_view(frame), off, settings(), &history));
+    const double without = mean_of(picture(moved_view(11), dark.snapshot, settings(), nullptr));
     EXPECT_LT(std::abs(after - without), 0.02 * (before - without));
 }
 
@@ -112,7 +111,7 @@ TEST_P(FroxelHistory, StaysCloseToTheReference) {
             last = picture(moved_view(moves ? frame : 11), stage.snapshot, settings(), &history);
         const View view = moved_view(11);
         const auto truth = marched(stage.snapshot, exact_settings(), picture_rays(view, stage.snapshot, 12));
-        return std::pair{relative_rmse(last, truth), mean_radiance(last) / mean_radiance(truth)};
+        return std::pair{relative_rmse(last, truth), mean_of(last) / mean_of(truth)};
     };
     for (const bool moves : {false, true}) {
         const auto [error, ratio] = error_and_ratio(moves);

@@ -2,7 +2,6 @@
 #include "modes/froxel/froxel_fixtures.h"
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "modes/history.h"
 
 #include <gtest/gtest.h>
@@ -76,9 +75,9 @@ TEST(Froxel, ADarkRoomStaysDark) {
         for (const char* visibility : {"rays", "intervals"}) {
             const Settings settings =
                 with({"froxel.tile=" + std::to_string(tile), std::string("froxel.visibility=") + visibility});
-            const double dark = mean_radiance(
-                scattered(froxels(inside, stage.snapshot, settings), picture_rays(inside, stage.snapshot)));
-            const double bright = mean_radiance(
+            const double dark =
+                mean_of(scattered(froxels(inside, stage.snapshot, settings), picture_rays(inside, stage.snapshot)));
+            const double bright = mean_of(
                 scattered(froxels(outside, stage.snapshot, settings), picture_rays(outside, stage.snapshot, 30)));
             EXPECT_GT(bright, 0);
             EXPECT_LT(dark, 1e-3 * bright) << tile << visibility;
@@ -93,7 +92,7 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
     for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"});
         const std::vector<Scatter> results = scattered(froxels(view, stage.snapshot, settings), rays);
-        EXPECT_NEAR(mean_radiance(results) / mean_radiance(truth), 1, 0.01) << visibility;
+        EXPECT_NEAR(mean_of(results) / mean_of(truth), 1, 0.01) << visibility;
     }
     // Finer froxels come closer, down to what is left of the light's path through the fog.
     std::vector<double> errors;
@@ -117,11 +116,11 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
         lamp.radius = 0.15f;
         const Snapshot snapshot = snapshot_of({even_medium(0.2f, {vec3(-3), vec3(3)})}, {lamp});
         const std::vector<Ray> rays = picture_rays(view, snapshot);
-        const double truth = mean_radiance(marched(snapshot, exact_settings(), rays));
+        const double truth = mean_of(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
             const Settings settings = with({"froxel.tile=4", "froxel.depth_slices=32",
                                             exact ? "froxel.visibility=intervals" : "froxel.visibility=rays"});
-            const double ratio = mean_radiance(scattered(froxels(view, snapshot, settings), rays)) / truth;
+            const double ratio = mean_of(scattered(froxels(view, snapshot, settings), rays)) / truth;
             EXPECT_NEAR(ratio, 1, 0.05) << exact << " at " << i;
             least[exact] = std::min(least[exact], ratio), most[exact] = std::max(most[exact], ratio);
         }
@@ -200,8 +199,8 @@ TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
     view.camera.ortho_height = 1.5f;
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
     const Settings settings = with({"froxel.tile=2", "froxel.depth_slices=128", "froxel.shadow_rays=4"});
-    const double truth = mean_radiance(marched(stage.snapshot, sampled_settings(), rays));
-    EXPECT_NEAR(mean_radiance(scattered(froxels(view, stage.snapshot, settings), rays)) / truth, 1, 0.02);
+    const double truth = mean_of(marched(stage.snapshot, sampled_settings(), rays));
+    EXPECT_NEAR(mean_of(scattered(froxels(view, stage.snapshot, settings), rays)) / truth, 1, 0.02);
 }
 
 TEST(Froxel, PartsOfTheLightsAddUp) {

@@ -64,9 +64,8 @@ TEST(MarchExact, PointLightPastAnEdgeMatchesQuadrature) {
 }
 
 TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
-    Light light = point_light({0, 3, 0}, 40);
-    light.kind = LightKind::spot, light.direction = {0, -1, 0};
-    light.inner_cone = 0.15f, light.outer_cone = 0.4f, light.range = 3.2f;
+    Light light = spot_light({0, 3, 0}, {0, -1, 0}, 40, 0.15f, 0.4f);
+    light.range = 3.2f;
     const Stage stage = stage_of({even_medium(0.2f)}, {light}, {shade(-0.25f, 1.5f)}); // throws x < -0.5
     const Ray ray{{-4, 0, 0}, {1, 0, 0}, 8};
     const double inner = std::cos(double(0.15f)), outer = std::cos(double(0.4f)), range = light.range;

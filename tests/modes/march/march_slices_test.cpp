@@ -60,9 +60,7 @@ TEST(MarchSlices, ApproachesTheExactMarchBySecondOrder) {
 
 TEST(MarchSlices, EveryKindOfLightInAGrid) {
     const std::vector<Medium> fog{medium_of(unit_volume(24, wavy), 2)};
-    Light spot = point_light({0.3f, 1.5f, 0.4f}, 2);
-    spot.kind = LightKind::spot, spot.direction = glm::normalize(vec3(0.1f, -1, 0.1f));
-    spot.inner_cone = 0.3f, spot.outer_cone = 0.5f;
+    Light spot = spot_light({0.3f, 1.5f, 0.4f}, {0.1f, -1, 0.1f}, 2, 0.3f, 0.5f);
     for (const Light& light : {sun_light({0.3f, -1, 0.1f}), point_light({0.4f, 0.8f, 0.6f}), spot})
         EXPECT_LT(
             worst(stage_of(fog, {light}, {shade(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),

@@ -31,7 +31,7 @@ TEST(MarchTerms, AllCombinationsAgree) {
             results[v][t] = scattered(find_mode("march").prepare(view, stage.snapshot, settings, nullptr), rays);
             for (const Scatter& result : results[v][t])
                 ASSERT_TRUE(is_finite(result.radiance) && result.radiance.x >= 0) << v << t;
-            mean[v][t] = mean_radiance(results[v][t]);
+            mean[v][t] = mean_of(results[v][t]);
         }
     for (int v = 0; v < 5; ++v) {
         // In cells at the fog's rim, 2 of 30 on a path, depths may be off by half of what a cell gains: 2.5 / 30 / 2,

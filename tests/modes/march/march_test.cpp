@@ -92,9 +92,7 @@ INSTANTIATE_TEST_SUITE_P(March, PointLightInEvenFog,
 
 TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
     for (const float g : {0.0f, 0.5f, -0.4f}) {
-        Light light = point_light({0.3f, 0.7f, -2}, 5);
-        light.kind = LightKind::spot, light.direction = glm::normalize(vec3(-0.2f, -1, 0.1f));
-        light.inner_cone = 0.3f, light.outer_cone = 0.6f;
+        Light light = spot_light({0.3f, 0.7f, -2}, {-0.2f, -1, 0.1f}, 5, 0.3f, 0.6f);
         const float extinction = 0.6f;
         const Snapshot snapshot =
             snapshot_of({even_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light});
@@ -185,8 +183,7 @@ TEST(March, ErrorFallsWithTheSteps) {
 
 TEST(March, FogWithoutEndKeepsShortStepsInTheScene) {
     // A spot's beam crosses the ray within 4 m of 2 km of thin fog: the preview has to find it.
-    Light light = point_light({0, 2, -3}, 50);
-    light.kind = LightKind::spot, light.direction = vec3(0, -1, 0), light.inner_cone = 0.1f, light.outer_cone = 0.2f;
+    Light light = spot_light({0, 2, -3}, {0, -1, 0}, 50, 0.1f, 0.2f);
     Snapshot snapshot = snapshot_of({even_medium(0.01f)}, {light});
     snapshot.bounds = {vec3(-3, -1, -6), vec3(3, 3, 1)};
     const Ray ray{{0, 0, 0}, {0, 0, -1}, 2000};

@@ -23,12 +23,6 @@ std::vector<Ray> lines_through(vec3 center, float radius, int count) {
     return rays;
 }
 
-double mean_light(const std::vector<Scatter>& results) {
-    double sum = 0;
-    for (const Scatter& one : results) sum += luminance(one.radiance);
-    return sum / static_cast<double>(results.size());
-}
-
 std::vector<Scatter> path_light(const Snapshot& snapshot, const std::vector<Ray>& rays, int orders) {
     Settings settings;
     settings.path.orders = orders;

@@ -13,8 +13,6 @@ namespace tyndall::test {
 // is in proportion to what the ball sends out.
 std::vector<Ray> lines_through(vec3 center, float radius, int count);
 
-double mean_light(const std::vector<Scatter>& results);
-
 std::vector<Scatter> path_light(const Snapshot& snapshot, const std::vector<Ray>& rays, int orders);
 
 // Mean and standard error of independent values.

@@ -54,10 +54,4 @@ Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int order
     return estimate(path_mode(snapshot, orders), ray, samples, all_light);
 }
 
-Material lambert(vec3 base_color, vec3 emission) {
-    Material material;
-    material.base_color = base_color, material.emission = emission;
-    return material;
-}
-
 }

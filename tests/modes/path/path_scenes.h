@@ -28,5 +28,4 @@ ScatterFunction path_mode(const Snapshot& snapshot, int orders = all_orders);
 
 Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders);
 
-Material lambert(vec3 base_color, vec3 emission = vec3(0));
 }

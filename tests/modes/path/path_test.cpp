@@ -31,8 +31,6 @@ void expect_close(const Estimate& got, double expected, double precision, const 
 const Box unit_box{vec3(0), vec3(1)};
 const Box slab{vec3(-1e4f, 0, -1e4f), vec3(1e4f, 1, 1e4f)};
 const Phase isotropic{PhaseKind::isotropic, 0};
-Phase forward(float g) { return {PhaseKind::henyey_greenstein, g}; }
-
 Medium with_albedo(Medium medium, vec3 albedo) {
     medium.optics.albedo = albedo;
     return medium;
@@ -55,8 +53,8 @@ TEST(Path, WhiteFurnaceIsWhite) {
     // Albedo 1 in even surroundings: every ray sees radiance 1, whatever the fog.
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const Medium& medium :
-         {even_medium(3, unit_box, forward(0.8f)), even_medium(3, unit_box, {PhaseKind::rayleigh, 0}),
-          noise_grid(8, forward(-0.5f)), noise_grid(2, isotropic)}) {
+         {even_medium(3, unit_box, forward_phase(0.8f)), even_medium(3, unit_box, {PhaseKind::rayleigh, 0}),
+          noise_grid(8, forward_phase(-0.5f)), noise_grid(2, isotropic)}) {
         Snapshot snapshot = snapshot_of({medium}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 512), 1, 0.005);
@@ -66,8 +64,8 @@ TEST(Path, WhiteFurnaceIsWhite) {
 TEST(Path, NightlyWhiteFurnaceIsWhiteToTwoPerMille) {
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const float g : {-0.5f, 0.0f, 0.8f}) {
-        Snapshot snapshot =
-            snapshot_of({noise_grid(6, forward(g)), even_medium(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
+        Snapshot snapshot = snapshot_of(
+            {noise_grid(6, forward_phase(g)), even_medium(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 8192), 1, 0.002);
     }
@@ -77,7 +75,7 @@ TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
     Scene scene;
     scene.materials = {lambert(vec3(1))};
     add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.6f)), even_medium(1, unit_box)}, {}, vec3(1));
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.6f)), even_medium(1, unit_box)}, {}, vec3(1));
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 512), 1, 0.006);
@@ -88,7 +86,7 @@ TEST(Path, GlowingFurnaceIsEven) {
     Scene scene;
     scene.materials = {lambert(vec3(0.6f, 0.3f, 0), vec3(0.4f, 0.7f, 1))};
     add_mesh(scene, box_of(vec3(-1), vec3(2), 0));
-    Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.5f)), even_medium(0.3f, unit_box)}, {});
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.5f)), even_medium(0.3f, unit_box)}, {});
     add_surfaces(scene, snapshot);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 1.5f}, glm::normalize(vec3(0.1f, 0, -1))}, 512), 1, 0.01);
 }
@@ -102,7 +100,7 @@ struct SlabCase {
 class PathSlab : public testing::TestWithParam<SlabCase> {};
 
 Estimate slab_share(const SlabCase& c, bool reflected, int samples) {
-    Medium fog = with_albedo(even_medium(c.depth, slab, forward(c.g)), vec3(c.albedo));
+    Medium fog = with_albedo(even_medium(c.depth, slab, forward_phase(c.g)), vec3(c.albedo));
     static Scene scene; // a black floor under the slab and the camera keeps light from below away
     if (scene.meshes.empty()) {
         scene.materials = {lambert(vec3(0))};
@@ -208,7 +206,7 @@ TEST(Path, GlowOnFogIsTheSameAimedAtOrFoundByChance) {
         scene.materials = {lambert(vec3(0), vec3(5, 3, 1))};
         scene.materials[0].alpha_mode = aimed ? AlphaMode::opaque : AlphaMode::blend;
         add_mesh(scene, quad({-0.5f, 1.2f, -0.5f}, {2, 0, 0}, {0, 0, 2}, 0));
-        Snapshot snapshot = snapshot_of({noise_grid(4, forward(0.5f))}, {});
+        Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.5f))}, {});
         add_surfaces(scene, snapshot);
         results[aimed] = traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 2048);
     }
@@ -253,10 +251,9 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
     scene.materials = {lambert(vec3(0.5f))};
     add_mesh(scene, quad({0.3f, 1.1f, -1}, {0.3f, 0, 0}, {0, 0, 3}, 0));
     add_mesh(scene, floor_of(-0.2f, 5, 0));
-    Medium banks = noise_grid(3, forward(0.6f));
+    Medium banks = noise_grid(3, forward_phase(0.6f));
     banks.optics.albedo = vec3(0.9f, 0.6f, 0.3f);
-    Light spot = point_light({0.5f, 2, 0.5f}, 4);
-    spot.kind = LightKind::spot, spot.direction = {0, -1, 0}, spot.inner_cone = 0.2f, spot.outer_cone = 0.5f;
+    Light spot = spot_light({0.5f, 2, 0.5f}, {0, -1, 0}, 4, 0.2f, 0.5f);
     spot.volume_scale = 2;
     Snapshot snapshot = snapshot_of({banks, even_medium(0.2f, {vec3(-1), vec3(2)})},
                                     {sun_light({0.3f, -1, -0.2f}, 2), spot, point_light({0.2f, 0.3f, 0.4f}, 0.1f)});
@@ -307,7 +304,7 @@ TEST(Path, ThickPlumesWithGapsHideNothingBehindThem) {
 
 TEST(Path, LampVeryFarAwayIsASun) {
     Light lamp = point_light({0, 2e7f, 0}, 4e14f);
-    Medium fog = noise_grid(3, forward(0.4f));
+    Medium fog = noise_grid(3, forward_phase(0.4f));
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}};
     const Estimate far = traced(snapshot_of({fog}, {lamp}), ray, 512, 1),
                    near = traced(snapshot_of({fog}, {sun_light({0, -1, 0})}), ray, 512, 1);
@@ -317,7 +314,7 @@ TEST(Path, LampVeryFarAwayIsASun) {
 
 TEST(Path, LightsArePartsOfTheWhole) {
     const Snapshot snapshot =
-        snapshot_of({noise_grid(3, forward(0.4f))}, {sun_light({0.3f, -1, -0.2f}), point_light({0.5f, 2, 0.5f})});
+        snapshot_of({noise_grid(3, forward_phase(0.4f))}, {sun_light({0.3f, -1, -0.2f}), point_light({0.5f, 2, 0.5f})});
     const ScatterFunction scatter = path_mode(snapshot);
     const std::vector<Ray> rays(16, Ray{{0.4f, 0.45f, 3}, {0, 0, -1}});
     for (uint32_t i = 0; i < 50; ++i) {

@@ -51,16 +51,6 @@ std::vector<Ray> picture_rays(int side = 16) {
     return rays;
 }
 
-double rmse_rel(const std::vector<Scatter>& a, const std::vector<Scatter>& reference) {
-    double sum = 0, mean = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        sum += std::pow(a[i].radiance.x - reference[i].radiance.x, 2);
-        mean += reference[i].radiance.x;
-    }
-    const double n = static_cast<double>(a.size());
-    return std::sqrt(sum / n) / (mean / n);
-}
-
 // The unit box of even fog, half of it in the shadow of a plate above.
 struct HalfShadowed {
     Scene scene;
@@ -76,8 +66,7 @@ struct HalfShadowed {
 };
 
 Light lamp_above() {
-    Light light = point_light({0.6f, 2, 0.5f}, 5);
-    light.kind = LightKind::spot, light.direction = vec3(0, -1, 0), light.inner_cone = 0.3f, light.outer_cone = 0.7f;
+    Light light = spot_light({0.6f, 2, 0.5f}, {0, -1, 0}, 5, 0.3f, 0.7f);
     return light;
 }
 
@@ -150,7 +139,7 @@ TEST(ShadowMapMarch, HalfShadowedBoxConvergesToTheReference) {
             settings.of<ShadowMapSettings>().steps = 8 << (2 * level),
             settings.of<ShadowMapSettings>().resolution = 128 << (2 * level);
             settings.terms.light = LightTransmittance::marched;
-            error[level] = rmse_rel(run("shadow-map", box.snapshot, settings, rays), reference);
+            error[level] = relative_rmse(run("shadow-map", box.snapshot, settings, rays), reference);
         }
         // Slope -1/2 or steeper of the error over the steps.
         EXPECT_LT(error[1], 0.5 * error[0]) << static_cast<int>(light.kind);
@@ -174,7 +163,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
             settings.march.visibility = Visibility::rays;
             const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
             settings.march.visibility = Visibility::maps;
-            EXPECT_LT(rmse_rel(run("march", box.snapshot, settings, rays), traced), 0.03)
+            EXPECT_LT(relative_rmse(run("march", box.snapshot, settings, rays), traced), 0.03)
                 << static_cast<int>(light.kind);
         }
 }
@@ -189,9 +178,9 @@ TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
         const std::vector<Scatter> traced = run("march", box.snapshot, settings, rays);
         settings.march.visibility = Visibility::maps;
         settings.of<ShadowMapSettings>().resolution = 64;
-        const double coarse = rmse_rel(run("march", box.snapshot, settings, rays), traced);
+        const double coarse = relative_rmse(run("march", box.snapshot, settings, rays), traced);
         settings.of<ShadowMapSettings>().resolution = 1024;
-        EXPECT_LT(rmse_rel(run("march", box.snapshot, settings, rays), traced), 0.5 * coarse)
+        EXPECT_LT(relative_rmse(run("march", box.snapshot, settings, rays), traced), 0.5 * coarse)
             << static_cast<int>(light.kind);
     }
 }

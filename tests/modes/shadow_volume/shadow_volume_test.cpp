@@ -15,11 +15,9 @@
 #include "volume/medium.h"
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -68,21 +66,6 @@ std::vector<Scatter> drawn(std::string_view mode, const Picture& picture, const 
     return results;
 }
 
-double mean_of(const std::vector<Scatter>& results) {
-    double sum = 0;
-    for (const Scatter& result : results) sum += (result.radiance.x + result.radiance.y + result.radiance.z) / 3;
-    return sum / static_cast<double>(results.size());
-}
-
-double rmse(const std::vector<Scatter>& a, const std::vector<Scatter>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i) {
-        const dvec3 d = dvec3(a[i].radiance) - dvec3(b[i].radiance);
-        sum += glm::dot(d, d) / 3;
-    }
-    return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
 const Box room{vec3(-3, 0, -3), vec3(3, 4, 3)};
 std::vector<Mesh> furniture() {
     return {box_of({-1, 1, -1}, {-0.2f, 1.6f, 0.4f}), box_of({0.4f, 2, -0.5f}, {1.2f, 2.1f, 0.9f}),
@@ -120,7 +103,7 @@ TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
             const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
             const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, {});
             EXPECT_GT(mean_of(expected), 1e-4);
-            EXPECT_LT(rmse(found, expected) / mean_of(expected), 1e-4) << light.name;
+            EXPECT_LT(rms_difference(found, expected) / mean_of(expected), 1e-4) << light.name;
             for (size_t i = 0; i < found.size(); ++i) {
                 EXPECT_NEAR(found[i].transmittance, expected[i].transmittance, 1e-5);
                 EXPECT_GE(found[i].radiance.x, 0);
@@ -138,7 +121,7 @@ TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
     const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
-    EXPECT_LT(rmse(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 2e-3);
+    EXPECT_LT(rms_difference(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 2e-3);
 }
 
 TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
@@ -147,16 +130,16 @@ TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
     flat.ortho_height = 4;
     const Picture picture = picture_of(flat, stage.snapshot, 20);
     const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
-    EXPECT_LT(rmse(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 1e-3);
+    EXPECT_LT(rms_difference(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 1e-3);
 
     // The same stretch, begun anywhere on the line from the camera; and rays of no camera at all.
     for (const float skip : {0.5f, 2.5f, 4.0f}) {
         Picture behind = picture_of(cameras[0], stage.snapshot, 20);
         for (Ray& ray : behind.rays) ray = {ray.at(skip), ray.direction, std::max(ray.t_max - skip, 0.0f)};
         const std::vector<Scatter> rest = drawn("march", behind, stage.snapshot, exact_settings());
-        EXPECT_LT(rmse(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
+        EXPECT_LT(rms_difference(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
         behind.view.camera.position += vec3(0.3f, 0.1f, 0);
-        EXPECT_LT(rmse(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
+        EXPECT_LT(rms_difference(drawn("shadow-volume", behind, stage.snapshot, {}), rest) / mean_of(rest), 1e-3);
     }
 }
 
@@ -174,7 +157,7 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
         apply_setting(settings, steps);
         apply_setting(settings, "terms.light_resolution=128");
         const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, settings);
-        const double error = rmse(found, expected) / mean_of(expected);
+        const double error = rms_difference(found, expected) / mean_of(expected);
         EXPECT_LT(error, before);
         before = error;
         EXPECT_EQ(found[500].validity, 1);
@@ -232,7 +215,7 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     const Box& bounds = stage.snapshot.bounds;
     measured.of<ShadowVolumeSettings>().shell_length = 0.5f * glm::distance(bounds.low, bounds.high);
     const std::vector<Scatter> found = drawn("shadow-volume", picture, stage.snapshot, shells);
-    EXPECT_EQ(rmse(found, drawn("shadow-volume", picture, stage.snapshot, measured)), 0);
+    EXPECT_EQ(rms_difference(found, drawn("shadow-volume", picture, stage.snapshot, measured)), 0);
 
     shells.of<ShadowVolumeSettings>().shell_intensity = 0;
     const std::vector<Scatter> dark = drawn("shadow-volume", picture, stage.snapshot, shells);

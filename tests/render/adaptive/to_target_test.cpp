@@ -6,7 +6,7 @@
 #include "render/adaptive/to_target.h"
 #include "render/frame/noise_fixtures.h"
 #include "scene/scene.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

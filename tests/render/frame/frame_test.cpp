@@ -7,6 +7,7 @@
 #include "scene/light.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -16,7 +17,6 @@
 
 #include <glm/gtc/quaternion.hpp>
 
-#include <cstring>
 #include <mutex>
 
 namespace tyndall::test {
@@ -32,20 +32,6 @@ Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot) {
     return rendered(mode, view, snapshot, stats);
 }
 
-void expect_near(vec3 value, vec3 expected, float tolerance) {
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(value[c], expected[c], tolerance) << "channel " << c;
-}
-
-template<class T> bool same_bits(const Image<T>& a, const Image<T>& b) {
-    return a.size == b.size && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(T)) == 0;
-}
-
-template<class T> Image<T> cut(const Image<T>& image, ivec2 low, ivec2 high) {
-    Image<T> result(high - low);
-    for (int y = low.y; y < high.y; ++y)
-        for (int x = low.x; x < high.x; ++x) result.at(x - low.x, y - low.y) = image.at(x, y);
-    return result;
-}
 }
 
 TEST(Frame, CompositesFogBetweenTransparentSurfaces) {

@@ -4,8 +4,6 @@
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
 
-#include <cstring>
-
 namespace tyndall::test {
 // Every sample is a grey of its own, even in [0,1): mean 1/2, variance 1/12.
 ScatterFunction prepare_random(const View&, const Snapshot&, const Settings&, History*);
@@ -14,17 +12,6 @@ inline constexpr double random_mean = 0.5, random_variance = 1.0 / 12;
 Mode own_mode(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*));
 
 View batched_view(ivec2 size, int samples, int batches);
-
-template<class T> bool same_bits(const Image<T>& a, const Image<T>& b) {
-    return a.size == b.size && std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(T)) == 0;
-}
-
-template<class T> Image<T> cut(const Image<T>& image, ivec2 low, ivec2 high) {
-    Image<T> result(high - low);
-    for (int y = low.y; y < high.y; ++y)
-        for (int x = low.x; x < high.x; ++x) result.at(x - low.x, y - low.y) = image.at(x, y);
-    return result;
-}
 
 Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot, FrameOptions options = {});
 

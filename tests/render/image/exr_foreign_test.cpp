@@ -1,14 +1,12 @@
 // Files by others: valid ones of every kind, and a corpus that once crashed readers.
 #include "render/image/exr.h"
 #include "support/corpus.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <fstream>
-#include <map>
 
 namespace tyndall::test {
 namespace {

@@ -1,6 +1,6 @@
 #include "base/io/file.h"
 #include "render/image/png.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gtest/gtest.h>

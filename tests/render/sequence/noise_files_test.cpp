@@ -7,7 +7,7 @@
 #include "render/frame/noise_fixtures.h"
 #include "render/sequence/sequence.h"
 #include "scene/scene.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 
 #include <gtest/gtest.h>

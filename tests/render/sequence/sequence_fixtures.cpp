@@ -52,10 +52,4 @@ RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode) {
     return render_sequence(scene, job, mode, progress, cancel);
 }
 
-std::map<std::string, std::string> files_of(const Scratch& directory) {
-    std::map<std::string, std::string> result;
-    for (const std::string& name : directory.names())
-        if (!std::filesystem::is_directory(directory.path() / name)) result[name] = read_file(directory.path() / name);
-    return result;
-}
 }

@@ -4,7 +4,6 @@
 #include "render/sequence/sequence.h"
 #include "support/scratch.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,4 @@ RenderJob job_for(const Scene& scene, const std::string& output, std::vector<int
 // With the mode given, or with one whose light depends on everything.
 RenderReport run(const Scene& scene, const RenderJob& job);
 RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode);
-
-std::map<std::string, std::string> files_of(const Scratch& directory);
 }

@@ -8,6 +8,7 @@
 #include "scene/light.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
+#include "support/meshes.h"
 #include "support/scratch.h"
 #include "trace/kept.h"
 #include "volume/medium.h"
@@ -20,8 +21,6 @@ namespace tyndall::test {
 namespace {
 enum class Moves { nothing, light, camera, mesh, fog, brightness };
 
-template<class T> void move(Keyed<T>& value, T from, T to) { value.times = {0, 1}, value.values = {from, to}; }
-
 // A slab with a gap's edge above a floor, drifting fog and a lamp; one of them moves.
 Scene small_scene(const Scratch& directory, Moves moves) {
     Scene scene;
@@ -33,14 +32,14 @@ Scene small_scene(const Scratch& directory, Moves moves) {
     CameraSource camera;
     camera.name = "main";
     camera.position = vec3(0, 1, 4), camera.target = vec3(0, 1, 0);
-    if (moves == Moves::camera) move(camera.position, vec3(0, 1, 4), vec3(0.5f, 1.5f, 4));
+    if (moves == Moves::camera) camera.position = from_to(vec3(0, 1, 4), vec3(0.5f, 1.5f, 4));
     scene.cameras = {camera};
 
     add_plane(scene, -2, 3, vec3(0));
     add_plane(scene, 0, 0.4f, vec3(0));
     scene.materials[0].base_color = scene.materials[1].base_color = vec3(0.5f);
     Node node;
-    if (moves == Moves::mesh) move(node.translation, vec3(0), vec3(0.5f, 0, 0));
+    if (moves == Moves::mesh) node.translation = from_to(vec3(0), vec3(0.5f, 0, 0));
     scene.nodes = {node};
     scene.instances[1].node = 0;
 
@@ -55,8 +54,8 @@ Scene small_scene(const Scratch& directory, Moves moves) {
     lamp.name = "lamp", lamp.kind = LightKind::spot;
     lamp.position = vec3(0.5f, 2.5f, 1.5f), lamp.direction = vec3(-0.2f, -1, -0.7f);
     lamp.intensity = Keyed<float>(20.0f);
-    if (moves == Moves::light) move(lamp.position, vec3(0.5f, 2.5f, 1.5f), vec3(0.8f, 2.5f, 1.5f));
-    if (moves == Moves::brightness) move(lamp.intensity, 20.0f, 30.0f);
+    if (moves == Moves::light) lamp.position = from_to(vec3(0.5f, 2.5f, 1.5f), vec3(0.8f, 2.5f, 1.5f));
+    if (moves == Moves::brightness) lamp.intensity = from_to(20.0f, 30.0f);
     scene.lights = {lamp};
     scene.ambient = Keyed<vec3>(vec3(0.01f));
     return scene;

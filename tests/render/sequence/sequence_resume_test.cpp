@@ -21,11 +21,11 @@ TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
     RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     job.png = true;
     run(scene, job);
-    const auto whole = files_of(out);
+    const auto whole = out.contents();
 
     job.resume = true;
     EXPECT_EQ(kept_of(run(scene, job)), std::vector<bool>(6, true));
-    EXPECT_EQ(files_of(out), whole);
+    EXPECT_EQ(out.contents(), whole);
 
     // Missing, cut, damaged in its pixels, empty, and a PNG that is gone.
     std::filesystem::remove(out.file("f.0001.exr"));
@@ -36,7 +36,7 @@ TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
     std::filesystem::resize_file(out.file("f.0004.exr"), 0);
     std::filesystem::remove(out.file("f.0005.png"));
     EXPECT_EQ(kept_of(run(scene, job)), (std::vector<bool>{false, false, false, false, true, true}));
-    EXPECT_EQ(files_of(out), whole);
+    EXPECT_EQ(out.contents(), whole);
 }
 
 TEST(Sequence, ResumeRendersAgainWhatIsStale) {

@@ -4,7 +4,7 @@
 #include "modes/mode.h"
 #include "render/sequence/sequence_fixtures.h"
 #include "scene/scene.h"
-#include "support/expect_error.h"
+#include "support/expect.h"
 #include "trace/view.h"
 
 #include <gtest/gtest.h>

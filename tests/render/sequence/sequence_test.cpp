@@ -49,7 +49,7 @@ TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
     job.output = two.file("f.####.exr");
     run(scene, job);
     set_thread_count(0);
-    EXPECT_EQ(files_of(one), files_of(two));
+    EXPECT_EQ(one.contents(), two.contents());
 }
 
 TEST(Sequence, FramesDoNotDependOnTheOthers) {
@@ -57,7 +57,7 @@ TEST(Sequence, FramesDoNotDependOnTheOthers) {
     const Scene scene = moving_scene(in);
     run(scene, job_for(scene, all.file("f.####.exr"), {1, 2, 3}));
     run(scene, job_for(scene, single.file("f.####.exr"), {3}));
-    EXPECT_EQ(files_of(all)["f.0003.exr"], files_of(single)["f.0003.exr"]);
+    EXPECT_EQ(all.contents()["f.0003.exr"], single.contents()["f.0003.exr"]);
 }
 
 TEST(Sequence, SaysHowItWasMade) {

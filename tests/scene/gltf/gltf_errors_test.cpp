@@ -1,6 +1,7 @@
 // Broken and hostile glTF: every field out of its range, cycles, ways out of the folder, cut and mutated files.
 #include "base/random.h"
 #include "scene/images.h"
+#include "support/expect.h"
 #include "support/gltf_builder.h"
 #include "support/load_answer.h"
 #include "support/scratch.h"
@@ -17,12 +18,6 @@ LoadAnswer with(const std::string& member, const std::string& value, const Scrat
                 GltfBuilder gltf = triangle_gltf()) {
     gltf.members[member] = value;
     return load(folder.put("bad.gltf", gltf.json()));
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const size_t place = text.find(from);
-    EXPECT_NE(place, std::string::npos) << from << " in " << text;
-    return text.replace(place, from.size(), to);
 }
 
 TEST(GltfErrors, EveryFieldOutOfRange) {

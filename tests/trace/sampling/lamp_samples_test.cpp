@@ -1,6 +1,7 @@
 // Where local lights show in a picture, and the beams of spots there.
 #include "scene/light.h"
 #include "scene/mesh.h"
+#include "support/run_mode.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/small_scenes.h"
 #include "trace/snapshot.h"
@@ -11,15 +12,7 @@
 
 namespace tyndall::test {
 namespace {
-// A camera at the origin that looks along -Z, a lamp straight ahead.
-View ahead() {
-    View view;
-    view.camera = look_at(vec3(0), vec3(0, 0, -1), vec3(0, 1, 0), 1.0f);
-    view.size = {64, 32};
-    return view;
-}
-
-std::vector<View::Lamp> seen(const Light& light, const View& view = ahead()) {
+std::vector<View::Lamp> seen(const Light& light, const View& view = view_of(vec3(0), {0, 0, -1}, {64, 32}, 1)) {
     Snapshot snapshot;
     snapshot.media.emplace_back();
     snapshot.lights = {light};
@@ -53,7 +46,7 @@ TEST(LampsIn, ASlantedBeamLooksWider) {
 
 // Points of the cone's surface lie within the beam of the picture, and some at its very edge.
 TEST(LampsIn, TheBeamHoldsTheCone) {
-    const View view = ahead();
+    const View view = view_of(vec3(0), {0, 0, -1}, {64, 32}, 1);
     const Light light = spot_light({0, 0, -5}, {0.6f, -0.5f, 0.4f}, 1, 0, 0.3f);
     const View::Lamp lamp = seen(light)[0];
     const vec3 side = glm::normalize(glm::cross(light.direction, vec3(0, 0, 1)));

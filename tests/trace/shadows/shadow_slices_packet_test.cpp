@@ -3,6 +3,7 @@
 #include "support/meshes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/intervals/shadow_slices.h"
+#include "trace/shadows/shadow_rays.h"
 
 #include "base/random.h"
 
@@ -25,19 +26,6 @@ ShadowSlices soup(int triangles, uint32_t seed) {
     }
     add_mesh(scene, std::move(mesh));
     return make_shadow_slices(Occluders::make(scene, 0, nullptr)->shadow_triangles());
-}
-
-// Length of what one list covers and the other does not.
-double difference(const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
-    const auto covered = [](const std::vector<Stretch>& list) {
-        double sum = 0;
-        for (const Stretch& s : list) sum += s.high - s.low;
-        return sum;
-    };
-    double common = 0;
-    for (const Stretch& s : a)
-        for (const Stretch& t : b) common += std::max(std::min(s.high, t.high) - std::max(s.low, t.low), 0.0);
-    return covered(a) + covered(b) - 2 * common;
 }
 
 void expect_same(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points) {

@@ -38,9 +38,6 @@ Stage stage_of(std::vector<Mesh> meshes) {
     return stage;
 }
 
-LightPoint sun_from(vec3 towards) { return {glm::normalize(dvec3(towards)), true}; }
-LightPoint lamp_at(vec3 position, double radius = 0) { return {dvec3(position), false, dvec3(position), radius}; }
-
 void expect_lit(const std::vector<Stretch>& lit, const std::vector<Stretch>& expected, double tolerance = 1e-12) {
     ASSERT_EQ(lit.size(), expected.size());
     for (size_t i = 0; i < lit.size(); ++i) {

@@ -1,6 +1,7 @@
 // Shadow volumes against triangles counted one by one, and against the slices of
 // trace/shadows/intervals/shadow_slices.h.
 #include "support/random_points.h"
+#include "trace/shadows/shadow_rays.h"
 #include "trace/shadows/volumes/shadow_view.h"
 #include "trace/small_scenes.h"
 
@@ -33,9 +34,6 @@ Stage stage_of(const std::vector<Mesh>& meshes, const LightPoint& light) {
     return stage_of(triangles_of(meshes), light);
 }
 
-LightPoint sun_from(vec3 towards) { return {glm::normalize(dvec3(towards)), true}; }
-LightPoint lamp_at(vec3 position) { return {dvec3(position), false, dvec3(position)}; }
-
 constexpr int lane = 5; // of the rays asked about
 
 struct Counted {
@@ -64,20 +62,6 @@ Counted crossings_of(const ShadowView& view, const Ray& ray, int tile = -1) {
     std::vector<ShadowCrossing> found;
     find_crossings(view, rays, found);
     return {view.dark, found};
-}
-
-double length_of(const std::vector<Stretch>& stretches) {
-    double sum = 0;
-    for (const Stretch& stretch : stretches) sum += stretch.length();
-    return sum;
-}
-
-// Length on which two lists of stretches disagree.
-double difference(const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
-    double common = 0;
-    for (const Stretch& x : a)
-        for (const Stretch& y : b) common += Stretch{std::max(x.low, y.low), std::min(x.high, y.high)}.length();
-    return length_of(a) + length_of(b) - 2 * common;
 }
 
 // A ray through everything, from a random point.

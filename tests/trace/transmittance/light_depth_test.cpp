@@ -2,6 +2,7 @@
 #include "scene/light.h"
 #include "support/random_points.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/depths_at.h"
 #include "trace/transmittance/light_grid.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/fog_fixtures.h"
@@ -13,21 +14,6 @@
 namespace tyndall {
 namespace {
 using namespace test;
-
-std::vector<float> depths_at(const LightDepth& depth, const std::vector<vec3>& points) {
-    std::vector<float> result;
-    for (size_t first = 0; first < points.size(); first += 16) {
-        float v[3][16], out[16];
-        int32_t active[16];
-        for (size_t lane = 0; lane < 16; ++lane) {
-            const vec3 p = points[std::min(first + lane, points.size() - 1)];
-            v[0][lane] = p.x, v[1][lane] = p.y, v[2][lane] = p.z, active[lane] = -1;
-        }
-        light_depths(depth, v[0], v[1], v[2], active, out);
-        result.insert(result.end(), out, out + std::min<size_t>(16, points.size() - first));
-    }
-    return result;
-}
 
 float depth_at(const LightDepth& depth, vec3 point) { return depths_at(depth, {point})[0]; }
 

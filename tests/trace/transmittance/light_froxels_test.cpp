@@ -1,6 +1,7 @@
 // Optical depth to a light from froxels, against the exact march.
 #include "scene/light.h"
 #include "support/random_points.h"
+#include "trace/transmittance/depths_at.h"
 #include "trace/transmittance/light_froxels.h"
 
 #include "base/parallel.h"
@@ -33,18 +34,6 @@ std::vector<Light> lights() {
     Light lamp;
     lamp.position = vec3(9, 8, 7), lamp.radius = 0.5f;
     return {sun, lamp};
-}
-
-std::vector<float> depths_at(const LightDepth& depth, const std::vector<vec3>& points) {
-    std::vector<float> result;
-    for (const vec3 p : points) {
-        float v[3][16], out[16];
-        int32_t active[16] = {-1};
-        for (int lane = 0; lane < 16; ++lane) v[0][lane] = p.x, v[1][lane] = p.y, v[2][lane] = p.z;
-        light_depths(depth, v[0], v[1], v[2], active, out);
-        result.push_back(out[0]);
-    }
-    return result;
 }
 
 // Points of the fog that the view sees.

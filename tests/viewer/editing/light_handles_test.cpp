@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "viewer/editing/light_handles.h"
 
 #include <gtest/gtest.h>
@@ -20,11 +21,6 @@ Scene scene_of(std::vector<LightSource> lights) {
     Scene scene;
     scene.lights = std::move(lights);
     return scene;
-}
-
-void expect_near(vec3 a, vec3 b, float tolerance) {
-    EXPECT_LE(glm::distance(a, b), tolerance)
-        << a.x << " " << a.y << " " << a.z << ", " << b.x << " " << b.y << " " << b.z;
 }
 
 LightIcon icon_of(const Camera& camera, const Scene& scene, size_t light = 0) {

@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "scene/camera.h"
+#include "support/expect.h"
 #include "viewer/editing/editing.h"
 #include "viewer/editing/scene_session.h"
 
@@ -9,12 +10,6 @@ namespace tyndall::test {
 namespace {
 void set(SceneSession& session, std::string_view path, std::string_view value, uint64_t drag = 0, double seconds = 0) {
     edit(session, parse_edit(session.scene, path, value, seconds), drag);
-}
-
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-    const size_t place = text.find(what);
-    EXPECT_NE(place, text.npos) << what;
-    return text.replace(place, what.size(), by);
 }
 
 float exposure(const SceneSession& session) { return session.scene.exposure.at(0); }

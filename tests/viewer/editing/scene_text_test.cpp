@@ -2,6 +2,7 @@
 #include "base/io/json.h"
 #include "base/random.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "viewer/editing/editing.h"
 #include "viewer/editing/json_text.h"
 #include "viewer/editing/scene_text.h"
@@ -27,11 +28,6 @@ struct Bench {
     Scene read() const { return load_scene(studio.put("scene.json", written())); }
 };
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-    const size_t place = text.find(what);
-    EXPECT_NE(place, text.npos) << what;
-    return text.replace(place, what.size(), by);
-}
 }
 
 TEST(SceneText, ChangesTheBytesOfTheValueOnly) {

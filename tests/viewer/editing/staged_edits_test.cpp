@@ -22,8 +22,6 @@ ViewState small_state() {
     return state;
 }
 
-void act(ViewState& state, const char* line) { apply(state, parse_action(line)); }
-
 // The finished picture.
 std::vector<glm::u8vec4> painted(Painter& painter, const Request& request) {
     Image<glm::u8vec4> codes;

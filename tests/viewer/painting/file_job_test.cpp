@@ -8,6 +8,7 @@
 #include "viewer/editing/scene_text.h"
 #include "viewer/fixtures.h"
 #include "viewer/painting/job_thread.h"
+#include "viewer/painting/painting.h"
 #include "viewer/painting/save_picture.h"
 #include "viewer/state/edit_actions.h"
 #include "viewer/state/view_state.h"
@@ -16,12 +17,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <thread>
 
 namespace tyndall::test {
 namespace {
-using namespace std::chrono_literals;
-
 // A scene of one sun over a patch of fog from a recipe, read from files.
 struct FileJobs : testing::Test {
     Scratch directory;
@@ -61,15 +59,6 @@ std::vector<float> pixels(const std::filesystem::path& file) {
     const Image<vec3> picture = color_of(read_exr(file));
     const float* values = &picture.pixels.front().x;
     return {values, values + 3 * picture.pixels.size()};
-}
-
-// Waits, but not forever.
-template<class Condition> bool comes(const Condition& condition) {
-    for (int i = 0; i < 5000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(2ms);
-    }
-    return false;
 }
 }
 

@@ -12,7 +12,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <sstream>
 
 namespace tyndall::test {
 namespace {
@@ -26,11 +25,6 @@ Image<glm::u8vec4> rendered(const Request& request, int samples) {
     return toned(render_frame(find_mode(request.mode), view, snapshot, request.settings, {}, stats), request.shown);
 }
 
-std::string content(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
-}
 }
 
 TEST(Painter, StillPicturesBecomeBetterUntilTheyAreFinished) {
@@ -209,8 +203,8 @@ TEST(SavePicture, FilesAreThoseOfRender) {
         Progress progress(ProgressStyle::silent, "render", 1);
         render_sequence(*scene, job, progress, never);
         // The size is the scene's either way; only the command in the header spells it out.
-        EXPECT_EQ(content(directory.path() / "a.exr"), content(directory.path() / "b.exr")) << mode;
-        EXPECT_EQ(content(directory.path() / "a.png"), content(directory.path() / "b.png")) << mode;
+        EXPECT_EQ(bytes_of(directory.path() / "a.exr"), bytes_of(directory.path() / "b.exr")) << mode;
+        EXPECT_EQ(bytes_of(directory.path() / "a.png"), bytes_of(directory.path() / "b.png")) << mode;
     }
 }
 

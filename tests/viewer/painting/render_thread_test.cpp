@@ -1,5 +1,6 @@
 #include "viewer/editing/scene_loader.h"
 #include "viewer/fixtures.h"
+#include "viewer/painting/painting.h"
 #include "viewer/painting/render_thread.h"
 
 #include <gtest/gtest.h>
@@ -10,15 +11,6 @@
 namespace tyndall::test {
 namespace {
 using namespace std::chrono_literals;
-
-// Waits, but not forever.
-template<class Condition> bool comes(const Condition& condition) {
-    for (int i = 0; i < 5000; ++i) {
-        if (condition()) return true;
-        std::this_thread::sleep_for(2ms);
-    }
-    return false;
-}
 
 // Pictures until one is finished.
 std::shared_ptr<const ShownPicture> finished(RenderThread& thread, uint64_t revision) {

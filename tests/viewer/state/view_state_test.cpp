@@ -16,7 +16,6 @@ ViewState state_with_scene() {
     return state;
 }
 
-void act(ViewState& state, const char* line) { apply(state, parse_action(line)); }
 }
 
 TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {

@@ -1,6 +1,7 @@
 // Bricks hold exactly what leaves and tiles say.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "support/expect.h"
 #include "volume/bricks/half.h"
 #include "volume/fog_fixtures.h"
 
@@ -254,12 +255,7 @@ TEST(Bricks, SameBitsOnAnyNumberOfThreads) {
 }
 
 ExitCode code_of(const SparseVolume& volume) {
-    try {
-        make_bricks(volume);
-    } catch (const Error& error) {
-        return error.code;
-    }
-    return ExitCode::ok;
+    return error_of([&] { make_bricks(volume); }).code;
 }
 
 TEST(Bricks, RefusesWhatDoesNotFit) {

@@ -1,7 +1,6 @@
 // Fog along rays in closed form, against the samplers and the columns of optical_depth().
 #include "volume/rays/fog_pieces.h"
 
-#include "base/random.h"
 #include "volume/fog_fixtures.h"
 
 #include <glm/gtc/matrix_transform.hpp>

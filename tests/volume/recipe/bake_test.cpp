@@ -1,12 +1,12 @@
 #include "base/io/frames.h"
 #include "base/parallel.h"
+#include "support/expect.h"
 #include "volume/recipe/bake.h"
 #include "volume/recipe/recipe_fixtures.h"
 #include "volume/vdb/vdb_fixtures.h"
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <map>
 
 namespace tyndall::testing {
@@ -25,13 +25,6 @@ BakeReport baked(const FogRecipe& recipe, const std::string& pattern, const std:
         ~Release() { ::testing::internal::GetCapturedStderr(); }
     } release;
     return bake(recipe, pattern, frames, options, progress);
-}
-
-std::map<std::string, std::string> contents(const std::filesystem::path& directory) {
-    std::map<std::string, std::string> result;
-    for (const auto& entry : std::filesystem::directory_iterator(directory))
-        result[entry.path().filename()] = bytes_of(entry.path());
-    return result;
 }
 
 TEST(Bake, WritesWhatTheRecipeSays) {
@@ -105,7 +98,7 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
     const std::string pattern = scratch.path() / "fog.####.vdb";
     const std::vector<int> frames{1, 2, 3, 4};
     baked(recipe, pattern, frames);
-    const auto whole = contents(scratch.path());
+    const auto whole = scratch.contents();
     BakeOptions resume;
     resume.resume = true;
     const auto counts = [&](const FogRecipe& fog, const BakeOptions& options) {
@@ -123,11 +116,11 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
                                      whole.at("fog.0003.vdb"), std::string("not a volume"), std::string()}) {
         put("fog.0002.vdb", bytes);
         EXPECT_EQ(counts(recipe, resume), std::pair(1, 3));
-        EXPECT_EQ(contents(scratch.path()), whole);
+        EXPECT_EQ(scratch.contents(), whole);
     }
     std::filesystem::remove(scratch.path() / "fog.0004.vdb");
     EXPECT_EQ(counts(recipe, resume), std::pair(1, 3));
-    EXPECT_EQ(contents(scratch.path()), whole);
+    EXPECT_EQ(scratch.contents(), whole);
 
     // Other settings make other files.
     FogRecipe other = recipe;
@@ -150,7 +143,7 @@ TEST(Bake, ThreadsGiveTheSameFiles) {
         const Scratch scratch;
         set_thread_count(i + 1);
         baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4, 5});
-        files[i] = contents(scratch.path());
+        files[i] = scratch.contents();
     }
     set_thread_count(threads);
     EXPECT_EQ(files[0].size(), 5u);
@@ -184,12 +177,7 @@ TEST(Bake, EmptyFogIsAFileToo) {
 TEST(Bake, RefusesWhatCannotBe) {
     const Scratch scratch;
     const auto code_of = [&](const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames) {
-        try {
-            baked(recipe, pattern, frames);
-            return ExitCode::ok;
-        } catch (const Error& error) {
-            return error.code;
-        }
+        return error_of([&] { baked(recipe, pattern, frames); }).code;
     };
     EXPECT_EQ(code_of(small_fog(), scratch.path() / "fog.vdb", {1, 2}), ExitCode::usage);
     const std::string file = scratch.put("file", "x");

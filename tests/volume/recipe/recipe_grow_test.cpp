@@ -1,9 +1,8 @@
 #include "base/parallel.h"
+#include "support/expect.h"
 #include "volume/recipe/recipe_fixtures.h"
 
 #include <gtest/gtest.h>
-
-#include <cstring>
 
 namespace tyndall::testing {
 namespace {
@@ -190,13 +189,9 @@ TEST(RecipeGrow, FogThatIsThinnedToNothingIsEmpty) {
 
 TEST(RecipeGrow, ImpossibleGridsAreRefusedAtOnce) {
     const auto code_of = [](const FogRecipe& recipe) {
-        try {
-            grow(recipe, 0);
-            return ExitCode::ok;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()).find("voxel_size"), std::string::npos) << error.what();
-            return error.code;
-        }
+        const Error error = error_of([&] { grow(recipe, 0); });
+        EXPECT_NE(std::string(error.what()).find("voxel_size"), std::string::npos) << error.what();
+        return error.code;
     };
     FogRecipe recipe;
     recipe.voxel_size = 1e-5;

@@ -1,3 +1,4 @@
+#include "support/expect.h"
 #include "volume/recipe/recipe.h"
 #include "volume/recipe/recipe_fixtures.h"
 #include "volume/vdb/vdb_fixtures.h"
@@ -15,14 +16,7 @@ FogRecipe recipe_of(const std::string& json) {
 
 // The message with which a recipe is refused.
 std::string refusal(const std::string& json) {
-    try {
-        recipe_of(json);
-    } catch (const Error& error) {
-        EXPECT_EQ(error.code, ExitCode::refused) << error.what();
-        EXPECT_LE(std::string(error.what()).size(), 500u);
-        return error.what();
-    }
-    return "accepted";
+    return error_text(ExitCode::refused, [&] { recipe_of(json); });
 }
 
 const std::string shortest = R"({"bounds": {"low": [0, 0, 0], "high": [1, 2, 3]}, "voxel_size": 0.1)";
@@ -109,7 +103,7 @@ TEST(Recipe, MistakesAreNamed) {
     EXPECT_NE(refusal(R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 2})").find("/voxel_size"),
               std::string::npos);
     EXPECT_NE(refusal(R"({"voxel_size": 2})").find("bounds"), std::string::npos);
-    EXPECT_NE(refusal("[]"), "accepted");
+    EXPECT_NE(refusal("[]"), "");
 }
 
 TEST(Recipe, TheHashKnowsEveryField) {

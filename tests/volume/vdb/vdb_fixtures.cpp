@@ -5,7 +5,6 @@
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 
-#include <fstream>
 #include <random>
 #include <sstream>
 #include <unistd.h>
@@ -115,12 +114,4 @@ float value_at(const SparseVolume& volume, ivec3 voxel) {
     return value;
 }
 
-Error error_of(const std::function<void()>& body) {
-    try {
-        body();
-    } catch (const Error& error) {
-        return error;
-    }
-    return Error(ExitCode::ok, "", "");
-}
 }

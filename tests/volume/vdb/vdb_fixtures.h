@@ -1,7 +1,7 @@
 // VDB files for the tests, written by OpenVDB itself and so able to hold what write_vdb() never writes.
 #pragma once
-#include "base/error.h"
 #include "base/math.h"
+#include "support/expect.h"
 #include "support/scratch.h"
 #include "volume/bricks/sparse_volume.h"
 
@@ -9,7 +9,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,9 +45,6 @@ AuthoredGrid noisy_ball(ivec3 center, int radius, uint32_t seed = 1);
 
 // Value of a voxel of the volume, 0 where it holds none; fails the test when leaves or tiles overlap there.
 float value_at(const SparseVolume& volume, ivec3 voxel);
-
-// The Error the body throws; its code is `ok` when it throws none.
-Error error_of(const std::function<void()>& body);
 
 // Overwrites bytes at a position with a plain value.
 template<class T> std::string patched(std::string bytes, size_t position, T value) {
