@@ -12,12 +12,6 @@
 
 namespace tyndall::testing {
 namespace {
-struct Threads {
-    explicit Threads(int count) : before(thread_count()) { set_thread_count(count); }
-    ~Threads() { set_thread_count(before); }
-    int before;
-};
-
 // More leaves than are encoded at once, in no order and in several root nodes: full, with gaps, of one voxel, empty.
 // Values are multiples of a step; those of 1/1024 are exact in half.
 SparseVolume many_leaves(float step) {
