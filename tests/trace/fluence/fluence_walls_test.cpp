@@ -1,9 +1,10 @@
 // Fluence beside surfaces and at the rim of the fog.
 #include "base/random.h"
-#include "modes/path/path_scenes.h"
+#include "modes/settings.h"
 #include "scene/scene.h"
 #include "support/tiny_scenes.h"
 #include "trace/fluence/fluence.h"
+#include "trace/fluence/settings.h"
 #include "trace/snapshot.h"
 
 #include <gtest/gtest.h>
