@@ -17,5 +17,11 @@ TEST(GaussLegendre, IntegratesPolynomialsExactly) {
         }
     }
 }
+
+TEST(GaussLegendre, SumsPieces) {
+    EXPECT_NEAR(integral([](double x) { return 10 * std::pow(x, 9); }, 0, 2, 1), 1024, 1e-9); // the last exact power
+    EXPECT_NEAR(integral([](double x) { return std::exp(x); }, -1, 3, 4), std::exp(3) - std::exp(-1), 1e-9);
+    EXPECT_NEAR(integral([](double x) { return std::abs(x); }, -1, 3, 4), 5, 1e-12); // a kink between two pieces
+}
 }
 }
