@@ -7,6 +7,7 @@ import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
 
 TYNDALL = os.environ.get("TYNDALL", "tyndall")
 SOURCE = pathlib.Path(os.environ.get("TYNDALL_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
@@ -58,6 +59,13 @@ def scene(**changes):
     return content
 
 
+def lit_fog(**changes):
+    """A box of fog in the sun: light that varies, with an edge in some pixels."""
+    box = {"low": [-1, 0, -1], "high": [1, 1, 1]}
+    return scene(**{"frames": "1", "resolution": [32, 18],
+                    "media": [{"type": "homogeneous", "extinction": 0.5, "bounds": box}], **changes})
+
+
 def gltf(**changes):
     """One triangle, its data in triangle.bin."""
     content = {
@@ -87,6 +95,23 @@ def glb(content, binary=TRIANGLE):
     return struct.pack("<III", 0x46546C67, 2, 12 + len(body)) + body
 
 
+def png_size(path):
+    """Width and height of a PNG whose blocks are whole."""
+    data = pathlib.Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n"
+    at, size, pixels = 8, None, b""
+    while at < len(data):
+        length, kind = struct.unpack(">I4s", data[at:at + 8])
+        body = data[at + 8:at + 8 + length]
+        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
+        if kind == b"IHDR":
+            size = struct.unpack(">II", body[:8])
+        pixels += body if kind == b"IDAT" else b""
+        at += 12 + length
+    assert len(zlib.decompress(pixels)) == size[1] * (1 + 3 * size[0])
+    return size
+
+
 class ProgramTest(unittest.TestCase):
     maxDiff = None
 
@@ -110,6 +135,21 @@ class ProgramTest(unittest.TestCase):
     def files(self):
         """Every file and directory below the test's directory, hidden ones too."""
         return sorted(str(path.relative_to(self.directory)) for path in self.directory.rglob("*"))
+
+    def content(self, place):
+        """Every file in a directory by name, temporaries too."""
+        path = self.path(place)
+        return {file.name: file.read_bytes() for file in path.iterdir()} if path.is_dir() else {}
+
+    def write_triangle(self):
+        self.write("triangle.bin", TRIANGLE)
+        return self.write("triangle.gltf", gltf())
+
+    def info(self, name):
+        return json.loads(self.succeed("info", "--json", self.path(name)).stdout)
+
+    def attributes(self, name):
+        return self.info(name)["attributes"]
 
     def succeed(self, *arguments, **options):
         result = run(*arguments, **options)

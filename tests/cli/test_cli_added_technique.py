@@ -29,7 +29,7 @@ class Added(ProgramTest):
         said = self.succeed("render", self.scene, "-o", self.path("a.exr"), "--mode", "mist", "--frames", 1,
                             "--set", "mist.brightness=3").stderr
         self.assertIn("no light is looked at", said)
-        self.assertIn("mist.brightness=3", self.succeed("info", "--json", self.path("a.exr")).stdout)
+        self.assertIn("mist.brightness=3", self.attributes("a.exr")["tyndall:settings"])
         self.succeed("render", self.scene, "-o", self.path("b.exr"), "--mode", "all", "--frames", 1, "--quality", "draft")
         self.assertTrue(self.path("b.mist.exr").exists())
 

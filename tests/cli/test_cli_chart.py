@@ -8,7 +8,7 @@ import shutil
 import subprocess
 import unittest
 
-from program import ProgramTest, SANITIZED, SOURCE, scene
+from program import ProgramTest, scene
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 FOG = {"type": "homogeneous", "extinction": 0.3, "bounds": {"low": [-2, -1, -2], "high": [2, 2, 2]}}

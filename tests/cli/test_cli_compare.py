@@ -3,9 +3,8 @@ import json
 import math
 import struct
 import unittest
-import zlib
 
-from program import ProgramTest, run, scene
+from program import ProgramTest, png_size, run, scene
 
 NAN, INF = math.nan, math.inf
 METRICS = ["E", "rmse_rel", "bias_rel", "mae_rel", "p95_rel", "p99_9_rel", "max_rel", "rmse", "bias", "mae", "p95",
@@ -43,22 +42,6 @@ def grey(value, **layers):
 
 def color_layer(name, value):
     return {f"{name}.{c}": value for c in "RGB"}
-
-
-def png_size(data):
-    """Width and height of a PNG whose blocks are whole."""
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at, size, pixels = 8, None, b""
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
-        if kind == b"IHDR":
-            size = struct.unpack(">II", body[:8])
-        pixels += body if kind == b"IDAT" else b""
-        at += 12 + length
-    assert len(zlib.decompress(pixels)) == size[1] * (1 + 3 * size[0])
-    return size
 
 
 class Compare(ProgramTest):
@@ -222,7 +205,7 @@ class HeatMaps(Compare):
             path = self.path(f"{kind}.png")
             result = self.succeed("compare", a, b, "--heatmap", path, "--map", kind)
             self.assertIn("white", result.stderr)
-            width, height = png_size(path.read_bytes())
+            width, height = png_size(path)
             self.assertEqual(width, 80)
             self.assertGreater(height, 50)
             self.assertLess(height, 70)

@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from program import TRIANGLE, ProgramTest, gltf, recipe, scene
+from program import ProgramTest, recipe, scene
 
 REMEMBERING = ("froxel", "shadow-map", "cone")
 HISTORY = 3
@@ -18,8 +18,7 @@ class History(ProgramTest):
 
     def setUp(self):
         super().setUp()
-        self.write("triangle.bin", TRIANGLE)
-        self.write("triangle.gltf", gltf())
+        self.write_triangle()
 
     def film(self, wind=0.05, intensity=60, sun=0, position=(0, 0.9, 3), target=(0, 0.5, 0), **changes):
         lamp = {"name": "lamp", "type": "spot", "position": [0.3, 4, 0.3], "direction": [0, -1, 0],
@@ -36,9 +35,6 @@ class History(ProgramTest):
         """Renders with all samples in the middle of their pixel."""
         self.succeed("render", film, "-o", self.path(f"{place}/out.####.exr"), "--mode", mode, "--samples", samples,
                      "--set", "pixel.filter=center", "--history", history, "-q", *more)
-
-    def content(self, place):
-        return {file.name: file.read_bytes() for file in self.path(place).iterdir()}
 
     def against(self, test, reference):
         """What compare says of the fog's light."""

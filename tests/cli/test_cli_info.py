@@ -1,5 +1,4 @@
 """What `tyndall info` says about files whose content is known."""
-import json
 import math
 import unittest
 
@@ -17,7 +16,7 @@ class Info(ProgramTest):
         text = self.succeed("info", path).stdout
         self.assertIn(str(path), text)
         self.assertNotIn("\x1b", text)
-        return json.loads(self.succeed("info", "--json", path).stdout)
+        return self.info(path)
 
     def test_volumes(self):
         fog = recipe(density={"threshold": 0, "gain": 1000}, wind=[0, 0, 0], optics={"extinction": 0.25})

@@ -1,21 +1,9 @@
 """Several modes in one run, styles, and the history."""
 import json
 import pathlib
-import struct
 import unittest
 
-from program import ProgramTest, run, scene
-
-BOX = {"low": [-1, 0, -1], "high": [1, 1, 1]}
-
-
-def lit_fog(**changes):
-    return scene(frames="1", resolution=[32, 18],
-                 media=[{"type": "homogeneous", "extinction": 0.5, "bounds": BOX}], **changes)
-
-
-def png_size(path):
-    return struct.unpack(">II", pathlib.Path(path).read_bytes()[16:24])
+from program import ProgramTest, lit_fog, png_size, run
 
 
 class Modes(ProgramTest):
@@ -25,9 +13,6 @@ class Modes(ProgramTest):
 
     def modes(self):
         return [mode["name"] for mode in json.loads(self.succeed("modes", "--json").stdout)["modes"]]
-
-    def attributes(self, file):
-        return json.loads(self.succeed("info", "--json", file).stdout)["attributes"]
 
     def test_all_modes_write_files_of_their_own_and_a_sheet(self):
         names = self.modes()
@@ -83,7 +68,7 @@ class Modes(ProgramTest):
         common = ["render", self.scene, "--mode", "radial-blur", "--samples", "1", "--aov", "Z,inscatter,validity,lights"]
         self.succeed(*common, "-o", self.path("whole.exr"))
         self.succeed(*common, "-o", self.path("crop.exr"), "--crop", "8,4,20,12")
-        info = json.loads(self.succeed("info", "--json", self.path("crop.exr")).stdout)
+        info = self.info("crop.exr")
         names = [channel["name"] for channel in info["channels"]]
         self.assertIn("validity.T", names)
         self.assertIn("light_sun.R", names)

@@ -2,19 +2,13 @@
 import json
 import unittest
 
-from program import ProgramTest, recipe, run, scene
-
-
-def lit_fog():
-    """A box of fog in the sun: light that varies, with an edge in some pixels."""
-    box = {"low": [-1, 0, -1], "high": [1, 1, 1]}
-    return scene(frames="1", resolution=[16, 9], media=[{"type": "homogeneous", "extinction": 0.5, "bounds": box}])
+from program import ProgramTest, lit_fog, recipe, run, scene
 
 
 class Layers(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.json", lit_fog())
+        self.scene = self.write("scene.json", lit_fog(resolution=[16, 9]))
         self.output = self.path("out.exr")
 
     def render(self, *more, **options):
@@ -22,7 +16,7 @@ class Layers(ProgramTest):
 
     def report(self):
         """Channels by name, and attributes, of the picture."""
-        report = json.loads(self.succeed("info", "--json", self.output).stdout)
+        report = self.info(self.output)
         return {channel["name"]: channel for channel in report["channels"]}, report["attributes"]
 
     def test_variance_and_halves_are_layers(self):
@@ -88,19 +82,16 @@ class Layers(ProgramTest):
 class Target(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.json", lit_fog())
+        self.scene = self.write("scene.json", lit_fog(resolution=[16, 9]))
         self.output = self.path("out.exr")
 
     def render(self, *more):
         return run("render", self.scene, "-o", self.output, "--mode", "path", "--json", *more)
 
-    def attributes(self):
-        return json.loads(self.succeed("info", "--json", self.output).stdout)["attributes"]
-
     def test_it_is_reached(self):
         result = self.render("--target-error", "0.05", "--orders", "2")
         self.assertEqual(result.returncode, 0, result.stderr)
-        report, attributes = json.loads(result.stdout), self.attributes()
+        report, attributes = json.loads(result.stdout), self.attributes(self.output)
         self.assertEqual(attributes["tyndall:targetError"], "0.05")
         self.assertLessEqual(float(attributes["tyndall:errorBound"]), 0.05)
         self.assertEqual(int(attributes["tyndall:samples"]), report["frames"][0]["samples"])
@@ -112,7 +103,7 @@ class Target(ProgramTest):
         result = self.render("--target-error", "1e-5", "--res", "2x1", "--orders", "1")
         self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("larger than 1e-05", result.stderr)
-        self.assertEqual(self.attributes()["tyndall:samples"], "65536")
+        self.assertEqual(self.attributes(self.output)["tyndall:samples"], "65536")
         self.assertEqual(json.loads(result.stdout)["missed"], 1)
 
 
@@ -127,7 +118,7 @@ class MarchTarget(ProgramTest):
     def render(self, *more, code=0):
         result = run("render", self.scene, "-o", self.output, "--frames", "1", "--json", *more)
         self.assertEqual(result.returncode, code, result.stderr)
-        attributes = json.loads(self.succeed("info", "--json", self.path("out.0001.exr")).stdout)["attributes"]
+        attributes = self.attributes("out.0001.exr")
         return json.loads(result.stdout), attributes, result.stderr
 
     def test_the_error_is_measured_reached_and_reported(self):

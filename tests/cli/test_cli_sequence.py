@@ -26,11 +26,6 @@ class Sequence(ProgramTest):
     def render(self, place, *more):
         return ("render", self.scene, "-o", self.path(f"{place}/out.####.exr"), "--frames", FRAMES, *more)
 
-    def content(self, place):
-        """Every file in a directory by name, temporaries too."""
-        path = self.path(place)
-        return {file.name: file.read_bytes() for file in path.iterdir()} if path.is_dir() else {}
-
     def finished(self, place):
         return {name: data for name, data in self.content(place).items() if not name.endswith(".tmp")}
 
@@ -143,7 +138,7 @@ class Bits(Sequence):
         command = ("render", self.scene, "--frames", "1", "--aov", "none")
         self.succeed(*command, "-o", whole)
         self.succeed(*command, "-o", part, "--crop", "16,8,48,30")
-        report = json.loads(self.succeed("info", "--json", part).stdout)
+        report = self.info(part)
         self.assertEqual((report["display"], report["low"], report["size"]), ([64, 36], [16, 8], [32, 22]))
 
     def test_two_processes_may_work_on_the_same_frames(self):

@@ -6,7 +6,7 @@ import time
 import unittest
 
 import random_actions
-from program import SANITIZED, TRIANGLE, TYNDALL, gltf, run, scene
+from program import SANITIZED, TYNDALL, run, scene
 from viewer import VIEWER, ViewerTest
 
 MODES = ("march", "froxel", "shadow-map", "shadow-volume", "cone", "billboard", "radial-blur", "path")
@@ -17,8 +17,7 @@ class Pictures(ViewerTest):
 
     def setUp(self):
         super().setUp()
-        self.write("triangle.bin", TRIANGLE)
-        self.write("triangle.gltf", gltf())
+        self.write_triangle()
         self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-8"))
 
     def same(self, name, *options):
@@ -50,7 +49,7 @@ class Pictures(ViewerTest):
         self.view(self.film, ["wait idle", "drag 450,400 600,420", "wait idle", f"snapshot {self.path('a.exr')}",
                               "camera", f"snapshot {self.path('b.exr')}", "drag 260,776 700,776",
                               f"snapshot {self.path('c.exr')}"], "--samples", 2)
-        self.assertIn('--camera view', self.attributes("a.exr"))
+        self.assertIn('--camera view', str(self.attributes("a.exr")))
         self.assertFalse(self.same("a.exr", "--frames", 1))
         self.assertTrue(self.same("b.exr", "--frames", 1))
         self.assertTrue(any(self.same("c.exr", "--frames", frame) for frame in range(2, 9)))
@@ -59,7 +58,7 @@ class Pictures(ViewerTest):
         drags = [f"drag 1173,{y} 1215,{y}" for y in range(530, 780, 30)]
         self.view(self.film, ["wait idle", *drags, f"snapshot {self.path('a.exr')}", "reset all",
                               f"snapshot {self.path('b.exr')}"], "--samples", 1)
-        self.assertIn(" --set ", self.attributes("a.exr"))
+        self.assertIn(" --set ", str(self.attributes("a.exr")))
         self.assertTrue(self.same("b.exr", "--frames", 1))
 
     def test_time_goes_on_by_keys_and_by_playing(self):

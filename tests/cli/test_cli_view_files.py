@@ -1,15 +1,14 @@
 """Files in the viewer: jobs that write sequences, and recipes and volumes that change under it."""
 import unittest
 
-from program import SANITIZED, TRIANGLE, gltf, recipe, scene
+from program import SANITIZED, recipe, scene
 from viewer import ViewerTest
 
 
 class Jobs(ViewerTest):
     def setUp(self):
         super().setUp()
-        self.write("triangle.bin", TRIANGLE)
-        self.write("triangle.gltf", gltf())
+        self.write_triangle()
         self.write("dust.json", recipe())
         self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-3", media=[
             {"name": "dust", "type": "noise", "recipe": "dust.json"}]))

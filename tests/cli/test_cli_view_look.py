@@ -2,7 +2,7 @@
 import shutil
 import unittest
 
-from program import TRIANGLE, gltf, recipe, scene
+from program import recipe, scene
 from viewer import ViewerTest, read_png
 
 
@@ -14,8 +14,7 @@ def area(rows):
 class Looking(ViewerTest):
     def setUp(self):
         super().setUp()
-        self.write("triangle.bin", TRIANGLE)
-        self.write("triangle.gltf", gltf())
+        self.write_triangle()
         self.film = self.write("scene.json", scene(gltf="triangle.gltf", frames="1-8", lights=[
             {"name": "lamp", "type": "point", "position": [0.5, 1.2, 0.5], "intensity": 20}]))
 

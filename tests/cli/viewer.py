@@ -56,6 +56,3 @@ class ViewerTest(ProgramTest):
             process.kill()
         self.assertEqual(process.returncode, code, errors)
         return output if code == 0 else errors
-
-    def attributes(self, name):
-        return self.succeed("info", "--json", self.path(name)).stdout
