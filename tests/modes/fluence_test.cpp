@@ -14,6 +14,7 @@
 #include "scene/scene.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
+#include "support/threads.h"
 #include "support/tiny_scenes.h"
 #include "trace/fluence/fluence.h"
 #include "trace/fluence/light_paths.h"
@@ -149,12 +150,8 @@ TEST(Fluence, HasTheSameBitsAtAnyThreadCount) {
     Snapshot snapshot = snapshot_of({even_medium(3, unit_box, forward_phase(0.6f))},
                                     {sun_light({1, -1, 0.5f}), point_light({2, 2, 2})});
     add_surfaces(scene, snapshot);
-    const int threads = thread_count();
-    set_thread_count(1);
-    const FluenceGrid one = make_fluence(snapshot, grid_settings(all_orders, 12, 40'000));
-    set_thread_count(2);
-    const FluenceGrid two = make_fluence(snapshot, grid_settings(all_orders, 12, 40'000));
-    set_thread_count(threads);
+    const auto made = [&] { return make_fluence(snapshot, grid_settings(all_orders, 12, 40'000)); };
+    const FluenceGrid one = on_threads(1, made), two = on_threads(2, made);
     EXPECT_EQ(one.values, two.values);
     EXPECT_NE(one.values, make_fluence(snapshot, grid_settings(all_orders, 12, 40'000), 1).values) << "another seed";
 }

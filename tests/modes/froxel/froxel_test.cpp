@@ -1,7 +1,7 @@
 // The froxel cache against closed forms and the exact march.
 #include "modes/froxel/froxel_fixtures.h"
+#include "support/threads.h"
 
-#include "base/parallel.h"
 #include "modes/history.h"
 
 #include <gtest/gtest.h>
@@ -166,10 +166,10 @@ TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
     const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
     for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility});
-        set_thread_count(1);
-        const std::vector<Scatter> alone = scattered(froxels(view, stage.snapshot, settings), rays, 1);
-        set_thread_count(0);
-        const std::vector<Scatter> packed = scattered(froxels(view, stage.snapshot, settings), rays, 16);
+        const auto seen = [&](size_t packet) {
+            return [&, packet] { return scattered(froxels(view, stage.snapshot, settings), rays, packet); };
+        };
+        const std::vector<Scatter> alone = on_threads(1, seen(1)), packed = on_threads(3, seen(16));
         for (size_t i = 0; i < rays.size(); ++i) ASSERT_TRUE(same(alone[i], packed[i])) << visibility << i;
     }
 }

@@ -1,6 +1,5 @@
 // The march with shadow maps against closed forms, the reference and traced shadows.
 
-#include "base/parallel.h"
 #include "integrate/gauss_legendre.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
@@ -12,6 +11,7 @@
 #include "scene/scene.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
+#include "support/threads.h"
 #include "support/tiny_scenes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -260,10 +260,8 @@ TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
 TEST(ShadowMapMarch, SameBitsOnAnyThreads) {
     const HalfShadowed box(lamp_above());
     const std::vector<Ray> rays = picture_rays();
-    set_thread_count(1);
-    const std::vector<Scatter> one = run("shadow-map", box.snapshot, Settings{}, rays);
-    set_thread_count(0);
-    const std::vector<Scatter> all = run("shadow-map", box.snapshot, Settings{}, rays);
+    const auto made = [&] { return run("shadow-map", box.snapshot, Settings{}, rays); };
+    const std::vector<Scatter> one = on_threads(1, made), all = on_threads(3, made);
     for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(one[i].radiance, all[i].radiance);
 }
 }

@@ -1,5 +1,4 @@
 // Errors promised before they are known, and times kept by a clock of the test's own.
-#include "base/parallel.h"
 #include "base/random.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
@@ -8,6 +7,7 @@
 #include "scene/camera.h"
 #include "scene/file/scene_file.h"
 #include "scene/light.h"
+#include "support/threads.h"
 #include "trace/snapshot.h"
 
 #include <gtest/gtest.h>
@@ -164,11 +164,8 @@ TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {
 
 TEST(Goal, PicturesOfATargetHaveTheSameBitsForAnyThreadCount) {
     const Example example("window");
-    set_thread_count(1);
-    const Result one = to_goal(example, {0.1, 0, Quality::preview, {}});
-    set_thread_count(2);
-    const Result two = to_goal(example, {0.1, 0, Quality::preview, {}});
-    set_thread_count(0);
+    const auto made = [&] { return to_goal(example, {0.1, 0, Quality::preview, {}}); };
+    const Result one = on_threads(1, made), two = on_threads(2, made);
     EXPECT_TRUE(same_bits(one.layers.color, two.layers.color));
     EXPECT_EQ(one.stats.error()->bound, two.stats.error()->bound);
     EXPECT_EQ(one.stats.integrator->candidate, two.stats.integrator->candidate);

@@ -1,5 +1,4 @@
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/random.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
@@ -7,6 +6,7 @@
 #include "render/frame/noise_fixtures.h"
 #include "scene/scene.h"
 #include "support/expect.h"
+#include "support/threads.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 
@@ -105,11 +105,8 @@ TEST(ToTarget, SaysWhenItWasMissed) {
 
 TEST(ToTarget, HasTheSameBitsForAnyThreadCount) {
     const View view = plain_view({40, 36}, 4);
-    set_thread_count(1);
-    const Result one = to_target(view, 0.04);
-    set_thread_count(2);
-    const Result two = to_target(view, 0.04);
-    set_thread_count(0);
+    const auto made = [&] { return to_target(view, 0.04); };
+    const Result one = on_threads(1, made), two = on_threads(2, made);
     EXPECT_TRUE(same_bits(one.layers.color, two.layers.color));
     EXPECT_TRUE(same_bits(one.layers.variance, two.layers.variance));
     EXPECT_EQ(one.stats.noise->bound, two.stats.noise->bound);
@@ -119,9 +116,7 @@ TEST(ToTarget, ProgressOnlyGrows) {
     std::vector<double> said;
     FrameOptions options;
     options.progress = [&](double share) { said.push_back(share); };
-    set_thread_count(1);
-    to_target(plain_view({64, 64}, 4), 0.03, options);
-    set_thread_count(0);
+    on_threads(1, [&] { return to_target(plain_view({64, 64}, 4), 0.03, options); });
     ASSERT_GT(said.size(), 12u); // rounds of four blocks
     EXPECT_TRUE(std::ranges::is_sorted(said));
     EXPECT_GT(said.front(), 0);

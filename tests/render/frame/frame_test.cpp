@@ -1,5 +1,4 @@
 #include "base/error.h"
-#include "base/parallel.h"
 #include "modes/mode.h"
 #include "render/fixtures.h"
 #include "render/frame/frame.h"
@@ -8,6 +7,7 @@
 #include "scene/light_kind.h"
 #include "scene/scene.h"
 #include "support/expect.h"
+#include "support/threads.h"
 #include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -175,12 +175,9 @@ TEST(Frame, HasTheSameBitsForAnyThreadCountAndCrop) {
     view.filter = PixelFilter::blackman_harris, view.filter_radius = 1.5f, view.seed = 11, view.frame = 7;
     const Mode mode = mode_of(prepare_everything);
 
-    set_thread_count(1);
     FrameStats stats_1, stats_2, stats_crop;
-    const Layers one = rendered(mode, view, snapshot, stats_1);
-    set_thread_count(2);
-    const Layers two = rendered(mode, view, snapshot, stats_2);
-    set_thread_count(0);
+    const Layers one = on_threads(1, [&] { return rendered(mode, view, snapshot, stats_1); });
+    const Layers two = on_threads(2, [&] { return rendered(mode, view, snapshot, stats_2); });
     EXPECT_TRUE(same_bits(one.color, two.color));
     EXPECT_TRUE(same_bits(one.inscatter, two.inscatter));
     EXPECT_TRUE(same_bits(one.alpha, two.alpha));

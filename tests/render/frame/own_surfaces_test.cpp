@@ -1,9 +1,9 @@
-#include "base/parallel.h"
 #include "modes/mode.h"
 #include "render/frame/noise_fixtures.h"
 #include "scene/light.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
+#include "support/threads.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/small_scenes.h"
 #include "trace/snapshot.h"
@@ -207,11 +207,8 @@ TEST(OwnSurfaces, HaveTheSameBitsForAnyThreadCountAndCrop) {
     options.halves = true;
     for (const Mode& mode : {own_mode(prepare_everything), mode_of(prepare_everything)}) {
         view.crop_low = view.crop_high = ivec2(0);
-        set_thread_count(1);
-        const Layers one = rendered(mode, view, snapshot, options);
-        set_thread_count(2);
-        const Layers two = rendered(mode, view, snapshot, options);
-        set_thread_count(0);
+        const auto made = [&] { return rendered(mode, view, snapshot, options); };
+        const Layers one = on_threads(1, made), two = on_threads(2, made);
         view.crop_low = {33, 5}, view.crop_high = {70, 45};
         const Layers crop = rendered(mode, view, snapshot, options);
         const auto expect_same = [&](auto layer, const char* what) {

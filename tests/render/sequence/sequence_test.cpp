@@ -1,11 +1,11 @@
 // Frames of a sequence, what is written with them and reported of them.
 #include "base/io/frames.h"
 #include "base/io/json.h"
-#include "base/parallel.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
 #include "render/sequence/sequence_fixtures.h"
 #include "scene/scene.h"
+#include "support/threads.h"
 #include "trace/view.h"
 
 #include <gtest/gtest.h>
@@ -43,12 +43,9 @@ TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
     const Scene scene = moving_scene(in);
     RenderJob job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
     job.png = true;
-    set_thread_count(1);
-    run(scene, job);
-    set_thread_count(2);
+    on_threads(1, [&] { return run(scene, job); });
     job.output = two.file("f.####.exr");
-    run(scene, job);
-    set_thread_count(0);
+    on_threads(2, [&] { return run(scene, job); });
     EXPECT_EQ(one.contents(), two.contents());
 }
 

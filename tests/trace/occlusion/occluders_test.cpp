@@ -5,6 +5,7 @@
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/random_points.h"
+#include "support/threads.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/shadow_rays.h"
 #include "trace/small_scenes.h"
@@ -308,24 +309,19 @@ std::vector<uint32_t> answers(const Scene& scene) {
 
 TEST(Occluders, SameBitsAtAnyThreadCount) {
     const Scene scene = soup();
-    set_thread_count(1);
-    const auto one = answers(scene);
-    set_thread_count(2);
-    EXPECT_EQ(thread_count(), 2);
-    EXPECT_EQ(answers(scene), one);
-    set_thread_count(4);
-    EXPECT_EQ(answers(scene), one);
-    set_thread_count(0);
+    const auto asked = [&] { return answers(scene); };
+    const auto one = on_threads(1, asked);
+    EXPECT_EQ(on_threads(2, asked), one);
+    EXPECT_EQ(on_threads(4, asked), one);
 }
 
 // Embree's own thread setting would limit the whole process.
 TEST(Occluders, TheRayTracerLeavesThreadsAlone) {
-    set_thread_count(3);
+    const Threads three(3);
     Scene scene;
     add_mesh(scene, box_of(vec3(-1), vec3(1)));
     occluders_of(scene);
     EXPECT_EQ(thread_count(), 3);
-    set_thread_count(0);
 }
 
 TEST(Occluders, InstructionSetIsFixedOnceUsed) {

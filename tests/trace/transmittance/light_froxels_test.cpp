@@ -1,10 +1,10 @@
 // Optical depth to a light from froxels, against the exact march.
 #include "scene/light.h"
 #include "support/random_points.h"
+#include "support/threads.h"
 #include "trace/transmittance/depths_at.h"
 #include "trace/transmittance/light_froxels.h"
 
-#include "base/parallel.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/fog_fixtures.h"
@@ -128,10 +128,10 @@ TEST(LightFroxels, FogOutOfViewIsMarched) {
 TEST(LightFroxels, ThreadsDoNotChangeThem) {
     const Stage stage;
     for (const Light& light : lights()) {
-        set_thread_count(1);
-        const LightDepth one = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
-        set_thread_count(0);
-        const LightDepth many = make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
+        const auto made = [&] {
+            return make_light_depth(stage.snapshot, light, LightTransmittance::froxel, 24, &stage.view);
+        };
+        const LightDepth one = on_threads(1, made), many = on_threads(3, made);
         EXPECT_EQ(*one.froxels.depth, *many.froxels.depth);
     }
 }

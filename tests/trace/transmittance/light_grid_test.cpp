@@ -1,6 +1,7 @@
 // How far light-aligned grids are from the exact optical depth.
 #include "scene/light.h"
 #include "support/random_points.h"
+#include "support/threads.h"
 #include "trace/transmittance/light_grid.h"
 #include "volume/medium.h"
 
@@ -183,11 +184,8 @@ TEST(LightGrid, SameBitsAtAnyThreadCount) {
     snapshot.media = {noise_fog()};
     Light light;
     light.position = vec3(side / 2);
-    set_thread_count(1);
-    const LightDepth one = make_light_depth(snapshot, light, LightTransmittance::grid, 24);
-    set_thread_count(3);
-    const LightDepth three = make_light_depth(snapshot, light, LightTransmittance::grid, 24);
-    set_thread_count(0);
+    const auto made = [&] { return make_light_depth(snapshot, light, LightTransmittance::grid, 24); };
+    const LightDepth one = on_threads(1, made), three = on_threads(3, made);
     EXPECT_EQ(*one.grid.depth, *three.grid.depth);
 }
 

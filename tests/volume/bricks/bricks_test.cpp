@@ -1,7 +1,7 @@
 // Bricks hold exactly what leaves and tiles say.
 #include "base/error.h"
-#include "base/parallel.h"
 #include "support/expect.h"
+#include "support/threads.h"
 #include "volume/bricks/half.h"
 #include "volume/fog_fixtures.h"
 
@@ -248,10 +248,8 @@ TEST(Bricks, PlaceMovesTheFog) {
 
 TEST(Bricks, SameBitsOnAnyNumberOfThreads) {
     const SparseVolume volume = mixed_volume();
-    set_thread_count(1);
-    const auto one = make_bricks(volume);
-    set_thread_count(0);
-    EXPECT_TRUE(same(*one, *make_bricks(volume)));
+    const auto made = [&] { return make_bricks(volume); };
+    EXPECT_TRUE(same(*on_threads(1, made), *on_threads(3, made)));
 }
 
 ExitCode code_of(const SparseVolume& volume) {

@@ -1,6 +1,7 @@
 #include "base/io/frames.h"
 #include "base/parallel.h"
 #include "support/expect.h"
+#include "support/threads.h"
 #include "volume/recipe/bake.h"
 #include "volume/recipe/recipe_fixtures.h"
 #include "volume/vdb/vdb_fixtures.h"
@@ -137,17 +138,14 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
 }
 
 TEST(Bake, ThreadsGiveTheSameFiles) {
-    const int threads = thread_count();
-    std::map<std::string, std::string> files[2];
-    for (int i = 0; i < 2; ++i) {
+    const auto files = [] {
         const Scratch scratch;
-        set_thread_count(i + 1);
         baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4, 5});
-        files[i] = scratch.contents();
-    }
-    set_thread_count(threads);
-    EXPECT_EQ(files[0].size(), 5u);
-    EXPECT_EQ(files[0], files[1]);
+        return scratch.contents();
+    };
+    const auto alone = on_threads(1, files);
+    EXPECT_EQ(alone.size(), 5u);
+    EXPECT_EQ(on_threads(2, files), alone);
 }
 
 TEST(Bake, LoopsMeet) {

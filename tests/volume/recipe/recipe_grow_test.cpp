@@ -1,5 +1,6 @@
 #include "base/parallel.h"
 #include "support/expect.h"
+#include "support/threads.h"
 #include "volume/recipe/recipe_fixtures.h"
 
 #include <gtest/gtest.h>
@@ -162,12 +163,8 @@ TEST(RecipeGrow, ThreadsAndInstructionSetsGiveTheSameBits) {
             all.append(reinterpret_cast<const char*>(&leaf), sizeof leaf);
         return all;
     };
-    const int threads = thread_count();
-    set_thread_count(1);
-    const std::string alone = bytes();
-    set_thread_count(2);
-    EXPECT_EQ(bytes(), alone);
-    set_thread_count(threads);
+    const std::string alone = on_threads(1, bytes);
+    EXPECT_EQ(on_threads(2, bytes), alone);
     EXPECT_GT(alone.size(), 100000u);
     for (const char* name : {"avx2", "avx512"}) {
         if (!has_isa(name)) continue;

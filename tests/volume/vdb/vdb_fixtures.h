@@ -1,7 +1,6 @@
 // VDB files for the tests, written by OpenVDB itself and so able to hold what write_vdb() never writes.
 #pragma once
 #include "base/math.h"
-#include "base/parallel.h"
 #include "support/expect.h"
 #include "support/scratch.h"
 #include "volume/bricks/sparse_volume.h"
@@ -46,13 +45,6 @@ AuthoredGrid noisy_ball(ivec3 center, int radius, uint32_t seed = 1);
 
 // Value of a voxel of the volume, 0 where it holds none; fails the test when leaves or tiles overlap there.
 float value_at(const SparseVolume& volume, ivec3 voxel);
-
-// Loops run on so many threads while it lives.
-struct Threads {
-    explicit Threads(int count) : before(thread_count()) { set_thread_count(count); }
-    ~Threads() { set_thread_count(before); }
-    int before;
-};
 
 // Overwrites bytes at a position with a plain value.
 template<class T> std::string patched(std::string bytes, size_t position, T value) {

@@ -1,5 +1,6 @@
 // What many threads encode and decode, against the library's own writer, which takes one leaf after the other.
 #include "base/parallel.h"
+#include "support/threads.h"
 #include "volume/bricks/voxel_mask.h"
 #include "volume/vdb/prewalk.h"
 #include "volume/vdb/vdb.h"

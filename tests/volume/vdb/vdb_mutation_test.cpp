@@ -1,6 +1,7 @@
 // Random damage: every file ends as fog or as an Error, in bounded time and memory. Each is read in a process of its
 // own.
 #include "support/corpus.h"
+#include "support/threads.h"
 #include "volume/vdb/vdb.h"
 #include "volume/vdb/vdb_fixtures.h"
 

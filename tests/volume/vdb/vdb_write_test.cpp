@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "support/threads.h"
 #include "volume/vdb/vdb.h"
 #include "volume/vdb/vdb_fixtures.h"
 
@@ -76,9 +76,7 @@ TEST_P(WriteEncodings, SameInputSameBytes) {
     const VdbWriteOptions options{.half = GetParam().half, .blosc = GetParam().blosc};
     write_vdb(scratch.path() / "a.vdb", volume, options);
     std::ranges::reverse(volume.leaves);
-    set_thread_count(1);
-    write_vdb(scratch.path() / "b.vdb", volume, options);
-    set_thread_count(0);
+    on_threads(1, [&] { write_vdb(scratch.path() / "b.vdb", volume, options); });
     const std::string a = bytes_of(scratch.path() / "a.vdb");
     EXPECT_EQ(a, bytes_of(scratch.path() / "b.vdb"));
 

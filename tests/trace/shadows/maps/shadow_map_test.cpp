@@ -1,11 +1,11 @@
 // Shadow maps against distances worked out by hand.
 
-#include "base/parallel.h"
 #include "base/random.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/random_points.h"
+#include "support/threads.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/small_scenes.h"
@@ -298,10 +298,8 @@ TEST(ShadowMap, GrazingSunIsFinite) {
 TEST(ShadowMap, SameBitsOnAnyThreads) {
     const Stage stage = street();
     const Light light = light_of(LightKind::sun, vec3(0), {-1, -0.6f, -0.2f});
-    set_thread_count(1);
-    const ShadowMap one = stage.map(light);
-    set_thread_count(0);
-    EXPECT_EQ(one.depth, stage.map(light).depth);
+    const auto depths = [&] { return stage.map(light).depth; };
+    EXPECT_EQ(on_threads(1, depths), on_threads(3, depths));
 }
 
 TEST(ShadowMap, LightsWithoutShadowsHaveNone) {
