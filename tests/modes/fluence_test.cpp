@@ -6,7 +6,6 @@
 #include "modes/froxel/settings.h"
 #include "modes/mode.h"
 #include "modes/path/path_rays.h"
-#include "modes/path/path_scenes.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/camera.h"

@@ -74,8 +74,8 @@ void check_emission(Checks& checks) {
     const Ray ray{{0, 0, 5}, {0, 0, -1}, 20};
     const double expected = 1.553739680; // j/σ (1 - e^(-σs))
     checks.add("glowing fog, march", reference_light(snapshot, ray).radiance.x, expected, 2e-5 * expected, "rounding");
-    const RayLight light = path_light(snapshot, ray, 4096);
-    checks.add("glowing fog, path", light.value, expected, 3 * light.error, "3 standard errors");
+    const RayEstimate light = path_light(snapshot, ray, 4096);
+    checks.add("glowing fog, path", light.value.x, expected, 3 * light.error.x, "3 standard errors");
 }
 
 // Reflection and transmission of a slab, isotropic: factor = w/4 · ... (Chandrasekhar 1960); radiance = factor·μ0·E/π.
@@ -95,8 +95,8 @@ void check_slab(Checks& checks) {
         const Ray ray{vec3(0, row.below ? -2 : 3, 0), glm::normalize(direction), 100};
         checks.add(std::string("a slab ") + row.name + ", march", reference_light(snapshot, ray).radiance.x, row.factor,
                    1e-4 * row.factor, "1e-4");
-        const RayLight light = path_light(snapshot, ray, 1024, 1);
-        checks.add(std::string("a slab ") + row.name + ", path", light.value, row.factor, 3 * light.error,
+        const RayEstimate light = path_light(snapshot, ray, 1024, 1);
+        checks.add(std::string("a slab ") + row.name + ", path", light.value.x, row.factor, 3 * light.error.x,
                    "3 standard errors");
     }
 }
@@ -113,8 +113,8 @@ void check_airlight(Checks& checks) {
         const std::string name = "airlight, extinction " + std::to_string(row.extinction).substr(0, 3);
         const Ray ray{{0, 0, 0}, {0, 0, -1}, row.before + 60 / row.extinction};
         checks.add(name + ", march", reference_light(snapshot, ray).radiance.x, row.value, 1e-4 * row.value, "1e-4");
-        const RayLight light = path_light(snapshot, ray, 2048, 1);
-        checks.add(name + ", path", light.value, row.value, 3 * light.error, "3 standard errors");
+        const RayEstimate light = path_light(snapshot, ray, 2048, 1);
+        checks.add(name + ", path", light.value.x, row.value, 3 * light.error.x, "3 standard errors");
     }
 }
 }

@@ -2,7 +2,6 @@
 #include "measure/verify/rays.h"
 
 #include "base/error.h"
-#include "base/parallel.h"
 #include "base/random.h"
 #include "modes/mode.h"
 #include "scene/light.h"
@@ -50,33 +49,11 @@ Medium noise_medium(float extinction, Phase phase, vec3 albedo) {
     return medium;
 }
 
-RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int orders) {
-    constexpr int batches = 64;
+RayEstimate path_light(const Snapshot& snapshot, const Ray& ray, int samples, int orders) {
     Settings settings;
     settings.path.orders = orders;
     const ScatterFunction scatter = mode_of_all_orders().prepare(View{}, snapshot, settings, nullptr);
-    std::vector<double> means(batches, 0);
-    parallel_for(batches, [&](int64_t b) {
-        const uint32_t batch = static_cast<uint32_t>(b);
-        for (int first = 0; first < samples; first += 16) {
-            const size_t count = static_cast<size_t>(std::min(16, samples - first));
-            const std::vector<Ray> rays(count, ray);
-            uint32_t ids[16];
-            SamplePlace places[16];
-            Scatter results[16];
-            for (size_t i = 0; i < count; ++i) {
-                const uint32_t index = static_cast<uint32_t>(first) + static_cast<uint32_t>(i);
-                ids[i] = hash(index, batch, 77u), places[i] = {hash(batch, 78u), index};
-            }
-            scatter({rays, {ids, count}, {}, {}, {places, count}}, {results, count});
-            for (size_t i = 0; i < count; ++i) means[b] += (results[i].radiance + results[i].surface).x / samples;
-        }
-    });
-    RayLight light;
-    for (const double mean : means) light.value += mean / batches;
-    for (const double mean : means) light.error += (mean - light.value) * (mean - light.value);
-    light.error = std::sqrt(light.error / (batches * (batches - 1)));
-    return light;
+    return estimate_ray(scatter, ray, samples, [](const Scatter& s) { return s.radiance + s.surface; });
 }
 
 Scatter reference_light(const Snapshot& snapshot, const Ray& ray) {

@@ -1,7 +1,7 @@
 // Scenes without files and light along single rays, for checks. Internal to verify.
 #pragma once
 #include "integrate/gauss_legendre.h"
-#include "integrate/ray_batch.h"
+#include "integrate/ray_estimate.h"
 #include "measure/verify/verify.h"
 #include "modes/settings.h"
 #include "trace/small_scenes.h"
@@ -34,11 +34,8 @@ Medium noise_medium(float extinction, Phase phase = forward_phase(0), vec3 albed
 Medium grid_medium(float extinction, int voxels, const std::function<float(vec3)>& density);  // fills 0..1
 
 // --- light -------------------------------------------------------------------------------------------------------
-struct RayLight {
-    double value = 0, error = 0; // of the red channel; its standard error
-};
 // Light of fog and surfaces along a ray by the path tracer, from 64 batches of `samples` paths.
-RayLight path_light(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders);
+RayEstimate path_light(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders);
 
 // Light of the fog along a ray by the deterministic reference.
 Scatter reference_light(const Snapshot& snapshot, const Ray& ray);

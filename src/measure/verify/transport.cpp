@@ -13,8 +13,8 @@ namespace {
 const Box unit_box{vec3(0), vec3(1)};
 const Box slab{vec3(-1e4f, 0, -1e4f), vec3(1e4f, 1, 1e4f)};
 
-void add(Checks& checks, const std::string& name, const RayLight& light, double expected) {
-    checks.add(name, light.value, expected, 3 * light.error, "3 standard errors");
+void add(Checks& checks, const std::string& name, const RayEstimate& light, double expected) {
+    checks.add(name, light.value.x, expected, 3 * light.error.x, "3 standard errors");
 }
 
 void check_furnace(Checks& checks) {

@@ -53,4 +53,20 @@ std::vector<double> difference(const std::vector<Scatter>& a, const std::vector<
         result.push_back(luminance(a[i].radiance) - factor * luminance(b[i].radiance));
     return result;
 }
+
+vec3 all_light(const Scatter& s) { return s.radiance + s.surface; }
+
+vec3 fog_light(const Scatter& s) { return s.radiance; }
+
+vec3 surface_light(const Scatter& s) { return s.surface; }
+
+ScatterFunction path_mode(const Snapshot& snapshot, int orders) {
+    Settings settings;
+    settings.path.orders = orders;
+    return find_mode("path").prepare(View{}, snapshot, settings, nullptr);
+}
+
+RayEstimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders) {
+    return estimate_ray(path_mode(snapshot, orders), ray, samples, all_light);
+}
 }

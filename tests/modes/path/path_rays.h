@@ -1,6 +1,7 @@
-// The light of paths along many rays, each with random numbers of its own.
+// The light of paths along many rays, each with random numbers of its own, and along one ray many times.
 #pragma once
-#include "integrate/ray_batch.h"
+#include "integrate/ray_estimate.h"
+#include "modes/settings.h"
 
 #include <vector>
 
@@ -23,4 +24,12 @@ Mean mean_of(const std::vector<double>& values);
 
 // a - factor b, ray by ray.
 std::vector<double> difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b, double factor = 1);
+
+vec3 all_light(const Scatter& s);
+vec3 fog_light(const Scatter& s);
+vec3 surface_light(const Scatter& s);
+
+ScatterFunction path_mode(const Snapshot& snapshot, int orders = all_orders);
+
+RayEstimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders = all_orders);
 }

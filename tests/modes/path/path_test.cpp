@@ -1,6 +1,6 @@
 // The path tracer against closed forms, published values and conservation laws.
 #include "base/random.h"
-#include "modes/path/path_scenes.h"
+#include "modes/path/path_rays.h"
 #include "scene/light.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
@@ -17,14 +17,14 @@ namespace {
 constexpr double sigmas = 4.5; // a false alarm once in 150000 comparisons
 
 // Within sampling error of the expected value, and precise enough to tell.
-void expect_close(const Estimate& got, dvec3 expected, double precision, const std::string& what = {}) {
+void expect_close(const RayEstimate& got, dvec3 expected, double precision, const std::string& what = {}) {
     for (int c = 0; c < 3; ++c) {
         EXPECT_LT(std::abs(got.value[c] - expected[c]), sigmas * got.error[c] + 2e-6 * std::abs(expected[c]))
             << what << " got " << got.value[c] << " ± " << got.error[c] << ", expected " << expected[c];
         EXPECT_LT(got.error[c], precision * std::abs(expected[c]) + 1e-12) << what;
     }
 }
-void expect_close(const Estimate& got, double expected, double precision, const std::string& what = {}) {
+void expect_close(const RayEstimate& got, double expected, double precision, const std::string& what = {}) {
     expect_close(got, dvec3(expected), precision, what);
 }
 
@@ -99,7 +99,7 @@ struct SlabCase {
 };
 class PathSlab : public testing::TestWithParam<SlabCase> {};
 
-Estimate slab_share(const SlabCase& c, bool reflected, int samples) {
+RayEstimate slab_share(const SlabCase& c, bool reflected, int samples) {
     Medium fog = with_albedo(even_medium(c.depth, slab, forward_phase(c.g)), vec3(c.albedo));
     static Scene scene; // a black floor under the slab and the camera keeps light from below away
     if (scene.meshes.empty()) {
@@ -178,7 +178,7 @@ TEST(Path, SurfaceUnderFogIsItsClosedForm) {
     add_mesh(scene, floor_of(-0.5f, 100, 0));
     Snapshot snapshot = snapshot_of({even_medium(0.7f, slab)}, {sun_light({std::sqrt(0.75f), -0.5f, 0}, 3)});
     add_surfaces(scene, snapshot);
-    const Estimate got = estimate(path_mode(snapshot, 1), {{0, 4, 0}, {0, -1, 0}}, 64, surface_light);
+    const RayEstimate got = estimate_ray(path_mode(snapshot, 1), {{0, 4, 0}, {0, -1, 0}}, 64, surface_light);
     expect_close(got, dvec3(0.8, 0.4, 0.2) * (3 * 0.5 / M_PI * std::exp(-0.7 * 2 - 0.7)), 0.001);
 }
 
@@ -200,7 +200,7 @@ TEST(Path, LightBouncesBetweenSurfaces) {
 
 TEST(Path, GlowOnFogIsTheSameAimedAtOrFoundByChance) {
     // A glowing disc-like quad above a fog box; aiming is left out for BLEND materials, even opaque ones.
-    Estimate results[2];
+    RayEstimate results[2];
     for (const bool aimed : {false, true}) {
         Scene scene;
         scene.materials = {lambert(vec3(0), vec3(5, 3, 1))};
@@ -227,10 +227,10 @@ TEST(Path, BlendSurfacesLetTheirShareThrough) {
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     const Ray ray{{0.1f, 0.2f, 5}, {0, 0, -1}};
-    const Estimate got = estimate(path_mode(snapshot), ray, 16, all_light);
+    const RayEstimate got = estimate_ray(path_mode(snapshot), ray, 16, all_light);
     expect_close(got, 0.7 * 0.7 * std::exp(-2.0), 1e-5);
-    const Estimate passing =
-        estimate(path_mode(snapshot), ray, 16, [](const Scatter& s) { return vec3(s.transmittance); });
+    const RayEstimate passing =
+        estimate_ray(path_mode(snapshot), ray, 16, [](const Scatter& s) { return vec3(s.transmittance); });
     expect_close(passing, std::exp(-2.0), 1e-5);
 }
 
@@ -240,8 +240,8 @@ TEST(Path, GridOfOneValueIsEvenFog) {
     Medium grid = with_albedo(medium_of(full, 4), vec3(0.9f));
     const Medium even = with_albedo(even_medium(2, grid.bricks->bounds), vec3(0.9f));
     const Light light = sun_light({0.3f, -1, -0.2f});
-    const Estimate a = traced(snapshot_of({grid}, {light}), ray, 1024),
-                   b = traced(snapshot_of({even}, {light}), ray, 1024);
+    const RayEstimate a = traced(snapshot_of({grid}, {light}), ray, 1024),
+                      b = traced(snapshot_of({even}, {light}), ray, 1024);
     // The outermost half voxel of a grid fades out: its mass is the same to 3/32 of a percent only across the middle.
     EXPECT_NEAR(a.value.x, b.value.x, sigmas * std::hypot(a.error.x, b.error.x) + 0.02 * b.value.x);
 }
@@ -262,7 +262,7 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
     fine.march.step_voxels = 0.1f, fine.march.step_share = 1.0f / 4000;
     for (const vec3 origin : {vec3(0.4f, 0.45f, 3), vec3(0.7f, 0.8f, 3), vec3(0.1f, 0.3f, 3)}) {
         const Ray ray{origin, {0, 0, -1}, 5};
-        const Estimate got = estimate(path_mode(snapshot, 1), ray, 4096, fog_light);
+        const RayEstimate got = estimate_ray(path_mode(snapshot, 1), ray, 4096, fog_light);
         const dvec3 expected(marched(snapshot, fine, ray).radiance);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(got.value[c], expected[c], sigmas * got.error[c] + 0.002 * expected[c]) << got.error[c];
@@ -306,8 +306,8 @@ TEST(Path, LampVeryFarAwayIsASun) {
     Light lamp = point_light({0, 2e7f, 0}, 4e14f);
     Medium fog = noise_grid(3, forward_phase(0.4f));
     const Ray ray{{0.4f, 0.45f, 3}, {0, 0, -1}};
-    const Estimate far = traced(snapshot_of({fog}, {lamp}), ray, 512, 1),
-                   near = traced(snapshot_of({fog}, {sun_light({0, -1, 0})}), ray, 512, 1);
+    const RayEstimate far = traced(snapshot_of({fog}, {lamp}), ray, 512, 1),
+                      near = traced(snapshot_of({fog}, {sun_light({0, -1, 0})}), ray, 512, 1);
     EXPECT_NEAR(far.value.x, near.value.x, sigmas * std::hypot(far.error.x, near.error.x));
     EXPECT_LT(far.error.x, 0.02 * far.value.x);
 }

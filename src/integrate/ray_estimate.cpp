@@ -1,16 +1,10 @@
-#include "modes/path/path_scenes.h"
+#include "integrate/ray_estimate.h"
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "modes/mode.h"
-#include "scene/light.h"
-#include "scene/scene.h"
-#include "trace/occlusion/occluders.h"
-#include "trace/snapshot.h"
-#include "trace/view.h"
 
-namespace tyndall::test {
-Estimate estimate(const ScatterFunction& scatter, const Ray& ray, int samples,
+namespace tyndall {
+RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int samples,
                   const std::function<vec3(const Scatter&)>& part) {
     constexpr int batches = 64;
     std::vector<dvec3> means(batches, dvec3(0));
@@ -31,27 +25,10 @@ Estimate estimate(const ScatterFunction& scatter, const Ray& ray, int samples,
             for (size_t i = 0; i < count; ++i) means[b] += dvec3(part(results[i])) / static_cast<double>(samples);
         }
     });
-    Estimate result;
+    RayEstimate result;
     for (const dvec3& mean : means) result.value += mean / static_cast<double>(batches);
     for (const dvec3& mean : means) result.error += (mean - result.value) * (mean - result.value);
     result.error = glm::sqrt(result.error / static_cast<double>(batches * (batches - 1)));
     return result;
 }
-
-vec3 all_light(const Scatter& s) { return s.radiance + s.surface; }
-
-vec3 fog_light(const Scatter& s) { return s.radiance; }
-
-vec3 surface_light(const Scatter& s) { return s.surface; }
-
-ScatterFunction path_mode(const Snapshot& snapshot, int orders) {
-    Settings settings;
-    settings.path.orders = orders;
-    return find_mode("path").prepare(View{}, snapshot, settings, nullptr);
-}
-
-Estimate traced(const Snapshot& snapshot, const Ray& ray, int samples, int orders) {
-    return estimate(path_mode(snapshot, orders), ray, samples, all_light);
-}
-
 }
