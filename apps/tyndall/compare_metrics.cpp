@@ -67,8 +67,9 @@ Bound parsed_bound(const std::string& text) {
         if (metric.name == name && equals != text.npos)
             return {&metric, number_option("--fail-above", text.substr(equals + 1), 0, 1e300)};
     }
-    const std::string wrong = equals == text.npos ? "expected METRIC=VALUE; got '" + printable(text, 40) + "'"
-                                                  : "no metric '" + printable(name, 40) + "'";
-    fail(ExitCode::usage, "--fail-above", wrong + "; metrics: " + joined(names, ", "));
+    const std::string wrong = equals == text.npos
+                                  ? "expected METRIC=VALUE, as in rmse_rel=0.05; got '" + printable(text, 40) + "'"
+                                  : unknown_name("metric", name, names);
+    fail(ExitCode::usage, "--fail-above", wrong);
 }
 }

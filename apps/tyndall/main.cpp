@@ -55,12 +55,15 @@ constexpr const char* introduction = R"(Tyndall bakes fog, lights it and renders
 tyndall --help lists all commands; tyndall COMMAND --help explains one, with an example.
 )";
 
-constexpr const char* exit_codes =
-    R"(Exit codes: 0 done, 1 problems found (check), a limit exceeded (compare), a larger error than wanted (render),
-no mode that gets there (plan), a proof that failed (verify) or a mode that fails in silence (stress), 2 wrong
-command line, 3 input refused, 4 input missing or unreadable, 5 output could not be written, 6 done but some samples
-or pixels were not finite numbers, 33 out of memory, 69 no display or a processor without AVX2, 70 internal error,
-128+n stopped by signal n.)";
+std::string exit_code_help() {
+    std::string text = "Exit codes:\n";
+    for (const ExitCodeMeaning& row : exit_codes()) {
+        const std::string code = std::to_string(static_cast<int>(row.code));
+        const std::string number = row.code == ExitCode::stopped ? code + "+n" : code;
+        text += formatted("  %-6s %s\n", number.c_str(), wrapped(row.meaning, 109, 9).c_str());
+    }
+    return text;
+}
 
 struct GlobalTexts {
     std::string threads, progress;
@@ -97,7 +100,7 @@ int run(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "view") return start_viewer({argv + 2, argv + argc});
     const CommandLine program("tyndall", "Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.",
                               "tyndall " TYNDALL_VERSION, global_group);
-    program.footer(exit_codes);
+    program.footer(exit_code_help());
     Globals globals;
     GlobalTexts texts;
     add_globals(program, globals, texts);
@@ -137,5 +140,5 @@ int main(int argc, char** argv) {
     }
     if (!stop_signal) return code;
     say(formatted("stopped by signal %d; finished files are kept, --resume continues", static_cast<int>(stop_signal)));
-    return 128 + stop_signal;
+    return static_cast<int>(ExitCode::stopped) + stop_signal;
 }

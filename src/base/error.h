@@ -1,10 +1,12 @@
 // One exception for everything a user can cause: where it happened, what is wrong, and the exit code it means.
 #pragma once
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace tyndall {
+// What a process of the program ends with (exit_codes() says what each means).
 enum class ExitCode {
     ok = 0,
     differs = 1,
@@ -16,7 +18,15 @@ enum class ExitCode {
     out_of_memory = 33,
     no_display = 69,
     internal = 70,
+    stopped = 128, // plus the number of the signal
 };
+
+struct ExitCodeMeaning {
+    ExitCode code;
+    std::string_view meaning;
+};
+// The one table: --help and the docs derive from it.
+std::span<const ExitCodeMeaning> exit_codes();
 
 class Error : public std::runtime_error {
 public:

@@ -1,8 +1,11 @@
 #include "base/text.h"
 
+#include "base/error.h"
+
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 
 namespace tyndall {
 namespace {
@@ -62,6 +65,17 @@ std::string count_text(uint64_t count, std::string_view noun) {
     return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
 }
 
+std::string wrapped(std::string_view text, size_t width, size_t indent) {
+    std::string result;
+    while (text.size() > width) {
+        const size_t space = text.rfind(' ', width);
+        if (space == text.npos || space == 0) break;
+        result += std::string(text.substr(0, space)) + "\n" + std::string(indent, ' ');
+        text.remove_prefix(space + 1);
+    }
+    return result + std::string(text);
+}
+
 std::string quoted_for_shell(std::string_view word) {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%";
     if (!word.empty() && word.find_first_not_of(plain) == word.npos) return std::string(word);
@@ -77,5 +91,23 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
     };
     const auto best = std::min_element(candidates.begin(), candidates.end(), nearer);
     return best == candidates.end() ? std::string() : *best;
+}
+
+std::string unknown_name(std::string_view kind, std::string_view name, const std::vector<std::string>& known) {
+    constexpr size_t longest_list = 32, most_near = 3;
+    const std::string_view start = name.substr(0, 64);
+    std::vector<std::string> near;
+    size_t fewest = std::numeric_limits<size_t>::max();
+    for (const std::string& candidate : known) {
+        const size_t edits = edit_distance(start, candidate);
+        if (2 * edits > std::max(start.size(), candidate.size()) || edits > fewest) continue;
+        if (edits < fewest) near.clear();
+        fewest = edits, near.push_back(candidate);
+    }
+    if (near.size() > most_near) near.resize(most_near);
+    std::string text = "no " + std::string(kind) + " '" + printable(name, 60) + "'";
+    if (!near.empty()) return text + "; did you mean " + joined(near, " or ") + "?";
+    if (known.empty()) return text + "; there is none";
+    return known.size() > longest_list ? text : text + "; there is " + joined(known, ", ");
 }
 }

@@ -16,8 +16,14 @@ std::string seconds_text(double seconds);
 std::string bytes_text(double bytes);
 std::string count_text(uint64_t count, std::string_view noun);
 
+// Lines of at most `width` bytes, broken at spaces; all but the first begin with `indent` spaces.
+std::string wrapped(std::string_view text, size_t width, size_t indent);
+
 // A word as a POSIX shell reads it back: as it is, or in single quotes.
 std::string quoted_for_shell(std::string_view word);
+
+// "no camera 'mian'; did you mean main?", or what there is when nothing is near and the list is short.
+std::string unknown_name(std::string_view kind, std::string_view name, const std::vector<std::string>& known);
 
 // The candidate with the fewest edits (insert, delete, replace, swap of neighbours) from `name`; the first on a tie.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);

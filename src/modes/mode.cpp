@@ -19,7 +19,7 @@ const Mode& find_mode(std::string_view name) {
         if (mode.name == name) return mode;
         names.emplace_back(mode.name);
     }
-    fail(ExitCode::usage, "--mode", "no mode '" + printable(name, 40) + "'; there is " + joined(names, ", "));
+    fail(ExitCode::usage, "", unknown_name("mode", name, names));
 }
 
 bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }

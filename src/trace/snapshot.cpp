@@ -136,7 +136,7 @@ int find_camera(const Scene& scene, const std::string& name) {
     for (const CameraSource& camera : scene.cameras) names.push_back(camera.name);
     for (size_t i = 0; i < names.size(); ++i)
         if (names[i] == name) return static_cast<int>(i);
-    fail(ExitCode::usage, "camera", "no \"" + name + "\" here; there is " + joined(names, ", "));
+    fail(ExitCode::usage, "camera", unknown_name("camera", name, names));
 }
 
 Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }

@@ -172,7 +172,8 @@ class Limits(Compare):
         self.assertIn("rmse_rel is 0.25; the limit is 0.1", run("compare", *self.pair, "--fail-above", "rmse_rel=0.1").stderr)
 
     def test_unknown_metrics_and_values(self):
-        self.refuse(2, ["rmsd", "rmse_rel", "flip", "flicker"], "compare", *self.pair, "--fail-above", "rmsd=1")
+        self.refuse(2, ["did you mean rmse?"], "compare", *self.pair, "--fail-above", "rmsd=1")
+        self.refuse(2, ["rmse_rel", "flip", "flicker"], "compare", *self.pair, "--fail-above", "loudness=1")
         for bound in ["rmse_rel", "rmse_rel=", "rmse_rel=x", "rmse_rel=-1", "rmse_rel=nan", "=1", "ssim=0.9"]:
             self.refuse(2, ["--fail-above"], "compare", *self.pair, "--fail-above", bound)
         for metric in ["flicker", "mse_unbiased", "bias_squared"]:

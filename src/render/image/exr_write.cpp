@@ -169,7 +169,7 @@ void check_layer_names(const ExrOptions& options) {
     const std::vector<std::string>& known = layer_names();
     for (const std::string& name : options.layers)
         if (std::ranges::find(known, name) == known.end())
-            fail(ExitCode::usage, "--aov", "no layer '" + printable(name, 40) + "'; there is " + joined(known, ", "));
+            fail(ExitCode::usage, "--aov", unknown_name("layer", name, known));
 }
 
 std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options) {

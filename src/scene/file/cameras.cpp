@@ -72,8 +72,6 @@ void read_cameras(const Field& root, Scene& scene) {
     }
     scene.camera = index_of(scene, chosen.json->string);
     if (scene.camera >= 0) return;
-    const std::vector<std::string> names = camera_names(scene);
-    refuse(chosen, "there is no camera of this name; " +
-                       (names.empty() ? std::string("the scene has none") : "there are: " + joined(names, ", ")));
+    refuse(chosen, unknown_name("camera", chosen.json->string, camera_names(scene)));
 }
 }

@@ -1,4 +1,5 @@
 // Lights of a scene file: new ones, and changes to those of the glTF.
+#include "base/text.h"
 #include "scene/file/scene_file.h"
 
 namespace tyndall {
@@ -72,6 +73,12 @@ void read_fields(const Field& field, LightSource& light) {
                "outer_cone must not be less than inner_cone, at any moment");
 }
 
+std::vector<std::string> light_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const LightSource& light : scene.lights) names.push_back(light.name);
+    return names;
+}
+
 LightSource* find(Scene& scene, const std::string& name) {
     for (LightSource& light : scene.lights)
         if (light.name == name) return &light;
@@ -132,7 +139,8 @@ void read_billboards(const Field& root, Scene& scene) {
         Billboard card;
         card.name = field.json->string_or("name", "billboard " + std::to_string(i + 1));
         card.light = field.member("light").json->string;
-        if (!find(scene, card.light)) refuse(field.member("light"), "there is no light of this name");
+        if (!find(scene, card.light))
+            refuse(field.member("light"), unknown_name("light", card.light, light_names(scene)));
         card.from = read_vector(field.member("from")), card.to = read_vector(field.member("to"));
         if (card.from == card.to) refuse(field.member("to"), "is the same point as from");
         if (const Field width = field.member("width_from")) card.width_from = read_number(width);

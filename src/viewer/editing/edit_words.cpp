@@ -8,6 +8,10 @@
 
 namespace tyndall {
 namespace {
+std::string_view word_of(Part part) {
+    return part == Part::light ? "light" : part == Part::medium ? "medium" : part == Part::camera ? "camera" : "scene";
+}
+
 size_t index_of(const Scene& scene, Part part, std::string_view token, std::string_view path) {
     const std::string name = json_pointer_key(token);
     std::vector<size_t> found;
@@ -23,8 +27,7 @@ size_t index_of(const Scene& scene, Part part, std::string_view token, std::stri
     size_t index = 0;
     const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
     if (error == std::errc() && end == token.data() + token.size() && index < names.size()) return index;
-    fail(ExitCode::usage, path,
-         "there is no \"" + name + "\"; there is " + (names.empty() ? "none" : joined(names, ", ")));
+    fail(ExitCode::usage, path, unknown_name(word_of(part), name, names));
 }
 
 Part part_of(std::string_view list) {

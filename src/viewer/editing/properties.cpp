@@ -145,7 +145,7 @@ const Property& find_property(const Scene& scene, Part part, size_t index, std::
     }
     fail(ExitCode::usage, place_of(scene, part, index),
          names.empty() ? "nothing of it can be changed here: it belongs to the glTF"
-                       : "no \"" + std::string(name) + "\" here; there is " + joined(names, ", "));
+                       : unknown_name("property", name, names));
 }
 
 size_t count_of(const Scene& scene, Part part) {

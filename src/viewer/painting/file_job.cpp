@@ -99,12 +99,8 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
     const Scene& scene = loaded_scene(state);
     const auto found =
         std::ranges::find_if(scene.media, [&](const MediumSource& one) { return one.recipe && one.name == medium; });
-    if (found == scene.media.end()) {
-        const std::vector<std::string> names = bakeable_media(scene);
-        fail(ExitCode::usage, "bake",
-             "no medium '" + printable(medium, 40) + "' that is grown from a recipe; " +
-                 (names.empty() ? "there is none here" : "there is " + joined(names, ", ")));
-    }
+    if (found == scene.media.end())
+        fail(ExitCode::usage, "bake", unknown_name("medium made from a recipe", medium, bakeable_media(scene)));
     BakeFiles files{*found->recipe, output, frames_of(scene, range)};
     check_pattern(output, ".vdb", files.frames.size() > 1, "bake");
     if (found->voxel_size > 0) files.recipe.voxel_size = found->voxel_size;

@@ -157,9 +157,7 @@ Action parse_action(std::string_view text, const std::string& place) {
         names.emplace_back(info.name);
         if (info.name == words[0]) found = &info;
     }
-    if (!found)
-        refuse(place,
-               "no action '" + printable(words[0], 40) + "'; did you mean " + nearest_name(words[0], names) + "?");
+    if (!found) refuse(place, unknown_name("action", words[0], names));
 
     Action action{found->verb, {}, {}, place};
     const std::string usage =

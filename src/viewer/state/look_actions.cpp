@@ -22,8 +22,7 @@ void set_wipe(ViewState& state, const Action& action) {
 void set_shown(ViewState& state, const Action& action) {
     const auto& names = shown_layer_names();
     const auto found = std::ranges::find(names, action.words[0]);
-    if (found == names.end())
-        fail(ExitCode::usage, "show", "no '" + printable(action.words[0], 40) + "'; there is " + joined(names, ", "));
+    if (found == names.end()) fail(ExitCode::usage, "show", unknown_name("layer", action.words[0], names));
     state.shown.layer = static_cast<ShownLayer>(found - names.begin());
     ++state.shown_revision;
 }
@@ -59,8 +58,7 @@ void set_medium(ViewState& state, const Action& action) {
     std::vector<std::string> names;
     for (const MediumSource& medium : loaded_scene(state).media) names.push_back(medium.name);
     if (!std::ranges::count(names, action.words[0]))
-        fail(ExitCode::usage, "medium",
-             "no '" + printable(action.words[0], 40) + "' here; there is " + joined(names, ", "));
+        fail(ExitCode::usage, "medium", unknown_name("medium", action.words[0], names));
     state.volume.medium = action.words[0], state.volume_shown = true;
     ++state.shown_revision;
 }

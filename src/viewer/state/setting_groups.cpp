@@ -37,7 +37,7 @@ const SettingRow& find_row(std::string_view name) {
         if (row.name == name) return row;
         names.push_back(row.name);
     }
-    fail(ExitCode::usage, printable(name, 60), "no such setting; did you mean " + nearest_name(name, names) + "?");
+    fail(ExitCode::usage, "set", unknown_name("setting", name, names));
 }
 
 SliderRange slider_range(const SettingRow& row, double usual, double value) {
