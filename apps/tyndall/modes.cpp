@@ -10,15 +10,14 @@ constexpr Quality qualities[] = {Quality::draft, Quality::preview, Quality::fina
 
 std::string range_of(const SettingRow& row) {
     if (row.choices.empty()) return formatted("%g to %g", row.low, row.high);
-    std::string text;
-    for (const std::string& choice : row.choices) text += (text.empty() ? "" : "|") + choice;
-    return text;
+    return joined(row.choices, "|");
 }
 
 Json json_of_row(const SettingRow& row) {
     Json result = json_object({{"name", json_of(std::string_view(row.name))},
                                {"unit", json_of(std::string_view(row.unit))},
-                               {"doc", json_of(std::string_view(row.doc))}});
+                               {"doc", json_of(std::string_view(row.doc))},
+                               {"advanced", json_of(row.advanced)}});
     if (row.choices.empty()) {
         result.members.emplace_back("low", json_of(row.low));
         result.members.emplace_back("high", json_of(row.high));
@@ -30,41 +29,75 @@ Json json_of_row(const SettingRow& row) {
     for (const Quality quality : qualities)
         values.emplace_back(std::string(name_of(quality)), row.get(settings_for(quality)));
     result.members.emplace_back("values", json_of(values));
+    std::vector<std::string> readers;
+    for (const Mode& mode : modes())
+        if (reads(mode, row.name)) readers.emplace_back(mode.name);
+    result.members.emplace_back("modes", json_of(readers));
     return result;
 }
 
-std::string modes_json() {
-    std::vector<Json> techniques, rows;
-    for (const Mode& mode : modes())
-        techniques.push_back(json_object({{"name", json_of(mode.name)},
-                                          {"promise", json_of(name_of(mode.accuracy))},
-                                          {"summary", json_of(mode.summary)}}));
-    for (const SettingRow& row : setting_rows()) rows.push_back(json_of_row(row));
-    return format_json(json_object({{"modes", json_array(techniques)}, {"settings", json_array(rows)}})) + "\n";
+std::string modes_json(std::span<const Mode* const> shown, const std::vector<SettingRow>& rows) {
+    std::vector<Json> techniques, settings;
+    for (const Mode* mode : shown)
+        techniques.push_back(json_object({{"name", json_of(mode->name)},
+                                          {"promise", json_of(name_of(mode->accuracy))},
+                                          {"summary", json_of(mode->summary)},
+                                          {"use", json_of(mode->use)}}));
+    for (const SettingRow& row : rows) settings.push_back(json_of_row(row));
+    return format_json(json_object({{"modes", json_array(techniques)}, {"settings", json_array(settings)}})) + "\n";
 }
 
-std::string modes_text() {
-    std::string text = "Modes (tyndall render --mode NAME), what each promises and how it works:\n";
-    for (const Mode& mode : modes())
-        text += formatted("  %-12s %-20s %s\n", std::string(mode.name).c_str(),
-                          std::string(name_of(mode.accuracy)).c_str(), std::string(mode.summary).c_str());
-    text += "\nSettings (--set NAME=VALUE) and their values at each --quality:\n" + formatted("  %-25s", "");
+std::string rows_text(const std::vector<SettingRow>& rows) {
+    std::string text = "\nSettings (--set NAME=VALUE) and their values at each --quality:\n" + formatted("  %-25s", "");
     for (const Quality quality : qualities) text += formatted(" %15s", std::string(name_of(quality)).c_str());
     text += "\n";
-    for (const SettingRow& row : setting_rows()) {
+    for (const SettingRow& row : rows) {
         text += formatted("  %-25s", row.name.c_str());
         for (const Quality quality : qualities) text += formatted(" %15s", row.get(settings_for(quality)).c_str());
-        text += "\n      " + row.doc + " (" + range_of(row) + (row.unit.empty() ? "" : " " + row.unit) + ")\n";
+        text += "\n      " +
+                wrapped(row.doc + " (" + range_of(row) + (row.unit.empty() ? "" : " " + row.unit) + ")", 113, 6) + "\n";
     }
     return text;
+}
+
+std::string table_text() {
+    std::string text = "Modes (tyndall render --mode NAME), what each promises and how it works:\n";
+    for (const Mode& mode : modes())
+        text += formatted("  %-13s %-20s %s\n", std::string(mode.name).c_str(),
+                          std::string(name_of(mode.accuracy)).c_str(), std::string(mode.summary).c_str());
+    return text + "\ntyndall modes NAME tells what one is for, and which settings it reads.\n";
+}
+
+std::string mode_text(const Mode& mode) {
+    const auto line = [](const char* what, std::string_view text) {
+        return formatted("  %-10s ", what) + wrapped(text, 106, 13) + "\n";
+    };
+    return std::string(mode.name) + "\n" + line("how", mode.summary) + line("promises", name_of(mode.accuracy)) +
+           line("use it", "for " + std::string(mode.use)) +
+           (mode.remembers ? line("--history", "lets it use the frames before") : "") +
+           (mode.adds_fluence ? line("--orders", "adds light that has scattered before to single scattering") : "");
 }
 }
 
 Run add_modes(const Command& program) {
     const Command command = program.command("modes", "the rendering techniques and their settings");
-    command.footer("Example: all settings as JSON, for a script\n  tyndall modes --json");
-    return [](const Globals& globals) {
-        print_report(globals.json ? modes_json() : modes_text());
+    const auto name = std::make_shared<std::string>();
+    command.option("MODE", *name, "only this one, and the settings it reads (default: all)", "");
+    command.footer("Example: what froxel is for, and its settings\n  tyndall modes froxel\n"
+                   "Example: all settings as JSON, for a script\n  tyndall modes --json");
+    return [name](const Globals& globals) {
+        std::vector<const Mode*> shown;
+        std::vector<SettingRow> rows = setting_rows();
+        if (name->empty()) {
+            for (const Mode& mode : modes()) shown.push_back(&mode);
+        } else {
+            shown.push_back(&find_mode(*name));
+            std::erase_if(rows, [&](const SettingRow& row) { return !reads(*shown[0], row.name); });
+        }
+        if (globals.json)
+            print_report(modes_json(shown, rows));
+        else
+            print_report((name->empty() ? table_text() : mode_text(*shown[0])) + rows_text(rows));
         return 0;
     };
 }

@@ -44,7 +44,8 @@ struct Rung {
 
 // A technique: all that is true of it alone.
 struct Mode {
-    std::string_view name, summary;
+    std::string_view name, summary; // summary: how it works
+    std::string_view use;           // what to take it for
     Accuracy accuracy;
     Surfaces surfaces;
     Limitations (*limitations)(const View&, const Snapshot&, const Settings&);

@@ -46,6 +46,7 @@ std::vector<Rung> rungs() {
 Mode mist_mode() {
     return {.name = "mist",
             .summary = "fog of one brightness",
+            .use = "testing that the table is all there is to a technique",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,
             .limitations = limitations,

@@ -176,6 +176,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
 Mode froxel_mode() {
     return {.name = "froxel",
             .summary = "fog light cached in voxels of the view frustum: previews at interactive rates",
+            .use = "interactive previews, and fog while lights and camera move",
             .accuracy = Accuracy::single_scattering,
             .surfaces = Surfaces::shared,
             .limitations = froxel_limitations,

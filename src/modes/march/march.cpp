@@ -71,7 +71,8 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
 
 Mode march_mode() {
     return {.name = "march",
-            .summary = "ray march through all fog with shadow rays: the main renderer",
+            .summary = "ray marching between exact shadow boundaries: the main renderer",
+            .use = "final frames, and any scene until another mode is measured to be better",
             .accuracy = Accuracy::single_scattering,
             .surfaces = Surfaces::shared,
             .limitations = march_limitations,

@@ -34,7 +34,8 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
 
 Mode path_mode() {
     return {.name = "path",
-            .summary = "unbiased path tracing of all scattered light: the truth, with noise",
+            .summary = "unbiased path tracing of all scattered light: the ground truth, with noise",
+            .use = "clouds and thick fog, where light scatters many times, and checking the other modes",
             .accuracy = Accuracy::multiple_scattering,
             .surfaces = Surfaces::own,
             .limitations = path_limitations,

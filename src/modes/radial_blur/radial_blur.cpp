@@ -64,6 +64,7 @@ PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const 
 Mode radial_blur_mode() {
     return {.name = "radial-blur",
             .summary = "brightness smeared away from the lights in the finished picture",
+            .use = "a quick effect over a finished image, with the light in or near the frame",
             .accuracy = Accuracy::look,
             .surfaces = Surfaces::post,
             .limitations = radial_blur_limitations,

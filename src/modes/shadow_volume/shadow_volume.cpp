@@ -39,6 +39,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
 Mode shadow_volume_mode() {
     return {.name = "shadow-volume",
             .summary = "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
+            .use = "a sun through gaps, without noise",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,
             .limitations = shadow_volume_limitations,

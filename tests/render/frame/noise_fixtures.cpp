@@ -13,7 +13,8 @@ ScatterFunction prepare_random(const View&, const Snapshot&, const Settings&, Hi
 }
 
 Mode own_mode(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*)) {
-    return {"own", "shades surfaces itself", Accuracy::multiple_scattering, Surfaces::own, no_limitations, prepare};
+    return {"own",         "shades surfaces itself", "tests", Accuracy::multiple_scattering,
+            Surfaces::own, no_limitations,           prepare};
 }
 
 View batched_view(ivec2 size, int samples, int batches) {
