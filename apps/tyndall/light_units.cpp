@@ -22,9 +22,12 @@ double unitless_value(const LightSource& light, double intensity) {
     return light.kind == LightKind::sun ? intensity : intensity * sphere;
 }
 
+// 0 for a light of the scene file, whose unit is known.
+double exported(const LightSource& light) { return light.node < 0 ? 0 : light.intensity.at(0); }
+
 bool all_typed(const Scene& scene, double (*value)(const LightSource&, double)) {
     for (const LightSource& light : scene.lights) {
-        const double intensity = light.intensity.at(0);
+        const double intensity = exported(light);
         if (intensity > 0 && !typed(value(light, intensity))) return false;
     }
     return true;
@@ -34,7 +37,7 @@ bool all_typed(const Scene& scene, double (*value)(const LightSource&, double)) 
 std::string light_units_hint(const Scene& scene) {
     bool any_local = false, any = false, all_large = true;
     for (const LightSource& light : scene.lights) {
-        const float intensity = light.intensity.at(0);
+        const double intensity = exported(light);
         if (!(intensity > 0)) continue;
         any = true;
         any_local |= light.kind != LightKind::sun;
