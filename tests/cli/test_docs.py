@@ -2,6 +2,7 @@
 import os
 import re
 import subprocess
+import sys
 import unittest
 
 from program import SOURCE, TYNDALL, ProgramTest
@@ -12,7 +13,7 @@ ELSEWHERE = re.compile(r"tyndall (view|COMMAND|--help)")  # the viewer has tests
 
 
 def pages():
-    return [SOURCE / "README.md", *sorted((SOURCE / "docs").glob("*.md"))]
+    return [SOURCE / "README.md", *sorted((SOURCE / "docs").rglob("*.md"))]
 
 
 def commands():
@@ -42,6 +43,16 @@ class Docs(ProgramTest):
     @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
     def test_long_commands(self):
         self.run_commands(True)
+
+    def check_written(self, *command):
+        result = subprocess.run([sys.executable, *command, "--check"], capture_output=True, text=True)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+    def test_references_are_those_of_the_tables(self):
+        self.check_written(SOURCE / "docs/make_reference.py", TYNDALL)
+
+    def test_the_architecture_is_that_of_the_includes(self):
+        self.check_written(SOURCE / "docs/make_architecture.py")
 
     def test_links_and_pictures_are_there(self):
         for page in pages():
