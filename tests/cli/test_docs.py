@@ -1,6 +1,9 @@
 """Every command in README.md and docs runs as it stands there. The long ones run with TYNDALL_NIGHTLY=1."""
 import os
+import pathlib
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 import unittest
@@ -8,7 +11,7 @@ import unittest
 from program import SOURCE, TYNDALL, ProgramTest
 
 # What takes longer than a few seconds on two cores, or wants a display.
-LONG = re.compile(r"tyndall (bake|chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--orders all")
+LONG = re.compile(r"tyndall (chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--samples [0-9]{3}|--orders all")
 ELSEWHERE = re.compile(r"tyndall (view|COMMAND|--help)")  # the viewer has tests of its own
 
 
@@ -21,13 +24,14 @@ def commands():
     for page in pages():
         for line in page.read_text().splitlines():
             if line.startswith("    tyndall ") and not ELSEWHERE.search(line):
-                yield page.name, re.split(r"\s#\s", line)[0].split()
+                yield page.name, shlex.split(re.split(r"\s#\s", line)[0])
 
 
 class Docs(ProgramTest):
     def setUp(self):
         super().setUp()
-        for name in ("scenes", "volumes"):
+        self.path("out").mkdir()
+        for name in ("scenes", "volumes", "docs"):
             os.symlink(SOURCE / name, self.path(name))
 
     def run_commands(self, long):
@@ -43,6 +47,35 @@ class Docs(ProgramTest):
     @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
     def test_long_commands(self):
         self.run_commands(True)
+
+    def test_the_array_job_renders_its_frames(self):
+        scripts = re.findall(r"^```bash\n(.*?)^```", (SOURCE / "docs/farm.md").read_text(), re.M | re.S)
+        self.assertEqual(len(scripts), 2)
+        places = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_CPUS_PER_TASK": "2",
+                  "PATH": f"{pathlib.Path(TYNDALL).parent}:{os.environ['PATH']}"}
+        for script in scripts:
+            result = subprocess.run(["bash", "-ec", script], cwd=self.directory, env={**os.environ, **places},
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(self.path("out/shot.0008.exr").exists())
+
+    @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
+    @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb-run is not installed")
+    def test_scripts_of_the_viewer(self):
+        scripts = re.findall(r"^    tyndall (view .*--script \S+)", (SOURCE / "docs/viewer.md").read_text(), re.M)
+        self.assertGreater(len(scripts), 1)
+        for words in scripts:
+            subprocess.run(["xvfb-run", "-a", "-s", "-screen 0 1280x800x24", TYNDALL, *words.split()], cwd=self.directory,
+                           check=True, capture_output=True, timeout=300)
+
+    def test_each_picture_stands_beside_its_command(self):
+        made = set(re.findall(r"# docs/images/(\S+)$", "".join(page.read_text() for page in pages()), re.M))
+        for page in pages():
+            text = page.read_text()
+            for name in re.findall(r"!\[[^]]*\]\([^)]*images/([^)]+)\)", text):
+                script = re.match(r"(chart|modes|architecture)", name)
+                command = script and "\n    python3 docs/make_" + script[1]
+                self.assertTrue(name in made or (command and command in text), f"{page.name}: what makes {name}?")
 
     def check_written(self, *command):
         result = subprocess.run([sys.executable, *command, "--check"], capture_output=True, text=True)

@@ -1,0 +1,60 @@
+"""Makes the pictures of README.md and docs anew, each with the command that stands beside it: a line that ends in
+"# docs/images/NAME".
+
+    python3 docs/make_pictures.py build/release/tyndall [NAME...]      # window.png, or all of them
+
+Wants python3-pil; pictures of the viewer want xvfb-run. Charts and tables of modes have scripts of their own: make_charts.py, make_modes.py.
+"""
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+PICTURE = re.compile(r"^    (tyndall .*?)\s+# docs/images/(\S+)$", re.M)
+
+
+def commands():
+    """Picture and command of every such line."""
+    for page in [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for command, picture in PICTURE.findall(page.read_text()):
+            yield picture, shlex.split(command)
+
+
+def make(tyndall, picture, words, directory):
+    """Runs a command in a directory that looks like the repository, and takes what it wrote to out/ under its name."""
+    shown = words[1] == "view"
+    subprocess.run([*(["xvfb-run", "-a", "-s", "-screen 0 1280x800x24"] if shown else []), tyndall, *words[1:]],
+                   cwd=directory, check=True, stdout=subprocess.DEVNULL)
+    stem, extension = picture.rsplit(".", 1)
+    made = [directory / f"out/{stem}.{extension}", directory / f"out/{stem}.modes.{extension}"]
+    written, kept = next(path for path in made if path.exists()), ROOT / "docs/images" / picture
+    if extension == "png":
+        Image.open(written).convert("RGB").quantize(256).save(kept, optimize=True)  # a third of the bytes
+    else:
+        shutil.copyfile(written, kept)
+
+
+def main():
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    tyndall, wanted = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2:]
+    with tempfile.TemporaryDirectory() as name:
+        directory = pathlib.Path(name)
+        (directory / "out").mkdir()
+        for folder in ("scenes", "volumes", "docs"):
+            os.symlink(ROOT / folder, directory / folder)
+        for picture, words in commands():
+            if not wanted or picture in wanted:
+                print(picture, flush=True)
+                make(tyndall, picture, words, directory)
+
+
+if __name__ == "__main__":
+    main()
