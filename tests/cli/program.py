@@ -52,7 +52,7 @@ def scene(**changes):
         "resolution": [64, 36],
         "camera": {"position": [0, 0.6, 3], "target": [0, 0.4, 0]},
         "lights": [{"name": "sun", "type": "sun", "direction": [-0.6, -0.7, -0.3], "intensity": 10}],
-        "media": [{"type": "homogeneous", "extinction": 0.1}],
+        "media": [{"type": "homogeneous", "extinction": 0.1, "bounds": {"low": [-50, -50, -50], "high": [50, 50, 50]}}],
         "background": {"color": [0.1, 0.2, 0.3]},
     }
     content.update(changes)

@@ -29,6 +29,20 @@ class Render(ProgramTest):
             with self.subTest(text=text[:20]):
                 self.refuse_scene(3, [], text)
 
+    def test_files_of_another_kind_are_told_what_they_are_for(self):
+        fog, room = self.write("fog.json", recipe()), self.write("room.json", scene())
+        self.refuse(3, [fog, "is a fog recipe, not a scene"], "render", fog, "-o", self.path("a.exr"))
+        self.refuse(3, [room, "is a scene, not a fog recipe"], "bake", room, "-o", self.path("a.vdb"))
+        blend = self.write("room.blend", "BLENDER")
+        self.refuse(3, [blend, "export the scene as glTF"], "render", blend, "-o", self.path("a.exr"))
+
+    def test_a_sun_outside_endless_fog_is_told(self):
+        dark = self.write("dark.json", scene(media=[{"name": "haze", "type": "homogeneous", "extinction": 0.1}]))
+        result = run("check", dark)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn("medium haze fills all space, so that no light of sun gets through", result.stdout)
+        self.assertEqual(run("check", self.write("lit.json", scene())).returncode, 0)
+
     def test_unknown_keys_get_a_hint(self):
         self.refuse_scene(3, ["lihgts", "lights"], scene(lihgts=[]))
         self.refuse_scene(3, ["/media/0", "extintion", "extinction"],
@@ -257,7 +271,7 @@ class Memory(ProgramTest):
             resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))
 
         path = self.write("scene.json", scene(frames="1", resolution=[16384, 16384]))
-        result = run("render", path, "-o", self.path("out.exr"), "--quality", "draft", "--threads", "1",
+        result = run("render", path, "-o", self.path("out.exr"), "--quality", "draft", "--threads", "1", "-q",
                      preexec_fn=limit)
         self.check_refusal(result, 33)
         self.assertEqual(self.files(), ["scene.json"])

@@ -28,7 +28,8 @@ class Verify(ProgramTest):
             self.assertLessEqual(abs(check["measured"] - check["expected"]), check["tolerance"])
 
     def test_fog_without_bounds_has_no_furnace(self):
-        result = self.succeed("verify", self.write("endless.json", scene()), *self.small)
+        result = self.succeed("verify", self.write("endless.json", scene(media=[{"type": "homogeneous", "extinction": 0.1}])),
+                              *self.small)
         self.assertNotIn("white furnace", result.stdout)
         self.assertIn("two methods", result.stdout)
 

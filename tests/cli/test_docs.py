@@ -35,7 +35,8 @@ class Docs(ProgramTest):
             os.symlink(SOURCE / name, self.path(name))
 
     def run_commands(self, long):
-        found = [(page, words) for page, words in commands() if bool(LONG.search(" ".join(words))) == long]
+        """The quick ones; with the long ones, which use what those write, all of them."""
+        found = [(page, words) for page, words in commands() if long or not LONG.search(" ".join(words))]
         self.assertGreater(len(found), 5)
         for page, words in found:
             result = subprocess.run([TYNDALL, *words[1:]], cwd=self.directory, capture_output=True, text=True)

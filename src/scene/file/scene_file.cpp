@@ -53,6 +53,17 @@ bool is_dark(const Scene& scene) {
            std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
 }
 
+// A sun is infinitely far away: homogeneous fog without end lets none of its light through.
+void warn_of_endless_fog(Scene& scene) {
+    const auto sun =
+        std::ranges::find_if(scene.lights, [](const LightSource& light) { return light.kind == LightKind::sun; });
+    if (sun == scene.lights.end()) return;
+    for (const MediumSource& medium : scene.media)
+        if (medium.kind == MediumKind::homogeneous && !is_finite(medium.bounds.low) && medium.extinction.at(0) > 0)
+            warn(scene, scene.file.string() + ": medium " + medium.name + " fills all space, so that no light of " +
+                            sun->name + " gets through; give it \"bounds\"");
+}
+
 void read_scene_document(const Json& document, Scene& scene, const LoadOptions& options) {
     const Field root{&document, scene.file.string(), ""};
     read_general(root, scene);
@@ -68,6 +79,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
     read_background(root, scene);
     read_billboards(root, scene);
     if (is_dark(scene)) warn(scene, root.file + ": there is no light: everything will be black");
+    warn_of_endless_fog(scene);
 }
 }
 
@@ -101,11 +113,17 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     const std::string extension = lower_extension(file);
     if (extension == ".vdb")
         refuse(file.string(), "is a volume, not a scene; name it in the \"media\" of a scene file");
+    for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
+        if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
     if (extension == ".gltf" || extension == ".glb") {
         load_gltf(file, options, scene);
         add_missing_light_and_fog(scene);
     } else {
-        const Json document = read_json(scene.file, scene_schema);
+        const Json document = parse_json(read_file(file), file.string());
+        if (document.has("bounds") && document.has("voxel_size"))
+            refuse(file.string(),
+                   "is a fog recipe, not a scene; name it as \"recipe\" in the \"media\" of a scene file");
+        check_schema(document, scene_schema, file.string());
         add_input(scene, scene.file);
         read_scene_document(document, scene, options);
     }

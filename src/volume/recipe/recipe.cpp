@@ -89,7 +89,10 @@ void check_bounds(const FogRecipe& recipe, const std::string& file) {
 }
 
 FogRecipe read_recipe(const std::filesystem::path& file) {
-    const Json document = read_json(file, recipe_schema);
+    const Json document = parse_json(read_file(file), file.string());
+    if (document.has("media") || document.has("gltf"))
+        refuse(file.string(), "is a scene, not a fog recipe; a recipe has \"bounds\" and \"voxel_size\"");
+    check_schema(document, recipe_schema, file.string());
     FogRecipe recipe;
     recipe.name = document.string_or("name", recipe.name);
     const Json& bounds = part(document, "bounds");
