@@ -21,7 +21,7 @@ RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int sam
                 ids[i] = hash(index, static_cast<uint32_t>(b), 77u);
                 places[i] = {hash(static_cast<uint32_t>(b), 78u), index};
             }
-            scatter({{rays, count}, {ids, count}, {}, {}, {places, count}}, {results, count});
+            scatter({.rays = {rays, count}, .ids = {ids, count}, .places = {places, count}}, {results, count});
             for (size_t i = 0; i < count; ++i) means[b] += dvec3(part(results[i])) / static_cast<double>(samples);
         }
     });

@@ -18,6 +18,25 @@ namespace {
 constexpr int tile_side = 4;
 constexpr uint32_t use_id = 0xf09u; // tells these random numbers from others
 
+// Rays put together to be computed.
+struct Asked {
+    size_t count = 0;
+    Ray rays[16];
+    uint32_t ids[16];
+    float jitter[16];
+    SamplePlace places[16];
+    vec2 positions[16];
+
+    RayBatch batch(std::span<vec3> per_light) const {
+        return {.rays = {rays, count},
+                .ids = {ids, count},
+                .per_light = per_light,
+                .jitter = {jitter, count},
+                .places = {places, count},
+                .positions = {positions, count}};
+    }
+};
+
 // From the eye to the first surface, or to the end of the fog.
 void find_lengths(const Snapshot& snapshot, const Camera& camera, std::span<Ray> rays) {
     Ray tested[16];
@@ -37,29 +56,25 @@ void compute_tile(const Snapshot& snapshot, const ScatterFunction& whole, ivec2 
     const View& view = picture.view;
     const ivec2 size = picture.fog.size, end = glm::min(corner + tile_side, size);
     ivec2 pixels[16];
-    Ray rays[16];
-    uint32_t ids[16];
-    float jitter[16];
-    SamplePlace places[16];
-    vec2 positions[16];
+    Asked asked;
     Scatter fog[16];
-    size_t count = 0;
+    size_t& count = asked.count;
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x, ++count) {
             pixels[count] = {x, y};
-            rays[count] = ray_through(picture, {x, y});
-            ids[count] = hash(static_cast<uint32_t>(y * size.x + x), view.seed, view.frame, use_id);
-            jitter[count] = to_unit(jitter_bits(view.jitter, {x, y}, view.frame, view.seed));
-            places[count] = {hash(ids[count], use_id), 0};
-            positions[count] = (vec2(x, y) + 0.5f) * vec2(view.size) / vec2(size);
+            asked.rays[count] = ray_through(picture, {x, y});
+            asked.ids[count] = hash(static_cast<uint32_t>(y * size.x + x), view.seed, view.frame, use_id);
+            asked.jitter[count] = to_unit(jitter_bits(view.jitter, {x, y}, view.frame, view.seed));
+            asked.places[count] = {hash(asked.ids[count], use_id), 0};
+            asked.positions[count] = (vec2(x, y) + 0.5f) * vec2(view.size) / vec2(size);
         }
-    find_lengths(snapshot, view.camera, {rays, count});
+    find_lengths(snapshot, view.camera, {asked.rays, count});
     const size_t lights = picture.per_light.size();
     std::vector<vec3> parts(lights * count, vec3(0));
-    whole({{rays, count}, {ids, count}, parts, {jitter, count}, {places, count}, {}, {positions, count}}, {fog, count});
+    whole(asked.batch(parts), {fog, count});
     for (size_t i = 0; i < count; ++i) {
         const auto [x, y] = std::pair(pixels[i].x, pixels[i].y);
-        picture.fog.at(x, y) = fog[i], picture.length.at(x, y) = rays[i].t_max;
+        picture.fog.at(x, y) = fog[i], picture.length.at(x, y) = asked.rays[i].t_max;
         for (size_t l = 0; l < lights; ++l) picture.per_light[l].at(x, y) = parts[i * lights + l];
     }
 }
@@ -89,7 +104,9 @@ void look_up(const FogPicture& picture, const ScatterFunction& whole, const RayB
              std::span<Scatter> results) {
     const vec2 scale = vec2(picture.fog.size) / vec2(picture.view.size);
     const size_t lights = batch.rays.empty() ? 0 : batch.per_light.size() / batch.rays.size();
-    size_t missed[16], count = 0;
+    size_t missed[16];
+    Asked asked;
+    size_t& count = asked.count;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         const Ray& ray = batch.rays[i];
         const bool known = !batch.positions.empty() && at_eye(picture.view.camera, ray);
@@ -104,31 +121,19 @@ void look_up(const FogPicture& picture, const ScatterFunction& whole, const RayB
     }
     if (count == 0) return;
 
-    Ray rays[16];
-    uint32_t ids[16];
-    float jitter[16];
-    SamplePlace places[16];
-    vec2 positions[16];
     Scatter fog[16];
     std::vector<vec3> parts(lights * count, vec3(0));
     for (size_t k = 0; k < count; ++k) {
         const size_t i = missed[k];
-        rays[k] = batch.rays[i], ids[k] = batch.ids[i];
-        jitter[k] = batch.jitter.empty() ? 0.5f : batch.jitter[i];
-        if (!batch.places.empty()) places[k] = batch.places[i];
-        if (!batch.positions.empty()) positions[k] = batch.positions[i];
+        asked.rays[k] = batch.rays[i], asked.ids[k] = batch.ids[i];
+        asked.jitter[k] = batch.jitter.empty() ? 0.5f : batch.jitter[i];
+        if (!batch.places.empty()) asked.places[k] = batch.places[i];
+        if (!batch.positions.empty()) asked.positions[k] = batch.positions[i];
     }
-    const auto given = [count](const auto& from, const auto* values) {
-        return std::span(values, from.empty() ? 0 : count);
-    };
-    whole({{rays, count},
-           {ids, count},
-           parts,
-           {jitter, count},
-           given(batch.places, places),
-           {},
-           given(batch.positions, positions)},
-          {fog, count});
+    RayBatch rest = asked.batch(parts);
+    if (batch.places.empty()) rest.places = {};
+    if (batch.positions.empty()) rest.positions = {};
+    whole(rest, {fog, count});
     for (size_t k = 0; k < count; ++k) {
         results[missed[k]] = fog[k];
         for (size_t l = 0; l < lights; ++l) batch.per_light[missed[k] * lights + l] += parts[k * lights + l];

@@ -144,13 +144,10 @@ PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
 void scatter_picture(const ScatterFunction& scatter, const PictureRays& picture, std::vector<Scatter>& results) {
     parallel_for(static_cast<int64_t>(picture.rays.size() / 16), [&](int64_t tile) {
         const size_t first = static_cast<size_t>(16 * tile);
-        const RayBatch batch{std::span(picture.rays).subspan(first, 16),
-                             std::span(picture.ids).subspan(first, 16),
-                             {},
-                             std::span(picture.jitter).subspan(first, 16),
-                             {},
-                             {},
-                             std::span(picture.positions).subspan(first, 16)};
+        const RayBatch batch{.rays = std::span(picture.rays).subspan(first, 16),
+                             .ids = std::span(picture.ids).subspan(first, 16),
+                             .jitter = std::span(picture.jitter).subspan(first, 16),
+                             .positions = std::span(picture.positions).subspan(first, 16)};
         scatter(batch, std::span(results).subspan(first, 16));
     });
 }

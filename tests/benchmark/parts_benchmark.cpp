@@ -112,7 +112,7 @@ void march_and_its_parts(benchmark::State& state) {
     for (auto _ : state) {
         frame += seconds_of([&] {
             Scatter results[16];
-            for (const Tile& tile : tiles) scatter({tile.rays, tile.ids, {}, {}}, results);
+            for (const Tile& tile : tiles) scatter({.rays = tile.rays, .ids = tile.ids}, results);
             benchmark::DoNotOptimize(results[0].radiance.x);
         });
         points.clear();

@@ -79,7 +79,7 @@ TEST_P(Styles, RangeFades) {
         const ScatterFunction scatter = find_mode("march").prepare(view, slab.snapshot, some, nullptr);
         Scatter result;
         const uint32_t id = 1;
-        scatter({{&slab.ray, 1}, {&id, 1}, {}, {}}, {&result, 1});
+        scatter({.rays = {&slab.ray, 1}, .ids = {&id, 1}}, {&result, 1});
         return result.radiance.x;
     };
     const double plain = light(styled);

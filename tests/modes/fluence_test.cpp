@@ -259,7 +259,7 @@ std::vector<vec3> picture(const char* mode, const Snapshot& snapshot, const View
                 rays[i] = camera_ray(view.camera, view.size, vec2(pixel) + vec2(u.x, u.y));
                 ids[i] = hash(static_cast<uint32_t>(p), sample, view.seed);
             }
-            scatter({rays, ids, {}, {}}, results);
+            scatter({.rays = rays, .ids = ids}, results);
             for (const Scatter& result : results)
                 pixels[static_cast<size_t>(p)] += result.radiance / static_cast<float>(view.pixel_samples);
         }

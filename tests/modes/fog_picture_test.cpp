@@ -52,13 +52,10 @@ std::vector<Scatter> ask(const ScatterFunction& scatter, const Seen& seen, std::
         const size_t n = std::min<size_t>(16, seen.rays.size() - i);
         std::span<vec3> parts;
         if (per_light) parts = std::span(*per_light).subspan(i * lights, n * lights);
-        scatter({std::span(seen.rays).subspan(i, n),
-                 std::span(ids).first(n),
-                 parts,
-                 {},
-                 {},
-                 {},
-                 std::span(seen.positions).subspan(i, n)},
+        scatter({.rays = std::span(seen.rays).subspan(i, n),
+                 .ids = std::span(ids).first(n),
+                 .per_light = parts,
+                 .positions = std::span(seen.positions).subspan(i, n)},
                 std::span(results).subspan(i, n));
     }
     return results;

@@ -14,7 +14,7 @@ std::vector<Scatter> taken(const ScatterFunction& scatter, const std::vector<Ray
     if (per_light) per_light->assign(rays.size() * lights, vec3(0));
     for (size_t first = 0; first < rays.size(); first += packet) {
         const size_t count = std::min(packet, rays.size() - first);
-        RayBatch batch{std::span(rays).subspan(first, count), std::span(ids).first(count), {}, {}};
+        RayBatch batch{.rays = std::span(rays).subspan(first, count), .ids = std::span(ids).first(count)};
         if (per_light) batch.per_light = std::span(*per_light).subspan(first * lights, count * lights);
         scatter(batch, std::span(results).subspan(first, count));
     }

@@ -111,8 +111,12 @@ void follow(const RayScene& scene, RayStory& story) {
         const float length = open ? fog_reach(scene.snapshot.media, path.ray) : s.length[0];
         const Ray ray{path.ray.origin, path.ray.direction, length};
         const RayNumbers numbers = ray_numbers(scene.view, layer, s);
-        const RayBatch batch{{&ray, 1}, {numbers.ids, 1},       {},        {numbers.jitter, 1}, {numbers.places, 1},
-                             {},        {numbers.positions, 1}, {&open, 1}};
+        const RayBatch batch{.rays = {&ray, 1},
+                             .ids = {numbers.ids, 1},
+                             .jitter = {numbers.jitter, 1},
+                             .places = {numbers.places, 1},
+                             .positions = {numbers.positions, 1},
+                             .open = {&open, 1}};
         const RayPart part{ray, batch, story.end, story.depth, path.through};
         float transmittance = 1;
         add_reference(prepared, part, story, transmittance);

@@ -218,7 +218,7 @@ double short_rays_off(Trial& trial) {
         rays[i].t_max = static_cast<float>(trial.value);
     }
     std::vector<Scatter> results(16);
-    scatter({rays, ids, {}, {}, places}, results);
+    scatter({.rays = rays, .ids = ids, .places = places}, results);
     double most = 0;
     for (const Scatter& result : results) {
         trial.faults.non_finite += !is_finite(result.radiance) || !std::isfinite(result.transmittance);

@@ -60,7 +60,7 @@ Scatter reference_light(const Snapshot& snapshot, const Ray& ray) {
     const ScatterFunction scatter = main_mode().prepare(View{}, snapshot, settings_for(Quality::reference), nullptr);
     Scatter result;
     const uint32_t id = 7;
-    scatter({{&ray, 1}, {&id, 1}, {}, {}}, {&result, 1});
+    scatter({.rays = {&ray, 1}, .ids = {&id, 1}}, {&result, 1});
     return result;
 }
 }

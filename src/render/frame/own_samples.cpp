@@ -11,13 +11,13 @@ void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> s
     Scatter scatter[16];
     for (size_t i = 0; i < count; ++i) rays[i] = s.path[i].ray, near[i] = s.path[i].skip;
     const RayNumbers numbers = ray_numbers(tracer.view, 0, s);
-    tracer.scatter({{rays, count},
-                    {numbers.ids, count},
-                    per_light,
-                    {numbers.jitter, count},
-                    {numbers.places, count},
-                    {near, count},
-                    {numbers.positions, count}},
+    tracer.scatter({.rays = {rays, count},
+                    .ids = {numbers.ids, count},
+                    .per_light = per_light,
+                    .jitter = {numbers.jitter, count},
+                    .places = {numbers.places, count},
+                    .near = {near, count},
+                    .positions = {numbers.positions, count}},
                    {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {

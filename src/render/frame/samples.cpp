@@ -25,14 +25,13 @@ void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<Pixel
     const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
     const size_t count = static_cast<size_t>(s.count);
     std::vector<vec3> light_parts(lights * count, vec3(0));
-    tracer.scatter({{rays, count},
-                    {numbers.ids, count},
-                    light_parts,
-                    {numbers.jitter, count},
-                    {numbers.places, count},
-                    {},
-                    {numbers.positions, count},
-                    {open, count}},
+    tracer.scatter({.rays = {rays, count},
+                    .ids = {numbers.ids, count},
+                    .per_light = light_parts,
+                    .jitter = {numbers.jitter, count},
+                    .places = {numbers.places, count},
+                    .positions = {numbers.positions, count},
+                    .open = {open, count}},
                    {scatter, count});
 
     for (int i = 0; i < s.count; ++i) {

@@ -185,8 +185,8 @@ TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
             ray.t_max = 3.2f;
             Scatter by_position, by_ray;
             const uint32_t id = 0;
-            scatter({{&ray, 1}, {&id, 1}, {}, {}, {}, {}, {&pixel, 1}}, {&by_position, 1});
-            scatter({{&ray, 1}, {&id, 1}, {}, {}}, {&by_ray, 1});
+            scatter({.rays = {&ray, 1}, .ids = {&id, 1}, .positions = {&pixel, 1}}, {&by_position, 1});
+            scatter({.rays = {&ray, 1}, .ids = {&id, 1}}, {&by_ray, 1});
             EXPECT_NEAR(by_ray.radiance.x / by_position.radiance.x, 1, 1e-3);
             EXPECT_NEAR(by_ray.transmittance, by_position.transmittance, 1e-5);
         }
@@ -216,7 +216,7 @@ TEST(Froxel, PartsOfTheLightsAddUp) {
             Scatter result;
             vec3 parts[2]{};
             const uint32_t id = 0;
-            scatter({{&ray, 1}, {&id, 1}, parts, {}}, {&result, 1});
+            scatter({.rays = {&ray, 1}, .ids = {&id, 1}, .per_light = parts}, {&result, 1});
             EXPECT_GT(parts[0].x, 0);
             EXPECT_GT(parts[1].x, 0);
             EXPECT_NEAR((parts[0].x + parts[1].x) / result.radiance.x, 1, 1e-5);

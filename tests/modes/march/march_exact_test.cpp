@@ -273,10 +273,12 @@ TEST(MarchExact, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     std::vector<vec3> parts(128, vec3(0));
     const std::vector<uint32_t> ids(16, 7);
     for (size_t b = 0; b < 4; ++b)
-        scatter({std::span(rays).subspan(16 * b, 16), ids, std::span(parts).subspan(32 * b, 32), {}},
+        scatter({.rays = std::span(rays).subspan(16 * b, 16),
+                 .ids = ids,
+                 .per_light = std::span(parts).subspan(32 * b, 32)},
                 std::span(alone).subspan(16 * b, 16));
     parallel_for(4, [&](int64_t b) {
-        scatter({std::span(rays).subspan(16 * b, 16), ids, {}, {}}, std::span(together).subspan(16 * b, 16));
+        scatter({.rays = std::span(rays).subspan(16 * b, 16), .ids = ids}, std::span(together).subspan(16 * b, 16));
     });
     Stage dark = busy_stage();
     dark.snapshot.lights.clear();

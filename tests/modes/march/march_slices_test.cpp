@@ -123,7 +123,8 @@ TEST(MarchSlices, PartsOfTheLightsAddUp) {
     std::vector<Scatter> results(16);
     std::vector<vec3> parts(32, vec3(0));
     const std::vector<uint32_t> ids(16, 7);
-    find_mode("march").prepare(View{}, stage.snapshot, settings, nullptr)({rays, ids, parts, {}}, results);
+    find_mode("march").prepare(View{}, stage.snapshot, settings,
+                               nullptr)({.rays = rays, .ids = ids, .per_light = parts}, results);
     const std::vector<Scatter> glow = marched(dark.snapshot, settings, rays);
     for (size_t i = 0; i < 16; ++i)
         EXPECT_NEAR((parts[2 * i] + parts[2 * i + 1] + glow[i].radiance).x / results[i].radiance.x, 1, 1e-5);

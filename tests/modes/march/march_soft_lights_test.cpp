@@ -26,7 +26,7 @@ dvec3 mean_over_samples(const Snapshot& snapshot, const Settings& settings, cons
         SamplePlace places[16];
         Scatter results[16];
         for (uint32_t i = 0; i < 16; ++i) ids[i] = hash(first + i, 4u), places[i] = {77, first + i};
-        scatter({rays, ids, {}, {}, places}, results);
+        scatter({.rays = rays, .ids = ids, .places = places}, results);
         for (const Scatter& result : results) sum += dvec3(result.radiance);
     }
     return sum / double(samples);

@@ -32,7 +32,7 @@ std::vector<Scatter> path_light(const Snapshot& snapshot, const std::vector<Ray>
         const size_t count = std::min<size_t>(16, rays.size() - first);
         uint32_t ids[16];
         for (size_t i = 0; i < count; ++i) ids[i] = hash(static_cast<uint32_t>(first + i), 31u);
-        scatter({std::span(rays).subspan(first, count), {ids, count}, {}, {}},
+        scatter({.rays = std::span(rays).subspan(first, count), .ids = {ids, count}},
                 std::span(results).subspan(first, count));
     }
     return results;

@@ -322,7 +322,7 @@ TEST(Path, LightsArePartsOfTheWhole) {
         for (uint32_t lane = 0; lane < 16; ++lane) ids[lane] = i * 16 + lane;
         std::vector<vec3> parts(32, vec3(0));
         std::vector<Scatter> results(16);
-        scatter({rays, ids, parts, {}}, results);
+        scatter({.rays = rays, .ids = ids, .per_light = parts}, results);
         for (size_t lane = 0; lane < 16; ++lane) {
             const vec3 sum = parts[2 * lane] + parts[2 * lane + 1];
             EXPECT_NEAR(sum.x, all_light(results[lane]).x, 1e-5f * (1 + sum.x));

@@ -193,7 +193,7 @@ TEST(ShadowMapMarch, PartsOfLightsAddUp) {
     const std::vector<uint32_t> ids(16, 7);
     std::vector<vec3> parts(32, vec3(0));
     std::vector<Scatter> results(16);
-    scatter({rays, ids, parts, {}}, results);
+    scatter({.rays = rays, .ids = ids, .per_light = parts}, results);
     for (size_t i = 0; i < 16; ++i)
         EXPECT_NEAR(parts[2 * i].x + parts[2 * i + 1].x, results[i].radiance.x, 1e-6f * results[i].radiance.x);
 }

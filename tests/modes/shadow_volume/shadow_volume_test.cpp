@@ -55,13 +55,9 @@ std::vector<Scatter> drawn(std::string_view mode, const Picture& picture, const 
     std::vector<Scatter> results(picture.rays.size());
     const std::vector<uint32_t> ids(16, 7);
     for (size_t first = 0; first < results.size(); first += 16)
-        scatter({std::span(picture.rays).subspan(first, 16),
-                 ids,
-                 {},
-                 {},
-                 {},
-                 {},
-                 std::span(picture.positions).subspan(first, 16)},
+        scatter({.rays = std::span(picture.rays).subspan(first, 16),
+                 .ids = ids,
+                 .positions = std::span(picture.positions).subspan(first, 16)},
                 std::span(results).subspan(first, 16));
     return results;
 }
@@ -250,13 +246,10 @@ TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     const std::vector<uint32_t> ids(16, 7);
     parallel_for(64, [&](int64_t p) {
         const size_t first = 16 * static_cast<size_t>(p);
-        scatter({std::span(picture.rays).subspan(first, 16),
-                 ids,
-                 std::span(parts).subspan(3 * first, 48),
-                 {},
-                 {},
-                 {},
-                 std::span(picture.positions).subspan(first, 16)},
+        scatter({.rays = std::span(picture.rays).subspan(first, 16),
+                 .ids = ids,
+                 .per_light = std::span(parts).subspan(3 * first, 48),
+                 .positions = std::span(picture.positions).subspan(first, 16)},
                 std::span(together).subspan(first, 16));
     });
     for (size_t i = 0; i < alone.size(); ++i) {
