@@ -26,6 +26,7 @@ struct Asked {
     float jitter[16];
     SamplePlace places[16];
     vec2 positions[16];
+    bool open[16];
 
     RayBatch batch(std::span<vec3> per_light) const {
         return {.rays = {rays, count},
@@ -33,12 +34,14 @@ struct Asked {
                 .per_light = per_light,
                 .jitter = {jitter, count},
                 .places = {places, count},
-                .positions = {positions, count}};
+                .positions = {positions, count},
+                .open = {open, count}};
     }
 };
 
 // From the eye to the first surface, or to the end of the fog.
-void find_lengths(const Snapshot& snapshot, const Camera& camera, std::span<Ray> rays) {
+void find_lengths(const Snapshot& snapshot, const Camera& camera, Asked& asked) {
+    const std::span rays{asked.rays, asked.count};
     Ray tested[16];
     float skip[16];
     for (size_t i = 0; i < rays.size(); ++i) {
@@ -48,8 +51,10 @@ void find_lengths(const Snapshot& snapshot, const Camera& camera, std::span<Ray>
     Hits hits;
     hits.instance.fill(-1);
     if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->closest({tested, rays.size()}, 0, hits);
-    for (size_t i = 0; i < rays.size(); ++i)
-        rays[i].t_max = hits.instance[i] >= 0 ? skip[i] + hits.t[i] : fog_reach(snapshot.media, rays[i]);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        asked.open[i] = hits.instance[i] < 0;
+        rays[i].t_max = asked.open[i] ? fog_reach(snapshot.media, rays[i]) : skip[i] + hits.t[i];
+    }
 }
 
 void compute_tile(const Snapshot& snapshot, const ScatterFunction& whole, ivec2 corner, FogPicture& picture) {
@@ -68,7 +73,7 @@ void compute_tile(const Snapshot& snapshot, const ScatterFunction& whole, ivec2 
             asked.places[count] = {hash(asked.ids[count], use_id), 0};
             asked.positions[count] = (vec2(x, y) + 0.5f) * vec2(view.size) / vec2(size);
         }
-    find_lengths(snapshot, view.camera, {asked.rays, count});
+    find_lengths(snapshot, view.camera, asked);
     const size_t lights = picture.per_light.size();
     std::vector<vec3> parts(lights * count, vec3(0));
     whole(asked.batch(parts), {fog, count});
@@ -129,10 +134,12 @@ void look_up(const FogPicture& picture, const ScatterFunction& whole, const RayB
         asked.jitter[k] = batch.jitter.empty() ? 0.5f : batch.jitter[i];
         if (!batch.places.empty()) asked.places[k] = batch.places[i];
         if (!batch.positions.empty()) asked.positions[k] = batch.positions[i];
+        if (!batch.open.empty()) asked.open[k] = batch.open[i];
     }
     RayBatch rest = asked.batch(parts);
     if (batch.places.empty()) rest.places = {};
     if (batch.positions.empty()) rest.positions = {};
+    if (batch.open.empty()) rest.open = {};
     whole(rest, {fog, count});
     for (size_t k = 0; k < count; ++k) {
         results[missed[k]] = fog[k];

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 namespace tyndall {
 namespace {
 using namespace test;
@@ -121,6 +123,41 @@ TEST(FogPicture, AShareOfThePictureIsCloseInSmoothFogAndExactWhereDepthDiffers) 
             if (edges.rays[i].t_max != 7) continue;
             ASSERT_EQ(edge[i].radiance, exact[i].radiance) << i;
         }
+    }
+}
+
+// Whether a surface or the fog ends a ray is passed on: for the picture's own rays, and for those that are not in it.
+TEST(FogPicture, RaysThatNothingEndsStayOpen) {
+    const View view = small_view();
+    const Stage stage =
+        stage_of({even_medium(0.3f, Box{vec3(-2), vec3(2)})}, {}, {quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0})});
+    std::atomic<int> open = 0, closed = 0;
+    const ScatterFunction whole = [&](const RayBatch& batch, std::span<Scatter> results) {
+        ASSERT_EQ(batch.open.size(), batch.rays.size());
+        for (size_t i = 0; i < results.size(); ++i) {
+            const bool at_surface = std::abs(batch.rays[i].at(batch.rays[i].t_max).z) < 1e-3f;
+            EXPECT_EQ(batch.open[i], !at_surface);
+            ++(batch.open[i] ? open : closed);
+        }
+        std::ranges::fill(results, Scatter{});
+    };
+    from_fog_picture(view, stage.snapshot, {}, whole, nullptr);
+    EXPECT_GT(open, 0);
+    EXPECT_GT(closed, 0);
+
+    // From another eye: no ray is in the picture.
+    const Ray aside{{9, 0, 6}, {0, 0, -1}, 5};
+    for (const bool is_open : {true, false}) {
+        bool passed = !is_open;
+        const ScatterFunction seen = [&](const RayBatch& batch, std::span<Scatter> results) {
+            if (batch.rays.size() == 1 && batch.open.size() == 1) passed = batch.open[0];
+            std::ranges::fill(results, Scatter{});
+        };
+        Scatter result;
+        const uint32_t id = 1;
+        from_fog_picture(view, stage.snapshot, {}, seen,
+                         nullptr)({.rays = {&aside, 1}, .ids = {&id, 1}, .open = {&is_open, 1}}, {&result, 1});
+        EXPECT_EQ(passed, is_open);
     }
 }
 
