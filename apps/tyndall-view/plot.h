@@ -11,7 +11,7 @@ namespace tyndall {
 // Values 0..y_end over a range of distances, from the lower left to the upper right.
 struct Plot {
     ImVec2 low{0, 0}, high{0, 0}; // upper left, lower right
-    Stretch range;
+    Interval<double> range;
     double y_end = 1;
 
     float x(double distance) const;

@@ -157,7 +157,7 @@ void draw_curves(const RayStory& story, ImVec2 low, ImVec2 high) {
     const std::vector<size_t> lights = reaching_lights(story);
     const float fixed = 3 * 1.3f * type + static_cast<float>(lights.size()) * (lit + 3) + 1.5f * type;
     const float unit = std::max((high.y - low.y - fixed) / 3, 1.2f * type);
-    const Stretch range = axis_of(story);
+    const Interval<double> range = axis_of(story);
     float y = low.y;
     const auto next = [&](const char* title) {
         draw_words({left, y}, quiet, title);

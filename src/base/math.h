@@ -22,13 +22,17 @@ struct Ray {
     vec3 at(float t) const { return origin + t * direction; }
 };
 
-// A stretch of a ray; empty when high <= low.
-struct Interval {
-    float low = 0, high = 0;
+// A stretch low..high of a ray, or of each of sixteen rays; empty where high <= low.
+template<class T> struct Interval {
+    T low{}, high{};
 
     bool empty() const { return !(low < high); }
-    float length() const { return empty() ? 0.0f : high - low; }
+    T length() const { return empty() ? T(0) : high - low; }
 };
+
+template<class T> Interval<T> common(Interval<T> a, Interval<T> b) {
+    return {std::max(a.low, b.low), std::min(a.high, b.high)};
+}
 
 // Axis-aligned box; starts empty and grows.
 struct Box {
@@ -45,7 +49,7 @@ inline constexpr Box everywhere() { return {vec3(-infinity), vec3(infinity)}; }
 
 // The part of origin + t·direction, low <= t <= high, inside the box; nothing of an empty box. The direction may have
 // any length, zeros included.
-inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range) {
+inline Interval<float> clip(const Box& box, vec3 origin, vec3 direction, Interval<float> range) {
     if (box.empty()) return {};
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) {
@@ -57,7 +61,7 @@ inline Interval clip(const Box& box, vec3 origin, vec3 direction, Interval range
         range.low = std::max(range.low, std::min(a, b));
         range.high = std::min(range.high, std::max(a, b));
     }
-    return range.empty() ? Interval{} : range;
+    return range.empty() ? Interval<float>{} : range;
 }
 
 inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

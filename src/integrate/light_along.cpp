@@ -8,14 +8,12 @@ namespace {
 double reach_of(const Light& light) { return std::max(light.radius, smallest_radius); }
 
 // Where a sphere about the light cuts the ray.
-Stretch inside_sphere(const LightAlong& along, double radius) {
+Interval<double> inside_sphere(const LightAlong& along, double radius) {
     const double squared = radius * radius - along.distance * along.distance;
     if (!(squared > 0)) return {};
     const double half = std::sqrt(squared) / glm::length(along.direction);
     return {along.nearest - half, along.nearest + half};
 }
-
-Stretch common(Stretch a, Stretch b) { return {std::max(a.low, b.low), std::min(a.high, b.high)}; }
 
 void set_cone(const Light& light, LightAlong& along) {
     const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
@@ -23,8 +21,8 @@ void set_cone(const Light& light, LightAlong& along) {
 }
 
 // The stretch a local light reaches at all; notes where its strength has kinks.
-Stretch reached(const Light& light, LightAlong& along, Stretch range) {
-    const auto note = [&](Stretch stretch) {
+Interval<double> reached(const Light& light, LightAlong& along, Interval<double> range) {
+    const auto note = [&](Interval<double> stretch) {
         if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
     };
     along.kinks.push_back(along.nearest);
@@ -43,7 +41,7 @@ Stretch reached(const Light& light, LightAlong& along, Stretch range) {
 
 // The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
 // of a local light the cone around it.
-Stretch behind(const Box& box, const LightAlong& along) {
+Interval<double> behind(const Box& box, const LightAlong& along) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     const dvec3 center = 0.5 * (dvec3(box.low) + dvec3(box.high));
     const double radius = glm::length(dvec3(box.high) - center);
@@ -65,7 +63,7 @@ Stretch behind(const Box& box, const LightAlong& along) {
 void find_veils(std::span<const Medium> media, LightAlong& along) {
     for (const Medium& medium : media) {
         if (medium.kind != DensityKind::bricks || medium.bricks->empty()) continue;
-        const Stretch stretch = behind(medium.bricks->bounds, along);
+        const Interval<double> stretch = behind(medium.bricks->bounds, along);
         const vec3 voxel = medium.bricks->voxel_size;
         if (stretch.empty()) continue;
         along.veils.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
@@ -74,11 +72,11 @@ void find_veils(std::span<const Medium> media, LightAlong& along) {
 }
 
 // Cuts the lit stretches at the kinks and clips them to what the light reaches.
-void cut_lit(Stretch range, LightAlong& along) {
+void cut_lit(Interval<double> range, LightAlong& along) {
     std::sort(along.kinks.begin(), along.kinks.end());
-    static thread_local std::vector<Stretch> pieces;
+    static thread_local std::vector<Interval<double>> pieces;
     pieces.clear();
-    for (Stretch stretch : along.lit) {
+    for (Interval<double> stretch : along.lit) {
         stretch = common(stretch, range);
         for (const double kink : along.kinks)
             if (kink > stretch.low && kink < stretch.high) pieces.push_back({stretch.low, kink}), stretch.low = kink;
@@ -128,7 +126,7 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
     along.light = &light, along.point = point;
     along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
     along.kinks.clear(), along.lit.clear(), along.veils.clear();
-    Stretch range{0, ray.t_max};
+    Interval<double> range{0, ray.t_max};
     if (along.local()) {
         const dvec3 towards = dvec3(light.position) - along.origin;
         along.nearest = glm::dot(towards, along.direction) / glm::dot(along.direction, along.direction);

@@ -16,11 +16,11 @@ struct LightAlong {
     dvec3 origin{0}, direction{0};          // of the ray
     double nearest = 0, distance = 0;       // local lights: where the ray passes, and how near
     double cone_scale = 0, cone_offset = 1; // as ConeFalloff, in double
-    std::vector<Stretch> lit;               // ascending; cut where the light's strength has a kink
+    std::vector<Interval<double>> lit;      // ascending; cut where the light's strength has a kink
     // Where grid fog may stand between ray and light, and its voxels per metre across the light: the ray has to be
     // followed as finely as their shadows are drawn.
     struct Veil {
-        Stretch stretch;
+        Interval<double> stretch;
         double voxels = 0;
     };
     std::vector<Veil> veils;

@@ -74,6 +74,6 @@ void lit_fog_packet(const LitFog& frame, const RayBatch& batch, std::span<Scatte
 
 // What rays cross of the volumes of a light, up to the ends of `reached`; `dark` = the counts before. Rays whose
 // stretch is empty are left out.
-void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
+void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, const Interval<double> (&reached)[16],
                   std::vector<ShadowCrossing>& crossings, int (&dark)[16]);
 }

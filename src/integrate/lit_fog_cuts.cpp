@@ -9,7 +9,7 @@ namespace {
 constexpr double most_depth = 2; // optical depth between cuts
 
 // Density of height fog changes by e^1.5 from one of these levels to the next.
-void add_levels(const Medium& medium, const Ray& ray, Stretch inside, std::vector<double>& cuts) {
+void add_levels(const Medium& medium, const Ray& ray, Interval<double> inside, std::vector<double>& cuts) {
     const double dy = ray.direction.y, y = ray.origin.y;
     if (std::abs(dy) < 1e-12) return;
     for (int level = 0; level <= 12; ++level) {
@@ -21,7 +21,8 @@ void add_levels(const Medium& medium, const Ray& ray, Stretch inside, std::vecto
 // Where the way from the ray to a light begins to leave a medium's box through another face: the light that fog lets
 // through has a kink there. With the way x + u·(light - far·x), far = 0 for suns, the faces f of axes i and j are met
 // at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which is linear in x.
-void add_exits(const Medium& medium, const Light& light, const Ray& ray, Stretch inside, std::vector<double>& cuts) {
+void add_exits(const Medium& medium, const Light& light, const Ray& ray, Interval<double> inside,
+               std::vector<double>& cuts) {
     const double far = light.kind == LightKind::sun ? 0 : 1;
     const glm::dvec4 source = far == 0 ? glm::dvec4(-dvec3(light.direction), 0) : glm::dvec4(light.position, 1);
     const dvec3 to(dmat4(medium.world_to_local) * source);
@@ -63,7 +64,7 @@ void find_even_cuts(const LitFog& frame, const Ray& ray, std::vector<double>& cu
     kinks.clear();
     const double end = std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media));
     for (const Medium& medium : frame.snapshot.media) {
-        const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, end});
+        const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, end});
         if (inside.empty()) continue;
         kinks.push_back(inside.low), kinks.push_back(inside.high);
         if (medium.kind == DensityKind::height) add_levels(medium, ray, inside, kinks);
@@ -82,13 +83,13 @@ struct Thirds {
 };
 Thirds divide_fog(const LitFog& frame, const Ray& ray) {
     const float end = static_cast<float>(std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media)));
-    Interval fog{infinity, 0};
+    Interval<float> fog{infinity, 0};
     for (const Medium& medium : frame.snapshot.media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
+        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
         if (!inside.empty()) fog.low = std::min(fog.low, inside.low), fog.high = std::max(fog.high, inside.high);
     }
     if (fog.empty()) return {};
-    const Interval scene = clip(frame.snapshot.bounds, ray.origin, ray.direction, fog);
+    const Interval<float> scene = clip(frame.snapshot.bounds, ray.origin, ray.direction, fog);
     if (scene.empty() || fog.length() < 2 * scene.length()) return {{fog.low, fog.low, fog.high, fog.high}};
     return {{fog.low, scene.low, scene.high, fog.high}};
 }

@@ -63,7 +63,7 @@ void add_fluence_nodes(Packet& packet) {
     packet.spread = Spread::length;
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         const Ray& ray = packet.batch.rays[i];
-        const Interval inside = clip(grid.bounds, ray.origin, ray.direction, {0, ray.t_max});
+        const Interval<float> inside = clip(grid.bounds, ray.origin, ray.direction, {0, ray.t_max});
         double before = 0; // optical depth, about
         for (int k = 0; k < cuts.pieces[i] && before < packet.frame.opaque; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;

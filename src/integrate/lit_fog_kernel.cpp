@@ -28,7 +28,7 @@ Packet make_packet(const LitFog& frame, const RayBatch& batch, Scratch& scratch)
 }
 
 // What the light reaches of a ray's fog, from first to last. Nothing divides what a sun reaches.
-Stretch reach_of(Packet& packet, const Light& light, size_t i) {
+Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
     const FogCuts& cuts = packet.scratch.cuts;
     if (cuts.pieces[i] == 0) return {};
     if (light.kind == LightKind::sun) return {cuts.low(i), cuts.high(i)};
@@ -37,28 +37,29 @@ Stretch reach_of(Packet& packet, const Light& light, size_t i) {
     find_light(light, center_of(light), {ray.origin, ray.direction, cuts.high(i)}, nullptr, {}, along);
     packet.nearest[i] = static_cast<float>(along.nearest);
     packet.away[i] = static_cast<float>(std::max<double>({along.distance, light.radius, smallest_radius}));
-    const std::vector<Stretch>& lit = along.lit;
+    const std::vector<Interval<double>>& lit = along.lit;
     if (lit.empty()) return {};
     return {std::max<double>(lit.front().low, cuts.low(i)), std::min<double>(lit.back().high, cuts.high(i))};
 }
 
 // Nodes on the lit stretches within reach.
-void push_all(Packet& packet, size_t index, const Stretch (&reached)[16]) {
+void push_all(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     Scratch& scratch = packet.scratch;
     const bool sun = packet.frame.snapshot.lights[index].kind == LightKind::sun;
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         if (reached[i].empty()) continue;
-        const std::span<const Stretch> parts = sun ? std::span(&reached[i], 1) : std::span(scratch.along[i].lit);
+        const std::span<const Interval<double>> parts =
+            sun ? std::span(&reached[i], 1) : std::span(scratch.along[i].lit);
         push_lit(packet, static_cast<int>(index), i, scratch.lit[i], parts);
     }
 }
 
 // Every ray sees one point of the light, or several in turn, each with shadows of its own.
-void add_sliced(Packet& packet, size_t index, const Stretch (&reached)[16]) {
+void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     const LitFog& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
     const size_t count = packet.batch.rays.size();
-    if (std::all_of(reached, reached + count, [](Stretch stretch) { return stretch.empty(); })) return;
+    if (std::all_of(reached, reached + count, [](Interval<double> stretch) { return stretch.empty(); })) return;
     const uint32_t points = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
     Ray rays[16];
     LightPoint picked[16];
@@ -77,7 +78,7 @@ void add_sliced(Packet& packet, size_t index, const Stretch (&reached)[16]) {
 }
 
 // Shadows, if any, begin at the light's centre.
-void add_cut_out(Packet& packet, size_t index, const Stretch (&reached)[16]) {
+void add_cut_out(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     Scratch& scratch = packet.scratch;
     int dark[16];
     find_shadows(packet.frame, index, packet.batch, reached, scratch.crossings, dark);
@@ -87,7 +88,7 @@ void add_cut_out(Packet& packet, size_t index, const Stretch (&reached)[16]) {
             if (!reached[i].empty()) push_shells(packet, static_cast<int>(index), i, dark[i], reached[i]);
         return;
     }
-    for (std::vector<Stretch>& lit : scratch.lit) lit.clear();
+    for (std::vector<Interval<double>>& lit : scratch.lit) lit.clear();
     append_lit(dark, scratch.crossings, reached, scratch.lit);
     push_all(packet, index, reached);
 }
@@ -97,7 +98,7 @@ void add_light(Packet& packet, size_t index) {
     const LitFog& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
     const size_t count = packet.batch.rays.size();
-    Stretch reached[16];
+    Interval<double> reached[16];
     for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
     packet.spread = light.kind == LightKind::sun ? Spread::length : Spread::angle;
     const ShadowsBy by = frame.shadows[index].by;

@@ -78,7 +78,7 @@ HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
     return depth[0] * packet.frame.style.view_depth < packet.frame.opaque && depth[16] > depth[0];
 }
 
-bool in_soft_edge(const LightAlong& along, Stretch part) {
+bool in_soft_edge(const LightAlong& along, Interval<double> part) {
     if (along.light->kind != LightKind::spot) return false;
     const dvec3 from = along.origin + 0.5 * (part.low + part.high) * along.direction - dvec3(along.light->position);
     const double cosine = glm::dot(from, dvec3(along.light->direction)) / glm::length(from);
@@ -91,14 +91,15 @@ HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
 }
 
 // Cuts lit stretches at the cuts of the fog and at the kinks of the light, which divide what it reaches.
-void push_lit(Packet& packet, int light, size_t ray, std::span<const Stretch> lit, std::span<const Stretch> reached) {
+void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<double>> lit,
+              std::span<const Interval<double>> reached) {
     const float* at = packet.scratch.cuts.at.data() + ray;
     const int pieces = packet.scratch.cuts.pieces[ray];
     int cut = 0;
     for (size_t part = 0; part < reached.size(); ++part) {
-        const Stretch within = reached[part];
+        const Interval<double> within = reached[part];
         const bool soft = packet.spread == Spread::angle && in_soft_edge(packet.scratch.along[ray], within);
-        for (const Stretch& stretch : lit) {
+        for (const Interval<double>& stretch : lit) {
             double low = std::max<double>({stretch.low, within.low, at[0]});
             const double end = std::min(stretch.high, within.high);
             while (low < end) {

@@ -31,7 +31,7 @@ void find_in_view(const ShadowView& view, ShadowRays& rays, std::vector<ShadowCr
 }
 }
 
-void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, const Stretch (&reached)[16],
+void find_shadows(const LitFog& frame, size_t light, const RayBatch& batch, const Interval<double> (&reached)[16],
                   std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
     const LitShadows& caster = frame.shadows[light];
     crossings.clear(), std::fill(dark, dark + 16, 0);

@@ -24,14 +24,14 @@ void append_mantle(const Light& light, const Ray& ray, std::vector<Shell>& shell
     if (light.kind != LightKind::spot) return;
     const dvec3 origin(ray.origin), direction(ray.direction), apex(light.position);
     const double angle = std::acos(0.5 * (std::cos(double(light.inner_cone)) + std::cos(double(light.outer_cone))));
-    const Stretch beam = inside_cone(apex, glm::normalize(dvec3(light.direction)), angle, origin, direction);
+    const Interval<double> beam = inside_cone(apex, glm::normalize(dvec3(light.direction)), angle, origin, direction);
     for (const double t : {beam.low, beam.high})
         if (!beam.empty() && std::isfinite(t)) shells.push_back({t, glm::distance(origin + t * direction, apex)});
 }
 
 // A sheet of light wherever the ray goes through a side from light into shadow or back: as bright as some metres of the
 // fog.
-void push_shells(Packet& packet, int light, size_t ray, int dark, Stretch reached) {
+void push_shells(Packet& packet, int light, size_t ray, int dark, Interval<double> reached) {
     static thread_local std::vector<Shell> shells;
     shells.clear();
     for (const ShadowCrossing& crossing : packet.scratch.crossings)

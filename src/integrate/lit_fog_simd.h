@@ -44,7 +44,7 @@ struct Scratch {
     std::vector<float> whole;                 // share of a sun that lights all of a step: [step·16 + ray]
     std::vector<std::array<float, 16>> phase; // of each medium, on each ray
     std::vector<ShadowCrossing> crossings;
-    std::vector<Stretch> lit[16];
+    std::vector<Interval<double>> lit[16];
     LightAlong along[16]; // of local lights
     Nodes nodes;
 };

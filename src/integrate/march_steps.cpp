@@ -11,11 +11,12 @@ namespace {
 constexpr int max_steps = 65536; // per ray; longer ones beyond
 
 // The parts of a piece of a ray inside the cones of spots, from its start.
-void find_beams(const MarchSteps& rule, const Ray& ray, Interval piece, std::vector<Step>& beams) {
+void find_beams(const MarchSteps& rule, const Ray& ray, Interval<float> piece, std::vector<Step>& beams) {
     beams.clear();
     for (const Light& light : rule.lights) {
         if (light.kind != LightKind::spot) continue;
-        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
+        const Interval<double> cone =
+            inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
         const float low = std::max(static_cast<float>(cone.low), piece.low) - piece.low;
         const float high = std::min(static_cast<float>(cone.high), piece.high) - piece.low;
         if (!cone.empty() && low < high) beams.push_back({low, high});
@@ -23,7 +24,7 @@ void find_beams(const MarchSteps& rule, const Ray& ray, Interval piece, std::vec
 }
 
 // Steps of one piece of a ray, as long as the settings allow on a piece of that length.
-void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& ray, Interval piece,
+void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& ray, Interval<float> piece,
                   std::vector<Step>& steps) {
     if (piece.empty()) return;
     const MarchSettings& settings = march.settings;
@@ -51,9 +52,9 @@ MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights)
 }
 
 void append_march_steps(const MarchSteps& rule, const Snapshot& snapshot, const Ray& ray, std::vector<Step>& steps) {
-    const Interval stretch = fog_stretch(snapshot.media, ray);
+    const Interval<float> stretch = fog_stretch(snapshot.media, ray);
     // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
-    const Interval scene = clip(snapshot.bounds, ray.origin, ray.direction, stretch);
+    const Interval<float> scene = clip(snapshot.bounds, ray.origin, ray.direction, stretch);
     if (scene.empty() || stretch.length() < 2 * scene.length())
         return append_piece(rule, snapshot, ray, stretch, steps);
     append_piece(rule, snapshot, ray, {stretch.low, scene.low}, steps);

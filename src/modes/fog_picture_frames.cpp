@@ -39,7 +39,8 @@ struct Seen {
     vec2 pixel{0};   // of where its light comes from
     float smear = 0; // pixels between half of that light and the other
 };
-std::optional<Seen> seen_before(const FogPicture& before, const Interval& fog, const Ray& ray, float transmittance) {
+std::optional<Seen> seen_before(const FogPicture& before, const Interval<float>& fog, const Ray& ray,
+                                float transmittance) {
     const auto pixel = [&](float share) {
         return pixel_of(before.view.camera, before.fog.size, ray.at(glm::mix(fog.low, fog.high, share)));
     };
@@ -88,7 +89,7 @@ void go_on_from(const FogPicture& before, std::span<const Medium> media, FogPict
         for (int x = 0; x < now.fog.size.x; ++x) {
             Ray ray = ray_through(now, {x, y});
             ray.t_max = now.length.at(x, y);
-            const Interval stretch = fog_stretch(media, ray);
+            const Interval<float> stretch = fog_stretch(media, ray);
             if (stretch.empty()) continue;
             const std::optional<Seen> seen = seen_before(before, stretch, ray, now.fog.at(x, y).transmittance);
             if (!seen || !glm::all(glm::greaterThanEqual(seen->pixel, vec2(0))) ||

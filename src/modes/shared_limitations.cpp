@@ -76,7 +76,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
     std::vector<Ray> in_scene, in_fog;
     for (const vec2 at : {vec2(0.5f), vec2(0.1f), vec2(0.9f, 0.1f), vec2(0.1f, 0.9f), vec2(0.9f)}) {
         const Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
-        const auto add = [&](Interval stretch, std::vector<Ray>& rays) {
+        const auto add = [&](Interval<float> stretch, std::vector<Ray>& rays) {
             if (!stretch.empty()) rays.push_back({ray.origin, ray.direction, stretch.high});
         };
         add(clip(fog, ray.origin, ray.direction, {0, infinity}), in_scene);

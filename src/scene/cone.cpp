@@ -1,7 +1,7 @@
 #include "scene/cone.h"
 
 namespace tyndall {
-Stretch inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dvec3 direction) {
+Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dvec3 direction) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     const double length = glm::length(direction);
     const dvec3 d = direction / length;
@@ -17,7 +17,7 @@ Stretch inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dve
     const double far = glm::length(apex - origin);
     if (pp <= 1e-24 * far * far || pp == 0) {
         if (std::abs(dv) < cosine) return {};
-        return dv > 0 ? Stretch{to_t(0), endless} : Stretch{-endless, to_t(0)};
+        return dv > 0 ? Interval<double>{to_t(0), endless} : Interval<double>{-endless, to_t(0)};
     }
 
     // Roots of ((p + s·d)·v)² = c² |p + s·d|², whose discriminant is c² (pv² + dv² pp - c² pp), on the cone ahead of
@@ -40,6 +40,6 @@ Stretch inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dve
         if (inside(root[0] - step)) return {-endless, to_t(root[0])};
         return {};
     }
-    return inside(0) ? Stretch{-endless, endless} : Stretch{};
+    return inside(0) ? Interval<double>{-endless, endless} : Interval<double>{};
 }
 }

@@ -40,8 +40,8 @@ SeenSpace seen_space(const View& view, const Snapshot& snapshot, vec3 anchor) {
     return space;
 }
 
-Interval seen_stretch(const SeenSpace& space, vec3 offset, vec3 direction, float radius, float growth) {
-    Interval stretch{0, infinity};
+Interval<float> seen_stretch(const SeenSpace& space, vec3 offset, vec3 direction, float radius, float growth) {
+    Interval<float> stretch{0, infinity};
     for (const HalfSpace& side : space.sides) {
         // at + slope · t >= 0
         const float at = glm::dot(side.normal, offset) + side.offset + radius;

@@ -27,5 +27,5 @@ inline float past_edge(const View& view) { return view.filter_radius + 1; }
 
 // The stretch of a ray on which it comes near seen space: nearer than radius + growth · t. The ray's origin is given as
 // its offset from the anchor.
-Interval seen_stretch(const SeenSpace& space, vec3 offset, vec3 direction, float radius, float growth);
+Interval<float> seen_stretch(const SeenSpace& space, vec3 offset, vec3 direction, float radius, float growth);
 }

@@ -28,7 +28,8 @@ float brick_value(const uint16_t* values, vec3 point) {
     return mixed(mixed(along_z(0), along_z(9), weight.y), mixed(along_z(81), along_z(90), weight.y), weight.x);
 }
 
-template<class Visit> void walk_brick_fog(const BrickPool& pool, const Ray& ray, Stretch range, const Visit& visit) {
+template<class Visit>
+void walk_brick_fog(const BrickPool& pool, const Ray& ray, Interval<double> range, const Visit& visit) {
     const LocalRay local = local_ray(pool, ray);
     walk_bricks(pool, local, range, [&](ivec3 brick, int64_t at, double low, double high) {
         const int32_t id = pool.index[at];
@@ -41,7 +42,8 @@ template<class Visit> void walk_brick_fog(const BrickPool& pool, const Ray& ray,
 }
 
 // Height fog in layers half a scale height thick, up to where it is thinner than 2^-24.
-template<class Visit> void walk_height_fog(const Medium& medium, const Ray& ray, Stretch range, const Visit& visit) {
+template<class Visit>
+void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> range, const Visit& visit) {
     constexpr int layers = 34;
     const double start = ray.origin.y - medium.height_base, slope = ray.direction.y, falloff = medium.height_falloff;
     const auto density = [&](double t) {
@@ -63,10 +65,10 @@ template<class Visit> void walk_height_fog(const Medium& medium, const Ray& ray,
 }
 
 // Calls visit(fog, density at a distance) for the stretches of the ray in order until it returns false.
-template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interval range, const Visit& visit) {
-    const Stretch whole{range.low, range.high};
+template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interval<float> range, const Visit& visit) {
+    const Interval<double> whole{range.low, range.high};
     if (medium.kind == DensityKind::bricks) return walk_brick_fog(*medium.bricks, ray, whole, visit);
-    const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), whole);
+    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), whole);
     if (inside.empty()) return;
     if (medium.kind == DensityKind::height) return walk_height_fog(medium, ray, inside, visit);
     visit(Fog{inside.low, inside.high, 1, true}, [](double) { return 1.0f; });
@@ -75,7 +77,7 @@ template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interv
 double free_depth(float u) { return -std::log1p(-static_cast<double>(u)); }
 }
 
-float collision_distance(const Medium& medium, const Ray& ray, Interval range, float first, RandomStream& random,
+float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
                          int& lookups) {
     double left = free_depth(first), found = infinity; // optical depth, by majorants, to the next collision
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
@@ -95,7 +97,8 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval range, f
     return static_cast<float>(found);
 }
 
-float ratio_transmittance(const Medium& medium, const Ray& ray, Interval range, RandomStream& random, int& lookups) {
+float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
+                          int& lookups) {
     constexpr double small = 0.1;
     double share = 1, left = free_depth(random.next());
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {

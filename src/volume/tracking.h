@@ -9,10 +9,11 @@ struct Medium;
 
 // Distance along the ray, within `range`, of the first particle met; infinite when none is (delta tracking: Woodcock
 // 1965). `first` in [0,1) decides the first free path. Counts density look-ups in `lookups`.
-float collision_distance(const Medium& medium, const Ray& ray, Interval range, float first, RandomStream& random,
+float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
                          int& lookups);
 
 // An estimate, right on average, of the share of light that passes the stretch `range` of the ray (ratio tracking:
 // Novák et al. 2014). Not above 1; exact in even fog. Ends small values by Russian roulette.
-float ratio_transmittance(const Medium& medium, const Ray& ray, Interval range, RandomStream& random, int& lookups);
+float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
+                          int& lookups);
 }

@@ -7,20 +7,20 @@
 namespace tyndall {
 namespace {
 const Box unit_box{vec3(0), vec3(1)};
-constexpr Interval whole{0, infinity};
+constexpr Interval<float> whole{0, infinity};
 
-void expect_interval(Interval seen, float low, float high) {
+void expect_interval(Interval<float> seen, float low, float high) {
     EXPECT_FLOAT_EQ(seen.low, low);
     EXPECT_FLOAT_EQ(seen.high, high);
 }
 
 TEST(Interval, LengthAndEmptiness) {
-    EXPECT_TRUE(Interval().empty());
-    EXPECT_TRUE((Interval{1, 1}.empty()));
-    EXPECT_TRUE((Interval{2, 1}.empty()));
-    EXPECT_TRUE((Interval{NAN, 1}.empty()));
-    EXPECT_EQ((Interval{2, 1}.length()), 0);
-    EXPECT_EQ((Interval{1, 3}.length()), 2);
+    EXPECT_TRUE(Interval<float>().empty());
+    EXPECT_TRUE((Interval<float>{1, 1}.empty()));
+    EXPECT_TRUE((Interval<float>{2, 1}.empty()));
+    EXPECT_TRUE((Interval<float>{NAN, 1}.empty()));
+    EXPECT_EQ((Interval<float>{2, 1}.length()), 0);
+    EXPECT_EQ((Interval<float>{1, 3}.length()), 2);
 }
 
 TEST(Box, StartsEmptyAndGrows) {
@@ -68,7 +68,7 @@ TEST(Clip, ParallelToAFaceAndOnIt) {
 // 1/direction overflows and 0·infinity appears: the ray still has to be found inside.
 TEST(Clip, AlmostParallelOnAFace) {
     for (const float tiny : {1e-45f, -1e-45f, 1e-38f}) {
-        const Interval inside = clip(unit_box, vec3(-1, 0.5f, 0.5f), vec3(1, tiny, 0), whole);
+        const Interval<float> inside = clip(unit_box, vec3(-1, 0.5f, 0.5f), vec3(1, tiny, 0), whole);
         expect_interval(inside, 1, 2);
         EXPECT_TRUE(clip(unit_box, vec3(-1, 2, 0.5f), vec3(1, tiny, 0), {0, 1e6f}).empty());
     }
@@ -89,7 +89,7 @@ TEST(Clip, AgreesWithPointsOnRandomRays) {
     for (uint32_t i = 0; i < 5000; ++i) {
         const auto number = [&](uint32_t dimension) { return 10 * random_unit(i, 0, dimension, 1) - 5; };
         const vec3 origin(number(0), number(1), number(2)), direction(number(3), number(4), number(5));
-        const Interval seen = clip(box, origin, direction, {0, 4});
+        const Interval<float> seen = clip(box, origin, direction, {0, 4});
         for (int k = 0; k <= 20; ++k) {
             const float t = 0.2f * static_cast<float>(k);
             const vec3 point = origin + t * direction;

@@ -130,7 +130,7 @@ PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
         Box reach;
         for (const Medium& medium : snapshot.media) reach.grow(medium.world_bounds);
         for (size_t i = 0; i < 16; ++i) {
-            const Interval fog = clip(reach, rays[i].origin, rays[i].direction, {0, rays[i].t_max});
+            const Interval<float> fog = clip(reach, rays[i].origin, rays[i].direction, {0, rays[i].t_max});
             rays[i].t_max = hits.instance[i] >= 0 ? hits.t[i] : std::min(fog.high, 1e6f);
             if (hits.instance[i] < 0) continue;
             const ivec2 pixel(picture.positions[static_cast<size_t>(16 * tile) + i]);

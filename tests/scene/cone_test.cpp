@@ -9,7 +9,7 @@ namespace {
 constexpr double endless = std::numeric_limits<double>::infinity();
 const double deg = std::acos(-1.0) / 180;
 
-void expect_stretch(Stretch stretch, double low, double high, double tolerance = 1e-12) {
+void expect_stretch(Interval<double> stretch, double low, double high, double tolerance = 1e-12) {
     if (std::isinf(low))
         EXPECT_EQ(stretch.low, low);
     else
@@ -34,7 +34,7 @@ TEST(Cone, KnownLines) {
     EXPECT_TRUE(inside_cone(apex, down, half, {-5, 0, 0}, {1, 0, 0}).empty());            // touches the apex only
     // Along a generator, half a metre further in: from where |x| = -y on.
     const dvec3 generator = glm::normalize(dvec3(1, -1, 0));
-    const Stretch along = inside_cone(apex, down, half, dvec3(0, -0.5, 0), generator);
+    const Interval<double> along = inside_cone(apex, down, half, dvec3(0, -0.5, 0), generator);
     EXPECT_NEAR(along.low, -0.25 * std::sqrt(2.0), 1e-9);
     EXPECT_GT(along.high, 1e9);
 }
@@ -53,7 +53,7 @@ TEST(Cone, EndsAreWhereTheAngleIsHalfTheOpening) {
         const dvec3 axis = glm::normalize(dvec3(u(6), u(7), u(8))),
                     direction = glm::normalize(dvec3(u(9), u(10), u(11)));
         const double half = (1 + 44 * (u(12) + 1)) * deg;
-        const Stretch stretch = inside_cone(apex, axis, half, origin, direction);
+        const Interval<double> stretch = inside_cone(apex, axis, half, origin, direction);
         const auto angle = [&](double t) {
             return std::acos(glm::dot(axis, glm::normalize(origin + t * direction - apex)));
         };
@@ -72,7 +72,7 @@ TEST(Cone, EndsAreWhereTheAngleIsHalfTheOpening) {
 TEST(Cone, FarFromTheApexNothingCancels) {
     // A line across a beam of 1° a million metres away from its own origin.
     const double half = 1 * deg, out = 1e6;
-    const Stretch stretch = inside_cone({0, 0, 0}, {0, -1, 0}, half, {-out, -10, 0}, {1, 0, 0});
+    const Interval<double> stretch = inside_cone({0, 0, 0}, {0, -1, 0}, half, {-out, -10, 0}, {1, 0, 0});
     EXPECT_NEAR(stretch.low, out - 10 * std::tan(half), 1e-8);
     EXPECT_NEAR(stretch.high, out + 10 * std::tan(half), 1e-8);
 }

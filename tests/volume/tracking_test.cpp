@@ -78,7 +78,7 @@ TEST(Tracking, ACollisionComesBeforeADistanceAsOftenAsFogTakesLight) {
                 RandomStream random{hash(i, 12u)};
                 int lookups = 0;
                 const float first = random.next();
-                const Interval whole{0, c.ray.t_max};
+                const Interval<float> whole{0, c.ray.t_max};
                 mean.add(collision_distance(c.medium, c.ray, whole, first, random, lookups) < part.t_max);
             }
             EXPECT_LT(std::abs(mean.value() - expected), limit * mean.error() + 1e-6) << c.name << share;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 namespace tyndall::ray_drawing {
-Stretch axis_of(const RayStory& story) {
+Interval<double> axis_of(const RayStory& story) {
     constexpr double hardly = 3e-3;
     double end = story.hits || story.steps.empty() ? story.end : story.steps.back().high;
     for (const RayStep& step : story.steps) {

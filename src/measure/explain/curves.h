@@ -5,7 +5,7 @@
 
 namespace tyndall::ray_drawing {
 // The axis of distances: it goes on until hardly anything is seen, and begins with the fog where that is far away.
-Stretch axis_of(const RayStory& story);
+Interval<double> axis_of(const RayStory& story);
 
 // What a light does at each step.
 std::vector<Lighting> states_of(const RayStory& story, const LightOnRay& light);

@@ -34,7 +34,7 @@ struct FogOnPart {
     FogPieces fog;
     std::vector<Column> columns; // of each medium
 
-    Stretch range() const { return {fog.pieces.front().low, fog.pieces.back().high}; }
+    Interval<double> range() const { return {fog.pieces.front().low, fog.pieces.back().high}; }
     double depth_to(double t) const {
         double sum = 0;
         for (size_t m = 0; m < columns.size(); ++m) sum += fog.extinction[m] * columns[m].to(t);
@@ -44,7 +44,7 @@ struct FogOnPart {
 
 // Ends of steps: evenly spread, by optical depth too, around lamps, and where a light's shadow begins or ends.
 std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
-    const Stretch range = on.range();
+    const Interval<double> range = on.range();
     std::vector<double> ends{range.low, range.high};
     for (int i = 1; i < count; ++i) ends.push_back(range.low + range.length() * i / count);
     const double depth = on.depth_to(range.high);

@@ -95,13 +95,14 @@ LightOnPart light_on(const RayScene& scene, const RayPart& part, size_t index) {
 
     std::vector<Change> changes{{0, 0, 0}, {part.ray.t_max, 0, 0}};
     find_light(light, on.points[0], part.ray, nullptr, scene.fog.media, on.along);
-    for (const Stretch& reached : on.along.lit)
+    for (const Interval<double>& reached : on.along.lit)
         changes.push_back({reached.low, 0, 1}), changes.push_back({reached.high, 0, -1});
     const ShadowSlices* slices = scene.occluders() ? &scene.occluders()->shadow_slices() : nullptr;
     LightAlong along;
     for (const LightPoint& point : on.points) {
         find_light(light, point, part.ray, slices, scene.fog.media, along);
-        for (const Stretch& lit : along.lit) changes.push_back({lit.low, 1, 0}), changes.push_back({lit.high, -1, 0});
+        for (const Interval<double>& lit : along.lit)
+            changes.push_back({lit.low, 1, 0}), changes.push_back({lit.high, -1, 0});
     }
     on.shares = shares_of(std::move(changes), static_cast<int>(count));
     on.lit = joined(on.shares, shortest * part.ray.t_max);

@@ -21,8 +21,8 @@ constexpr const char* light_colors[most_lights] = {"#E69F00", "#0072B2", "#009E7
 // One panel's way from values to the drawing.
 struct Panel {
     double top, bottom;
-    Stretch range; // of distances, from left to right
-    double y_end;  // values 0..y_end from bottom to top
+    Interval<double> range; // of distances, from left to right
+    double y_end;           // values 0..y_end from bottom to top
     double x(double value) const {
         return left + (right - left) * std::clamp((value - range.low) / range.length(), 0.0, 1.0);
     }
@@ -75,7 +75,7 @@ template<class Value> std::string curve(const RayStory& story, const Panel& pane
     return curve(story, panel, value, always, always);
 }
 
-void draw_fog(const RayStory& story, double top, Stretch range, Svg& svg) {
+void draw_fog(const RayStory& story, double top, Interval<double> range, Svg& svg) {
     double most = 0;
     for (const RayStep& step : story.steps)
         if (step.low < range.high) most = std::max(most, step.extinction);
@@ -89,7 +89,8 @@ void draw_fog(const RayStory& story, double top, Stretch range, Svg& svg) {
     if (last < range.high) svg.line(panel.x(last), panel.bottom, right, panel.bottom, ink, 1);
 }
 
-void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
+void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, Interval<double> range,
+                        Svg& svg) {
     const Panel panel{top, top + 130, range, 1};
     draw_axes(panel, "Light that gets through the fog: from here to the eye (black), from each light to here (colour)",
               true, false, svg);
@@ -103,7 +104,7 @@ void draw_transmittance(const RayStory& story, std::span<const size_t> lights, d
     svg.path(curve(story, panel, [&](size_t s) { return story.steps[s].to_eye; }), ink, 2);
 }
 
-void draw_light(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
+void draw_light(const RayStory& story, std::span<const size_t> lights, double top, Interval<double> range, Svg& svg) {
     double most = 0;
     const double scale = light_scale(story, most);
     const Panel panel{top, top + 150, range, scale};
@@ -147,7 +148,7 @@ void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, con
             return svg.text(0.5 * (from + to), y + 12, text, Anchor::middle, "fill='#fff'");
 }
 
-double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, Stretch range, Svg& svg) {
+double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, Interval<double> range, Svg& svg) {
     const Panel panel{top, top + 24 * static_cast<double>(lights.size()) + 4, range, 1};
     std::string title =
         "Where each light shines: colour lit, pale half shadow, dark in the shadow of what is named, line "
@@ -167,7 +168,7 @@ double draw_lit(const RayStory& story, std::span<const size_t> lights, double to
 }
 
 // Lines through all panels where the ray meets surfaces.
-void draw_surfaces(const RayStory& story, double top, double bottom, Stretch range, Svg& svg) {
+void draw_surfaces(const RayStory& story, double top, double bottom, Interval<double> range, Svg& svg) {
     const Panel panel{top, bottom, range, 1};
     for (const SurfaceOnRay& surface : story.surfaces) {
         const bool there = surface.distance <= range.high * 1.0001;
@@ -181,7 +182,7 @@ void draw_surfaces(const RayStory& story, double top, double bottom, Stretch ran
 }
 
 std::string explain_svg(const RayStory& story, const StoryTitle& title) {
-    const Stretch range = axis_of(story);
+    const Interval<double> range = axis_of(story);
     const std::vector<size_t> lights = drawn_lights(story, most_lights);
     Svg svg;
     svg.text(16, 26, title_line(story, title), Anchor::start, "font-size='15' font-weight='bold'");

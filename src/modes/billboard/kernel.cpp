@@ -67,7 +67,7 @@ Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet&
     const StyleSettings& style = billboards.style;
     Floats low = infinity, high = 0.0f;
     for (const Medium& medium : billboards.snapshot.media) {
-        const Ranges in = inside_box(medium, {packet.origin, packet.direction, packet.t_max});
+        const Interval<Floats> in = inside_box(medium, {packet.origin, packet.direction, packet.t_max});
         const Mask16 there = in.high > in.low;
         low = select(there, min(low, in.low), low), high = select(there, max(high, in.high), high);
     }

@@ -98,7 +98,7 @@ std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
             cell.hit = snapshot.occluders ? std::min(hits.t[i], view.reach) : view.reach;
             cell.from = cell.hit;
             for (const Medium& medium : snapshot.media) {
-                const Interval in = clip(medium.world_bounds, rays[i].origin, rays[i].direction, {0, cell.hit});
+                const Interval<float> in = clip(medium.world_bounds, rays[i].origin, rays[i].direction, {0, cell.hit});
                 if (!in.empty()) cell.from = std::min(cell.from, in.low), cell.to = std::max(cell.to, in.high);
             }
             const bool in_cone = view.light->kind != LightKind::spot ||

@@ -11,10 +11,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-struct Stretch16 {
-    Floats low, high; // empty when high <= low
-};
-
 // a·b - c·d within two roundings of the result, whatever cancels (Kahan).
 HWY_INLINE Floats difference_of_products(const Floats& a, const Floats& b, const Floats& c, const Floats& d) {
     const Floats product = c * d;
@@ -73,7 +69,7 @@ HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& rest, const Vec3
 
 // Where the rays are within a half angle 0..π/2 of the axis: the wedge's borders, turned from the projected axis by
 // ω with cos ω = cosine / cos(angle between axis and plane), meet the ray at distance · tan.
-HWY_INLINE Stretch16 inside_wedge(const SeenRays& seen, float cosine, float sine) {
+HWY_INLINE Interval<Floats> inside_wedge(const SeenRays& seen, float cosine, float sine) {
     const Floats across = abs(seen.axis_across), room = (sine - across) * (sine + across);
     const Floats turn = sqrt(max(room, 0.0f));
     const Floats low_x = fused(seen.axis_out, cosine, seen.axis_along * turn);
@@ -95,7 +91,7 @@ struct AnglePiece {
     Floats sign, near, far, squared;
     Floats angle, per_distance; // the whole angle, and over the distance: ∫ ds/r²
 
-    HWY_INLINE AnglePiece(const Stretch16& piece, const SeenRays& seen) : squared(seen.squared) {
+    HWY_INLINE AnglePiece(const Interval<Floats>& piece, const SeenRays& seen) : squared(seen.squared) {
         sign = select(piece.low + piece.high < 0.0f, -1.0f, 1.0f);
         const Floats a = abs(piece.low), b = abs(piece.high);
         near = min(a, b), far = max(a, b);

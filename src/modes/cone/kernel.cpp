@@ -30,7 +30,7 @@ bool is_linear(const Packet& packet) {
 
 // ∫ e^-τ dt in closed form. Two places inside the piece tell τ: at its ends rounding decides on which side of a face
 // they lie.
-void add_linear_piece(const EvenLight& even, const Stretch16& piece) {
+void add_linear_piece(const EvenLight& even, const Interval<Floats>& piece) {
     const Floats length = piece.high - piece.low;
     const Floats early = even.depth_at(fused(length, 0.25f, piece.low));
     const Floats late = even.depth_at(fused(length, 0.75f, piece.low));
@@ -39,7 +39,7 @@ void add_linear_piece(const EvenLight& even, const Stretch16& piece) {
              even.cosine, even.light);
 }
 
-void add_curved_piece(const EvenLight& even, const Stretch16& piece) {
+void add_curved_piece(const EvenLight& even, const Interval<Floats>& piece) {
     const Floats length = piece.high - piece.low, first = even.depth_at(piece.low), last = even.depth_at(piece.high);
     const Mask16 bright = (length > 0.0f) & (min(first, last) < 60.0f);
     if (!any(bright)) return;
@@ -53,7 +53,7 @@ void add_curved_piece(const EvenLight& even, const Stretch16& piece) {
 
 bool add_even(Packet& packet, const ConeLight* light) {
     find_fog(packet);
-    Stretch16 stretch = packet.stretch;
+    Interval<Floats> stretch = packet.stretch;
     if (packet.cone.style.range < no_range) stretch.high = min(stretch.high, packet.cone.style.range - packet.before);
     const Mask16 lit = stretch.high > stretch.low;
     if (!any(lit)) return false;
@@ -66,7 +66,7 @@ bool add_even(Packet& packet, const ConeLight* light) {
     const bool linear = is_linear(packet);
     const std::vector<Lanes>& breaks = packet.scratch.breaks;
     for (size_t i = 0; i + 1 < breaks.size(); ++i) {
-        const Stretch16 piece{load(breaks[i].data()), load(breaks[i + 1].data())};
+        const Interval<Floats> piece{load(breaks[i].data()), load(breaks[i + 1].data())};
         if (!any(piece.high > piece.low)) continue;
         linear ? add_linear_piece(even, piece) : add_curved_piece(even, piece);
     }

@@ -55,9 +55,9 @@ HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const S
 }
 
 // The stretch of the rays that a local light reaches, from the nearest point.
-Stretch16 reached(const Packet& packet, const ConeLight& light, const SeenRays& seen) {
-    Stretch16 stretch{packet.stretch.low - seen.nearest, packet.stretch.high - seen.nearest};
-    const auto cut = [&](const Stretch16& by) HWY_ATTR {
+Interval<Floats> reached(const Packet& packet, const ConeLight& light, const SeenRays& seen) {
+    Interval<Floats> stretch{packet.stretch.low - seen.nearest, packet.stretch.high - seen.nearest};
+    const auto cut = [&](const Interval<Floats>& by) HWY_ATTR {
         stretch = {max(stretch.low, by.low), min(stretch.high, by.high)};
     };
     float range = light.light.range;
@@ -81,7 +81,7 @@ Stretch16 reached(const Packet& packet, const ConeLight& light, const SeenRays& 
 
 // Far from the light, compared with how near it the ray passes, metres are packed into little angle: what falls or
 // grows by e per metre is an edge there. Such stretches are cut where that has happened a little, once, and four times.
-void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Stretch16& stretch) {
+void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Interval<Floats>& stretch) {
     Floats rate = packet.fog.extinction();
     for (const Medium& medium : packet.fog.media)
         if (medium.kind == DensityKind::height) rate = rate + abs(packet.direction.y) * (1 / medium.height_falloff);
@@ -95,21 +95,23 @@ void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Stretch1
     }
 }
 
-void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Stretch16& stretch) {
+void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen,
+                      const Interval<Floats>& stretch) {
     add_break(packet, 0.0f);
     if (any(seen.distance < light.reach)) {
         const Floats half = sqrt(max(light.reach * light.reach - seen.squared, 0.0f));
         add_break(packet, half), add_break(packet, -half);
     }
     if (light.light.kind == LightKind::spot && light.edges.even_sine > 0) {
-        const Stretch16 even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
+        const Interval<Floats> even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
         add_break(packet, even.low), add_break(packet, even.high);
     }
     add_decay_breaks(packet, seen, stretch);
 }
 
 // Light of a local light at the nodes of one piece.
-void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Stretch16& piece, int count) {
+void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Interval<Floats>& piece,
+               int count) {
     const AnglePiece angles(piece, seen);
     const Floats middle = 0.5f * (piece.low + piece.high);
     const Floats length = piece.high - piece.low;
@@ -138,12 +140,12 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
 bool add_local(Packet& packet, const ConeLight& light) {
     const SeenRays seen = seen_rays(packet.origin, packet.rest, packet.direction, light.light.direction);
     if (light.light.kind == LightKind::spot) {
-        const Stretch16 wedge = inside_wedge(seen, light.edges.cosine, light.edges.sine);
+        const Interval<Floats> wedge = inside_wedge(seen, light.edges.cosine, light.edges.sine);
         if (!any((wedge.high > wedge.low) & (wedge.high > -seen.nearest) & (wedge.low < packet.t_max - seen.nearest)))
             return false;
     }
     find_fog(packet);
-    Stretch16 stretch = reached(packet, light, seen);
+    Interval<Floats> stretch = reached(packet, light, seen);
     const Mask16 lit = stretch.high > stretch.low;
     if (!any(lit)) return false;
     stretch = {zero_unless(lit, stretch.low), zero_unless(lit, stretch.high)};
@@ -161,7 +163,7 @@ bool add_local(Packet& packet, const ConeLight& light) {
     Floats before = 0.0f;
     bool known = false;
     for (size_t i = 0; i + 1 < breaks.size(); ++i) {
-        const Stretch16 piece{load(breaks[i].data()), load(breaks[i + 1].data())};
+        const Interval<Floats> piece{load(breaks[i].data()), load(breaks[i + 1].data())};
         const Mask16 there = piece.high > piece.low;
         if (!any(there)) continue;
         if (!known) before = depth_at(piece.low);

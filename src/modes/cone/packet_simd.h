@@ -37,7 +37,7 @@ struct Packet {
     Vec3s rest;              // of the origin, what floats lose
     Floats t_max, before;    // length, and the way from the eye to the origin
     Scratch& scratch;
-    Stretch16 stretch; // from first to last fog
+    Interval<Floats> stretch; // from first to last fog
 
     HWY_INLINE size_t media() const { return fog.media.size(); }
     HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
@@ -69,7 +69,8 @@ void find_fog(Packet& packet) {
     Scratch& scratch = packet.scratch;
     packet.stretch = {infinity, 0.0f};
     for (size_t m = 0; m < packet.media(); ++m) {
-        const Ranges inside = inside_box(packet.fog.media[m], {packet.origin, packet.direction, packet.t_max});
+        const Interval<Floats> inside =
+            inside_box(packet.fog.media[m], {packet.origin, packet.direction, packet.t_max});
         const Floats to = max(inside.high, inside.low);
         const Mask16 any_fog = to > inside.low;
         store(inside.low, scratch.from[m].data()), store(to, scratch.to[m].data());
@@ -161,7 +162,7 @@ void add_fog_breaks(const Packet& packet, const Floats& start) {
 }
 
 // Brings the breaks into ascending order in every lane and into the stretch, whose ends join them.
-void sort_breaks(const Packet& packet, const Stretch16& stretch) {
+void sort_breaks(const Packet& packet, const Interval<Floats>& stretch) {
     std::vector<Lanes>& breaks = packet.scratch.breaks;
     add_break(packet, stretch.low), add_break(packet, stretch.high);
     const size_t count = breaks.size();

@@ -44,7 +44,7 @@ Moments light_on(const LightAlong& along, double low, double high) {
 }
 
 // Adds a lit stretch to the slices it crosses, in lengths of the ray.
-void add_stretch(const FroxelGrid& grid, const LightAlong& along, Stretch stretch, double per_metre,
+void add_stretch(const FroxelGrid& grid, const LightAlong& along, Interval<double> stretch, double per_metre,
                  std::vector<Moments>& slices) {
     const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_metre; };
     int k = slice_of(grid, static_cast<float>(stretch.low * per_metre));
@@ -93,15 +93,15 @@ Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& 
 
 // The stretches from which the light is seen: by shadow volumes where all lines see the same point of it, else by
 // slices, else all.
-using Stretches = std::vector<Stretch>[16];
+using Stretches = std::vector<Interval<double>>[16];
 void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, Stretches& lit) {
-    for (std::vector<Stretch>& stretches : lit) stretches.clear();
+    for (std::vector<Interval<double>>& stretches : lit) stretches.clear();
     if (!lines.active) return;
     const bool shadows = scene.snapshot.lights[light].shadows;
     if (shadows && light < scene.views.size() && scene.views[light]) {
         static thread_local std::vector<ShadowCrossing> crossings;
         ShadowRays rays;
-        Stretch ranges[16];
+        Interval<double> ranges[16];
         int dark[16];
         std::fill(dark, dark + 16, scene.views[light]->dark);
         rays.edges = false, rays.tile = lines.bin;
@@ -142,7 +142,7 @@ void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, con
     static thread_local Stretches lit;
     find_stretches(scene, light, lines, lit);
     for (size_t lane = 0; lane < 16; ++lane)
-        for (const Stretch& stretch : lit[lane])
+        for (const Interval<double>& stretch : lit[lane])
             add_depths(grid, static_cast<float>(stretch.low * lines.per_metre[lane]),
                        static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
 }
@@ -153,7 +153,8 @@ void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const L
     static thread_local std::vector<Moments> moments;
     const double start = grid.faces.front() / per_metre;
     moments.assign(static_cast<size_t>(grid.slices()), {});
-    for (const Stretch& s : along.lit) add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
+    for (const Interval<double>& s : along.lit)
+        add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
     for (size_t k = 0; k < moments.size(); ++k) {
         if (!(moments[k].amount > 0)) continue;
         const auto amount = static_cast<float>(moments[k].amount);
@@ -164,11 +165,12 @@ void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const L
 }
 
 // What two ascending lists of stretches share.
-void keep_common(const std::vector<Stretch>& other, std::vector<Stretch>& stretches) {
-    static thread_local std::vector<Stretch> common;
+void keep_common(const std::vector<Interval<double>>& other, std::vector<Interval<double>>& stretches) {
+    static thread_local std::vector<Interval<double>> common;
     common.clear();
     for (size_t i = 0, j = 0; i < stretches.size() && j < other.size();) {
-        const Stretch both{std::max(stretches[i].low, other[j].low), std::min(stretches[i].high, other[j].high)};
+        const Interval<double> both{std::max(stretches[i].low, other[j].low),
+                                    std::min(stretches[i].high, other[j].high)};
         if (!both.empty()) common.push_back(both);
         (stretches[i].high < other[j].high ? i : j) += 1;
     }

@@ -167,7 +167,7 @@ bool holds_sheet(const Fill& fill, int slice) {
 FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, const float (*extinction)[16]) {
     Floats low = 0.0f, high = 0.0f, total = 0.0f;
     for (size_t m = 0; m < media.size(); ++m) {
-        const Ranges part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
+        const Interval<Floats> part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
         const Floats weight = zero_unless(part.high > part.low, load(extinction[m]));
         low = fused(weight, part.low, low), high = fused(weight, part.high, high), total = total + weight;
     }

@@ -103,7 +103,7 @@ void add_ray(const FroxelGrid& grid, const Snapshot& snapshot, vec2 pixel, float
     const float along = glm::dot(ray.direction, grid.camera.forward);
     const float end = std::min(ray.t_max, surface / along);
     for (const Medium& medium : snapshot.media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
+        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
         if (inside.empty()) continue;
         depths.near = std::min(depths.near, inside.low * along);
         float out = inside.high * along;

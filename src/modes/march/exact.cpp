@@ -19,7 +19,7 @@ constexpr std::array<Node, 2> gauss{{{-0.57735026918962576451, 1}, {0.5773502691
 
 // A stretch from which a share of a light's points is seen.
 struct LitPart {
-    Stretch stretch;
+    Interval<double> stretch;
     double share = 1;
 };
 
@@ -246,7 +246,7 @@ dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_i
         find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &march.slices,
                    march.snapshot.media, on.scratch.along);
         lit.clear();
-        for (const Stretch& stretch : on.scratch.along.lit) {
+        for (const Interval<double>& stretch : on.scratch.along.lit) {
             lit.push_back({stretch, 1.0 / count});
             ends.push_back({stretch.low, 1}), ends.push_back({stretch.high, -1});
         }

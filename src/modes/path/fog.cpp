@@ -27,7 +27,7 @@ float guessed_transmittance(const Snapshot& snapshot, const Line& line, float di
             depth += optical_depth(medium, ray);
             continue;
         }
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
+        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
         in_grids += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
     }
     return static_cast<float>(std::exp(-depth - std::min(in_grids, most_in_grids)));
@@ -92,7 +92,7 @@ void weigh(const Walk& walk, const Line& line, const Connection& connection, Can
 // would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
 float gather_on_the_way(const Walk& walk, Line& line) {
     int& lookups = walk.results[line.walker.lane].steps;
-    const auto passing = [&](Interval range) {
+    const auto passing = [&](Interval<float> range) {
         float share = 1;
         for (const Medium& medium : walk.snapshot.media)
             if (share > 0) share *= ratio_transmittance(medium, line.rest, range, line.random, lookups);

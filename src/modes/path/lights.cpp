@@ -11,13 +11,13 @@ namespace {
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
 
 // From the first fog to the last; of fog without end what lies within 8 optical depths or in the scene.
-Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
-    Interval stretch{infinity, 0};
+Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
+    Interval<float> stretch{infinity, 0};
     for (const Medium& medium : snapshot.media) {
-        Interval inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
+        Interval<float> inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
         if (inside.empty()) continue;
         if (std::isinf(inside.high)) {
-            const Interval scene = clip(snapshot.bounds, line.origin, line.direction, inside);
+            const Interval<float> scene = clip(snapshot.bounds, line.origin, line.direction, inside);
             inside.high = std::max(scene.empty() ? 0 : scene.high, inside.low + 8 / medium.majorant());
         }
         stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
@@ -26,7 +26,7 @@ Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
 }
 
 // The part inside the ball of a light's range.
-Interval within_range(const LineLight& along, float range, Interval stretch) {
+Interval<float> within_range(const LineLight& along, float range, Interval<float> stretch) {
     if (std::isinf(range)) return stretch;
     if (along.height >= range) return {};
     const double half = std::sqrt((range - along.height) * (range + along.height));
@@ -34,15 +34,15 @@ Interval within_range(const LineLight& along, float range, Interval stretch) {
             static_cast<float>(std::min<double>(stretch.high, along.closest + half))};
 }
 
-Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
+Interval<float> within_cone(const Light& light, const Ray& line, Interval<float> stretch) {
     if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi) return stretch;
-    const Stretch inside =
+    const Interval<double> inside =
         inside_cone(light.position, light.direction, light.outer_cone, dvec3(line.origin), dvec3(line.direction));
     return {static_cast<float>(std::max<double>(stretch.low, inside.low)),
             static_cast<float>(std::min<double>(stretch.high, inside.high))};
 }
 
-LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
+LineLight light_on_line(const Light& light, const Ray& line, Interval<float> stretch) {
     LineLight along;
     along.reach = stretch;
     if (light.kind == LightKind::sun) {
@@ -94,7 +94,7 @@ float LineLight::density(float t) const {
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
     lights.clear();
-    const Interval stretch = fog_stretch(snapshot, line);
+    const Interval<float> stretch = fog_stretch(snapshot, line);
     double total = 0;
     for (const Light& light : snapshot.lights) {
         lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));

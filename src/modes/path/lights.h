@@ -12,7 +12,7 @@ struct Snapshot;
 // One light along a line: distances are picked even in angle around a local light (Kulla & Fajardo 2012), even in
 // length under the sun.
 struct LineLight {
-    Interval reach;                       // of the line, where there is fog and the light can be; empty = nowhere
+    Interval<float> reach;                // of the line, where there is fog and the light can be; empty = nowhere
     double closest = 0, height = 0;       // local lights: the line's closest point, and how far the light is from it
     double low_angle = 0, high_angle = 0; // of `reach`, seen from the light
     float chance = 0;                     // of being picked among the lights

@@ -54,8 +54,8 @@ Passing pass_light(const Packet& packet, const Light& light) {
     const float* border = packet.scratch.border.data();
     for (size_t lane = 0; lane < packet.batch.rays.size(); ++lane) {
         const Ray& ray = packet.batch.rays[lane];
-        const Interval stretch{border[lane], border[16 * static_cast<size_t>(packet.steps) + lane]};
-        const Interval lit = lit_interval(light, ray, stretch);
+        const Interval<float> stretch{border[lane], border[16 * static_cast<size_t>(packet.steps) + lane]};
+        const Interval<float> lit = lit_interval(light, ray, stretch);
         if (lit.empty()) continue;
         const vec3 offset = light.position - ray.origin;
         const float nearest = glm::dot(offset, ray.direction);

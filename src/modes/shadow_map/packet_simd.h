@@ -53,7 +53,8 @@ struct Packet {
 HWY_INLINE void add(const Floats& value, Sixteen& sum) { store(load(sum.data()) + value, sum.data()); }
 
 // Stretches of rays inside a box of the world.
-HWY_INLINE Ranges inside_world_box(const Box& box, const Vec3s& origin, const Vec3s& direction, Ranges range) {
+HWY_INLINE Interval<Floats> inside_world_box(const Box& box, const Vec3s& origin, const Vec3s& direction,
+                                             Interval<Floats> range) {
     clip_axis(origin.x, direction.x, box.low.x, box.high.x, range);
     clip_axis(origin.y, direction.y, box.low.y, box.high.y, range);
     clip_axis(origin.z, direction.z, box.low.z, box.high.z, range);
@@ -62,9 +63,10 @@ HWY_INLINE Ranges inside_world_box(const Box& box, const Vec3s& origin, const Ve
 
 // Borders of the steps of all rays where they are even; false where a ray goes on far beyond the scene.
 HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
-    Ranges stretch{infinity, 0.0f};
+    Interval<Floats> stretch{infinity, 0.0f};
     for (const Medium& medium : packet.march.snapshot.media) {
-        const Ranges inside = inside_world_box(medium.world_bounds, packet.origin, packet.direction, {0.0f, t_max});
+        const Interval<Floats> inside =
+            inside_world_box(medium.world_bounds, packet.origin, packet.direction, {0.0f, t_max});
         const Mask16 crossed = inside.low < inside.high;
         stretch.low = select(crossed, min(stretch.low, inside.low), stretch.low);
         stretch.high = select(crossed, max(stretch.high, inside.high), stretch.high);
@@ -73,7 +75,7 @@ HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
     stretch = {zero_unless(some, stretch.low), zero_unless(some, stretch.high)};
     const Box& bounds = packet.march.snapshot.bounds;
     if (packet.steps >= least_uneven_steps && !bounds.empty()) {
-        const Ranges scene = inside_world_box(bounds, packet.origin, packet.direction, stretch);
+        const Interval<Floats> scene = inside_world_box(bounds, packet.origin, packet.direction, stretch);
         const Mask16 crossed = scene.low < scene.high;
         if (any(crossed & (stretch.high - stretch.low >= (scene.high - scene.low) * 2.0f))) return false;
     }

@@ -6,13 +6,13 @@
 
 namespace tyndall {
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride) {
-    const Interval stretch = fog_stretch(march.snapshot.media, ray);
-    const auto even = [&](Interval part, int first, int steps) {
+    const Interval<float> stretch = fog_stretch(march.snapshot.media, ray);
+    const auto even = [&](Interval<float> part, int first, int steps) {
         const float step = part.length() / static_cast<float>(std::max(steps, 1));
         for (int k = 0; k <= steps; ++k)
             t[static_cast<size_t>(first + k) * stride] = part.low + step * static_cast<float>(k);
     };
-    const Interval scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
+    const Interval<float> scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
     if (scene.empty() || stretch.length() < 2 * scene.length() || count < least_uneven_steps)
         return even(stretch, 0, count);
 
@@ -25,7 +25,7 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
             scene.high + start * (std::pow(1 + growth, static_cast<float>(k) / static_cast<float>(after)) - 1);
 }
 
-Interval lit_interval(const Light& light, const Ray& ray, Interval stretch) {
+Interval<float> lit_interval(const Light& light, const Ray& ray, Interval<float> stretch) {
     if (std::isfinite(light.range)) {
         const dvec3 offset = dvec3(light.position) - dvec3(ray.origin);
         const double nearest = glm::dot(offset, dvec3(ray.direction));
@@ -36,11 +36,12 @@ Interval lit_interval(const Light& light, const Ray& ray, Interval stretch) {
         stretch.high = std::min(stretch.high, static_cast<float>(nearest + half));
     }
     if (light.kind == LightKind::spot && !stretch.empty()) {
-        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
+        const Interval<double> cone =
+            inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
         stretch.low = std::max(stretch.low, static_cast<float>(cone.low));
         stretch.high = std::min(stretch.high, static_cast<float>(cone.high));
         if (cone.empty()) return {};
     }
-    return stretch.empty() ? Interval{} : stretch;
+    return stretch.empty() ? Interval<float>{} : stretch;
 }
 }

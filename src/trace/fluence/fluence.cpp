@@ -44,7 +44,7 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, Fl
     if (std::max(start, end_x) < static_cast<float>(first) || std::min(start, end_x) > static_cast<float>(last)) return;
     const vec3 from = (flight.from - grid.bounds.low) * scale, step = flight.direction * scale;
     const Box slab{vec3(first, 0, 0), vec3(last, grid.size.y, grid.size.z)};
-    const Interval inside = clip(slab, from, step, {0, flight.length});
+    const Interval<float> inside = clip(slab, from, step, {0, flight.length});
     if (inside.empty()) return;
 
     const float brightness = luminance(flight.light);

@@ -59,7 +59,7 @@ Walker start(const Walk& walk, int64_t index, int64_t total) {
     const LightSquare& square = walk.squares[static_cast<size_t>(walker.light_index)];
     const vec2 place = (vec2(stratum % side, stratum / side) + walker.pair()) / static_cast<float>(side);
     walker.ray = square.ray(place, walker.pair());
-    const Interval inside = clip(walk.rules.reach, walker.ray.origin, walker.ray.direction, {0, infinity});
+    const Interval<float> inside = clip(walk.rules.reach, walker.ray.origin, walker.ray.direction, {0, infinity});
     if (inside.empty()) return walker;
     float left = square.share(walker.ray.direction);
     walker.ray.origin = walker.ray.at(inside.low);
@@ -74,7 +74,7 @@ Walker start(const Walk& walk, int64_t index, int64_t total) {
 // Notes the part of a flight that counts.
 void note(const Walk& walk, Walker& walker, float length) {
     if (walker.order == 0 || walker.order >= walk.rules.orders) return;
-    const Interval inside = clip(walk.rules.noted, walker.ray.origin, walker.ray.direction, {0, length});
+    const Interval<float> inside = clip(walk.rules.noted, walker.ray.origin, walker.ray.direction, {0, length});
     if (inside.empty()) return;
     const vec3 light = walker.light * walker.share;
     walk.result.flights.push_back({walker.ray.at(inside.low), walker.ray.direction, inside.length(), light});

@@ -28,12 +28,9 @@ HWY_INLINE LightPaths light_paths(const Light& light, const Vec3s& point) {
     return {point, towards * (1.0f / distance), max(distance - light.radius, 0.0f)};
 }
 
-struct Ranges {
-    Floats low, high; // empty when high <= low
-};
-
 // Narrows ranges to where origin + t·direction lies between two planes of an axis.
-HWY_INLINE void clip_axis(const Floats& origin, const Floats& direction, float low, float high, Ranges& range) {
+HWY_INLINE void clip_axis(const Floats& origin, const Floats& direction, float low, float high,
+                          Interval<Floats>& range) {
     const Mask16 along = abs(direction) < 1e-20f;
     const Floats inverse = 1.0f / select(along, 1.0f, direction);
     const Floats a = (low - origin) * inverse, b = (high - origin) * inverse;
@@ -43,14 +40,14 @@ HWY_INLINE void clip_axis(const Floats& origin, const Floats& direction, float l
 }
 
 // The part of each path inside a medium's box.
-HWY_INLINE Ranges inside_box(const Medium& medium, const LightPaths& paths) {
+HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const LightPaths& paths) {
     const mat4& m = medium.world_to_local;
     const Vec3s origin = transform_points(m, paths.origin);
     const Vec3s& d = paths.direction;
     const Vec3s direction = {fused(d.z, m[2].x, fused(d.y, m[1].x, d.x * m[0].x)),
                              fused(d.z, m[2].y, fused(d.y, m[1].y, d.x * m[0].y)),
                              fused(d.z, m[2].z, fused(d.y, m[1].z, d.x * m[0].z))};
-    Ranges range{0.0f, paths.length};
+    Interval<Floats> range{0.0f, paths.length};
     clip_axis(origin.x, direction.x, medium.bounds.low.x, medium.bounds.high.x, range);
     clip_axis(origin.y, direction.y, medium.bounds.low.y, medium.bounds.high.y, range);
     clip_axis(origin.z, direction.z, medium.bounds.low.z, medium.bounds.high.z, range);
@@ -74,7 +71,7 @@ HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, co
 
 // Exact optical depth of homogeneous and height fog.
 HWY_INLINE Floats analytic_depth16(const Medium& medium, const LightPaths& paths) {
-    const Ranges range = inside_box(medium, paths);
+    const Interval<Floats> range = inside_box(medium, paths);
     const Floats length = max(range.high - range.low, 0.0f) * medium.optics.extinction;
     if (medium.kind == DensityKind::homogeneous) return length;
     const Floats y0 = fused(paths.direction.y, range.low, paths.origin.y);

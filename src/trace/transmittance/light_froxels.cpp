@@ -18,7 +18,7 @@ constexpr float voxels_per_sample = 1.5f;
 Floats depth_along(const Medium& medium, const LightPaths& paths) {
     if (medium.bricks->empty()) return 0.0f;
     const Box& box = medium.bricks->bounds;
-    Ranges range{0.0f, paths.length};
+    Interval<Floats> range{0.0f, paths.length};
     clip_axis(paths.origin.x, paths.direction.x, box.low.x, box.high.x, range);
     clip_axis(paths.origin.y, paths.direction.y, box.low.y, box.high.y, range);
     clip_axis(paths.origin.z, paths.direction.z, box.low.z, box.high.z, range);
@@ -70,13 +70,13 @@ namespace {
 constexpr float most_growth = 8; // of the slices' thickness from first to last
 
 // Planar depths between which the view's rays cross the bounds.
-Interval seen_depths(const View& view, const Box& bounds) {
+Interval<float> seen_depths(const View& view, const Box& bounds) {
     constexpr int rays = 32; // from edge to edge
-    Interval seen{infinity, 0};
+    Interval<float> seen{infinity, 0};
     for (int y = 0; y <= rays; ++y)
         for (int x = 0; x <= rays; ++x) {
             const Ray ray = camera_ray(view.camera, view.size, vec2(x, y) / float(rays) * vec2(view.size));
-            const Interval inside = clip(bounds, ray.origin, ray.direction, {0, ray.t_max});
+            const Interval<float> inside = clip(bounds, ray.origin, ray.direction, {0, ray.t_max});
             if (inside.empty()) continue;
             seen.low = std::min(seen.low, planar_depth(view.camera, ray, inside.low));
             seen.high = std::max(seen.high, planar_depth(view.camera, ray, inside.high));
@@ -87,7 +87,7 @@ Interval seen_depths(const View& view, const Box& bounds) {
 
 LightDepthFroxels fitted_froxels(const View& view, const Box& bounds, int resolution) {
     LightDepthFroxels froxels;
-    const Interval seen = seen_depths(view, bounds);
+    const Interval<float> seen = seen_depths(view, bounds);
     if (!(seen.high > seen.low)) return froxels;
     const Camera& camera = froxels.camera = view.camera;
     froxels.near = seen.low, froxels.far = seen.high;

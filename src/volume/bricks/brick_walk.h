@@ -22,16 +22,8 @@ inline LocalRay local_ray(const mat4& world_to_local, const Ray& ray) {
     return {dvec3(matrix * glm::dvec4(ray.origin, 1)), glm::dmat3(matrix) * dvec3(ray.direction)};
 }
 
-// A stretch low..high of a ray; empty when high <= low.
-struct Stretch {
-    double low = 0, high = 0;
-
-    bool empty() const { return !(low < high); }
-    double length() const { return empty() ? 0.0 : high - low; }
-};
-
 // The part of the stretch inside the box. Directions may have any length, zeros included.
-inline Stretch clip(const Box& box, const LocalRay& ray, Stretch range) {
+inline Interval<double> clip(const Box& box, const LocalRay& ray, Interval<double> range) {
     for (int axis = 0; axis < 3; ++axis) {
         const double low = box.low[axis], high = box.high[axis];
         if (ray.direction[axis] == 0) {
@@ -43,7 +35,7 @@ inline Stretch clip(const Box& box, const LocalRay& ray, Stretch range) {
         range.low = std::max(range.low, std::min(a, b));
         range.high = std::min(range.high, std::max(a, b));
     }
-    return range.empty() ? Stretch{} : range;
+    return range.empty() ? Interval<double>{} : range;
 }
 
 // Calls a visitor; one that returns nothing always goes on.
@@ -57,7 +49,7 @@ template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Argum
 // Calls visit(cell, low, high) for every cell first..last of edge length `edge` the ray crosses on the stretch, in
 // order, until it returns false. The stretch has to lie inside these cells up to rounding.
 template<class Visit>
-void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, ivec3 last, const Visit& visit) {
+void walk_cells(const LocalRay& ray, Interval<double> range, double edge, ivec3 first, ivec3 last, const Visit& visit) {
     ivec3 cell, step;
     dvec3 border, across; // t at the next border of each axis, t from border to border
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +79,8 @@ void walk_cells(const LocalRay& ray, Stretch range, double edge, ivec3 first, iv
 
 // Calls visit(cell of the index, low, high) for every brick that is not empty, in order, until it returns
 // false.
-template<class Visit> void walk_bricks(const BrickPool& pool, const LocalRay& ray, Stretch range, const Visit& visit) {
+template<class Visit>
+void walk_bricks(const BrickPool& pool, const LocalRay& ray, Interval<double> range, const Visit& visit) {
     if (pool.empty()) return;
     range = clip(pool.local_bounds, ray, range);
     if (range.empty()) return;

@@ -54,7 +54,8 @@ void append_brick_density(const Ray& ray, const BrickPool& pool, double t_end, s
 }
 
 // Density 1 below the base and an exponential above it.
-void append_height_density(const Ray& ray, const Medium& medium, Stretch inside, std::vector<DensityPiece>& pieces) {
+void append_height_density(const Ray& ray, const Medium& medium, Interval<double> inside,
+                           std::vector<DensityPiece>& pieces) {
     const double start = (double(ray.origin.y) - medium.height_base) / medium.height_falloff;
     const double slope = double(ray.direction.y) / medium.height_falloff;
     const auto append = [&](double low, double high) {
@@ -71,8 +72,8 @@ void append_height_density(const Ray& ray, const Medium& medium, Stretch inside,
 }
 
 // Next stretch on which no medium changes its piece; `at` is where the last one ended.
-Stretch next_stretch(const FogPieces& fog, const std::vector<int>& current, double at) {
-    Stretch next{none, none};
+Interval<double> next_stretch(const FogPieces& fog, const std::vector<int>& current, double at) {
+    Interval<double> next{none, none};
     const auto begin = [&](size_t m) {
         const std::vector<DensityPiece>& pieces = fog.densities[m];
         return current[m] < static_cast<int>(pieces.size()) ? std::max(pieces[current[m]].low, at) : none;
@@ -89,7 +90,7 @@ void merge_media(double most_depth, FogPieces& fog) {
     static thread_local std::vector<int> current;
     current.assign(fog.media, 0);
     for (double at = 0; fog.depth < most_depth;) {
-        const Stretch next = next_stretch(fog, current, at);
+        const Interval<double> next = next_stretch(fog, current, at);
         if (next.low == none) return;
         at = next.high;
         if (!next.empty()) {
@@ -127,7 +128,7 @@ double DensityPiece::column(double t) const {
 
 void append_density(const Ray& ray, const Medium& medium, double t_end, std::vector<DensityPiece>& pieces) {
     if (medium.kind == DensityKind::bricks) return append_brick_density(ray, *medium.bricks, t_end, pieces);
-    const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_end});
+    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_end});
     if (inside.empty()) return;
     if (medium.kind == DensityKind::homogeneous) return pieces.push_back({inside.low, inside.high, {1}, false, 0});
     append_height_density(ray, medium, inside, pieces);

@@ -32,7 +32,7 @@ float reach_of_unbounded(const Medium& medium, const Ray& ray) {
 float fog_reach(std::span<const Medium> media, const Ray& ray) {
     float reach = 0;
     for (const Medium& medium : media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
         if (inside.empty() || inside.high <= reach) continue;
         const float end = std::isinf(inside.high) ? reach_of_unbounded(medium, ray) : inside.high;
         reach = std::max(reach, std::min(end, horizon));
@@ -40,13 +40,13 @@ float fog_reach(std::span<const Medium> media, const Ray& ray) {
     return std::min(reach, ray.t_max);
 }
 
-Interval fog_stretch(std::span<const Medium> media, const Ray& ray) {
-    Interval stretch{infinity, 0};
+Interval<float> fog_stretch(std::span<const Medium> media, const Ray& ray) {
+    Interval<float> stretch{infinity, 0};
     for (const Medium& medium : media) {
-        const Interval inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
         if (inside.empty()) continue;
         stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
     }
-    return stretch.empty() ? Interval{} : stretch;
+    return stretch.empty() ? Interval<float>{} : stretch;
 }
 }

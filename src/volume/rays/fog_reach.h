@@ -12,5 +12,5 @@ struct Medium;
 float fog_reach(std::span<const Medium> media, const Ray& ray);
 
 // The stretch of a ray from first to last fog; empty without any, endless where a medium has no bounds.
-Interval fog_stretch(std::span<const Medium> media, const Ray& ray);
+Interval<float> fog_stretch(std::span<const Medium> media, const Ray& ray);
 }

@@ -14,7 +14,7 @@ constexpr double closest = 1e-3; // metres: nearer to a light steps shrink no fu
 // over which its density halves: band k lies (k-1)·ln 2 to k·ln 2 fall-offs above the base, band 0 below it.
 template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, const Visit& visit) {
     const double t_max = std::min<double>(ray.t_max, farthest);
-    const Stretch inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_max});
+    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_max});
     if (inside.empty()) return;
     if (medium.kind == DensityKind::homogeneous) return visit(inside, 1.0, 1.0);
 
@@ -50,7 +50,7 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
     // the few that are empty: a step there costs less than looking for them on every ray.
     const double highest = extinction * pool.highest;
     if (pool.crowded && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
-        const Stretch inside = clip(pool.local_bounds, local, {0, t_end});
+        const Interval<double> inside = clip(pool.local_bounds, local, {0, t_end});
         if (!inside.empty()) spans.push_back({inside.low, inside.high, highest, varied_rate});
         return;
     }
@@ -71,7 +71,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
     for (const Medium& medium : media) {
         if (medium.kind == DensityKind::bricks) continue;
         double depth = 0;
-        walk_bands(ray, medium, [&](Stretch stretch, double, double smallest) {
+        walk_bands(ray, medium, [&](Interval<double> stretch, double, double smallest) {
             const double extinction = medium.optics.extinction * smallest;
             const double opaque = stretch.low + (opaque_depth - depth) / extinction;
             if (depth < opaque_depth && opaque < stretch.high) end = std::min(end, opaque);
@@ -83,7 +83,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
 
 void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans) {
     if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
-    walk_bands(ray, medium, [&](Stretch stretch, double largest, double) {
+    walk_bands(ray, medium, [&](Interval<double> stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
         if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, 0});
     });

@@ -66,7 +66,7 @@ template<bool at_end> ScatterFunction plain_march(const View&, const Snapshot& s
         const Light& sun = snapshot.lights[0];
         for (size_t i = 0; i < results.size(); ++i) {
             const Ray& ray = batch.rays[i];
-            const Interval inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
+            const Interval<float> inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
             const float step = inside.length() / steps, depth = fog.optics.extinction * step;
             float passed = 1;
             results[i] = {};

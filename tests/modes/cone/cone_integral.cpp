@@ -7,8 +7,8 @@ namespace tyndall::test {
 namespace {
 constexpr double endless = std::numeric_limits<double>::infinity();
 
-Stretch inside(const Box& box, dvec3 origin, dvec3 direction, double length) {
-    Stretch range{0, length};
+Interval<double> inside(const Box& box, dvec3 origin, dvec3 direction, double length) {
+    Interval<double> range{0, length};
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0) {
             if (origin[axis] < box.low[axis] || origin[axis] > box.high[axis]) return {};
@@ -18,7 +18,7 @@ Stretch inside(const Box& box, dvec3 origin, dvec3 direction, double length) {
         const double b = (box.high[axis] - origin[axis]) / direction[axis];
         range.low = std::max(range.low, std::min(a, b)), range.high = std::min(range.high, std::max(a, b));
     }
-    return range.high > range.low ? range : Stretch{};
+    return range.high > range.low ? range : Interval<double>{};
 }
 
 // Mean of exp(-max(h, 0)/H) between two heights above the base: antiderivative H (1 - e^(-h/H)) above, h below.
@@ -34,7 +34,7 @@ double mean_density(double h0, double h1, double falloff) {
 double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, double length) {
     double sum = 0;
     for (const Medium& medium : media) {
-        const Stretch in = inside(medium.bounds, origin, direction, length);
+        const Interval<double> in = inside(medium.bounds, origin, direction, length);
         if (in.empty()) continue;
         const double h0 = origin.y + in.low * direction.y - medium.height_base;
         const double h1 = origin.y + in.high * direction.y - medium.height_base;
@@ -110,7 +110,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
     const double nearest = sun ? 0 : glm::dot(apex - o, d) / glm::dot(d, d);
     const double off = std::max(glm::length(apex - o - nearest * d), 1e-5);
     std::vector<double> cuts{0, double(ray.t_max), nearest};
-    const auto add = [&](Stretch s) { cuts.push_back(s.low), cuts.push_back(s.high); };
+    const auto add = [&](Interval<double> s) { cuts.push_back(s.low), cuts.push_back(s.high); };
     for (const Medium& medium : media) add(inside(medium.bounds, o, d, ray.t_max));
     if (light.kind == LightKind::spot)
         add(inside_cone(apex, axis, light.outer_cone, o, d)), add(inside_cone(apex, axis, light.inner_cone, o, d));

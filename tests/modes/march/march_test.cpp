@@ -68,7 +68,7 @@ TEST(March, SlantedSunInEvenFogMatchesClosedForm) {
     const Ray ray{{0.2f, 0.3f, 2}, {0, 0, -1}, 10};
     const auto integrand = [&](double t) {
         const vec3 point = ray.at(static_cast<float>(t));
-        const Interval path = clip(unit_box, point, -direction, {0, infinity});
+        const Interval<float> path = clip(unit_box, point, -direction, {0, infinity});
         return extinction / (4 * M_PI) * std::exp(-extinction * (t - 1 + path.high));
     };
     EXPECT_NEAR(marched(snapshot, sampled_settings(), ray).radiance.x / integral(integrand, 1, 2), 1, 1e-3);

@@ -19,17 +19,18 @@ inline LightPoint lamp_at(vec3 position, double radius = 0) {
     return {dvec3(position), false, dvec3(position), radius};
 }
 
-inline double length_of(const std::vector<Stretch>& stretches) {
+inline double length_of(const std::vector<Interval<double>>& stretches) {
     double length = 0;
-    for (const Stretch& stretch : stretches) length += stretch.length();
+    for (const Interval<double>& stretch : stretches) length += stretch.length();
     return length;
 }
 
 // Length that only one of the two lists covers.
-inline double difference(const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
+inline double difference(const std::vector<Interval<double>>& a, const std::vector<Interval<double>>& b) {
     double common = 0;
-    for (const Stretch& x : a)
-        for (const Stretch& y : b) common += Stretch{std::max(x.low, y.low), std::min(x.high, y.high)}.length();
+    for (const Interval<double>& x : a)
+        for (const Interval<double>& y : b)
+            common += Interval<double>{std::max(x.low, y.low), std::min(x.high, y.high)}.length();
     return length_of(a) + length_of(b) - 2 * common;
 }
 }

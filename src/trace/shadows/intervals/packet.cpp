@@ -107,7 +107,7 @@ HWY_INLINE void cut(const ShadowPacket& p, const vec3 (&corners)[3], Shadows& sh
 }
 
 void append_shadows_kernel(const ShadowSlices& slices, const ShadowSlices::Node& leaf, const ShadowPacket& packet,
-                           std::vector<Stretch> (&found)[16]) {
+                           std::vector<Interval<double>> (&found)[16]) {
     Shadows shadows;
     for (uint32_t triangle = leaf.first; triangle < leaf.first + leaf.count; ++triangle) {
         const vec3 corners[3] = {slices.corners->of(triangle, 0), slices.corners->of(triangle, 1),
@@ -128,7 +128,7 @@ namespace tyndall {
 HWY_EXPORT(append_shadows_kernel);
 
 void append_shadows(const ShadowSlices& slices, const ShadowSlices::Node& leaf, const ShadowPacket& packet,
-                    std::vector<Stretch> (&shadows)[16]) {
+                    std::vector<Interval<double>> (&shadows)[16]) {
     HWY_DYNAMIC_DISPATCH(append_shadows_kernel)(slices, leaf, packet, shadows);
 }
 }

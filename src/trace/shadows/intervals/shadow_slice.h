@@ -49,13 +49,13 @@ struct ShadowPacket {
 
 // Appends what the triangles of a leaf shadow of the active rays, as add_shadow() does.
 void append_shadows(const ShadowSlices& slices, const ShadowSlices::Node& leaf, const ShadowPacket& packet,
-                    std::vector<Stretch> (&shadows)[16]);
+                    std::vector<Interval<double>> (&shadows)[16]);
 
 // Adds a stretch to a list in no order, joined with one of the last where they touch.
-inline void add_shadow(Stretch shadow, std::vector<Stretch>& shadows) {
+inline void add_shadow(Interval<double> shadow, std::vector<Interval<double>>& shadows) {
     const size_t first = shadows.size() > 4 ? shadows.size() - 4 : 0;
     for (size_t i = shadows.size(); i > first; --i) {
-        Stretch& last = shadows[i - 1];
+        Interval<double>& last = shadows[i - 1];
         if (shadow.low > last.high || shadow.high < last.low) continue;
         last = {std::min(last.low, shadow.low), std::max(last.high, shadow.high)};
         return;

@@ -10,7 +10,7 @@ using Slice = ShadowSlice;
 
 // Appends the stretch that a segment shadows: the point (x, y) lies on the way from t to the light when
 // t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 else, and 0 < y < ly.
-void append_shadow(const Slice& slice, Point a, Point b, std::vector<Stretch>& shadows) {
+void append_shadow(const Slice& slice, Point a, Point b, std::vector<Interval<double>>& shadows) {
     if (a.y > b.y) std::swap(a, b);
     const double top = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
     if (!(b.y > 0) || !(a.y < top)) return;
@@ -21,12 +21,12 @@ void append_shadow(const Slice& slice, Point a, Point b, std::vector<Stretch>& s
         return (p.x * slice.light_y - p.y * slice.light_x) / (slice.light_y - (slice.far ? 0 : p.y));
     };
     const double s = on_ray(a), t = on_ray(b);
-    const Stretch shadow{std::max(std::min(s, t), 0.0), std::min(std::max(s, t), slice.x_max)};
+    const Interval<double> shadow{std::max(std::min(s, t), 0.0), std::min(std::max(s, t), slice.x_max)};
     if (!shadow.empty()) shadows.push_back({shadow.low / slice.per_metre, shadow.high / slice.per_metre});
 }
 
 // The stretch of a line start + t·along that a ball covers; empty when it misses.
-Stretch in_ball(Point start, Point along, Point center, double squared_radius) {
+Interval<double> in_ball(Point start, Point along, Point center, double squared_radius) {
     const double dx = start.x - center.x, dy = start.y - center.y;
     const double a = along.x * along.x + along.y * along.y, b = along.x * dx + along.y * dy;
     const double inside = b * b - a * (dx * dx + dy * dy - squared_radius);
@@ -47,19 +47,19 @@ Ball ball_in(const Slice& slice, const LightPoint& light) {
     return {{glm::dot(slice.x, center), glm::dot(slice.y, center)}, light.radius * light.radius - off * off};
 }
 
-void append_outside(const Slice& slice, const Ball& ball, Point a, Point b, std::vector<Stretch>& shadows) {
-    const Stretch inside = in_ball(a, {b.x - a.x, b.y - a.y}, ball.center, ball.squared_radius);
+void append_outside(const Slice& slice, const Ball& ball, Point a, Point b, std::vector<Interval<double>>& shadows) {
+    const Interval<double> inside = in_ball(a, {b.x - a.x, b.y - a.y}, ball.center, ball.squared_radius);
     if (inside.empty() || inside.low >= 1 || inside.high <= 0) return append_shadow(slice, a, b, shadows);
     if (inside.low > 0) append_shadow(slice, a, between(a, b, inside.low), shadows);
     if (inside.high < 1) append_shadow(slice, between(a, b, inside.high), b, shadows);
 }
 
 // What of 0..t_max no shadow covers. Gaps below rounding are none.
-void append_gaps(std::vector<Stretch>& shadows, double t_max, std::vector<Stretch>& lit) {
-    std::sort(shadows.begin(), shadows.end(), [](Stretch a, Stretch b) { return a.low < b.low; });
+void append_gaps(std::vector<Interval<double>>& shadows, double t_max, std::vector<Interval<double>>& lit) {
+    std::sort(shadows.begin(), shadows.end(), [](Interval<double> a, Interval<double> b) { return a.low < b.low; });
     const double smallest = 1e-12 * (1 + t_max);
     double from = 0;
-    for (const Stretch& shadow : shadows) {
+    for (const Interval<double>& shadow : shadows) {
         if (shadow.low > from + smallest) lit.push_back({from, shadow.low});
         from = std::max(from, shadow.high);
     }
@@ -67,23 +67,23 @@ void append_gaps(std::vector<Stretch>& shadows, double t_max, std::vector<Stretc
 }
 
 // Inside the ball all is lit.
-void add_stretch(Stretch added, std::vector<Stretch>& lit) {
+void add_stretch(Interval<double> added, std::vector<Interval<double>>& lit) {
     if (added.empty()) return;
-    std::vector<Stretch> joined;
-    for (const Stretch& stretch : lit) {
+    std::vector<Interval<double>> joined;
+    for (const Interval<double>& stretch : lit) {
         if (stretch.high < added.low || stretch.low > added.high)
             joined.push_back(stretch);
         else
             added = {std::min(added.low, stretch.low), std::max(added.high, stretch.high)};
     }
     joined.push_back(added);
-    std::sort(joined.begin(), joined.end(), [](Stretch a, Stretch b) { return a.low < b.low; });
+    std::sort(joined.begin(), joined.end(), [](Interval<double> a, Interval<double> b) { return a.low < b.low; });
     lit = std::move(joined);
 }
 }
 
-void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Stretch>& lit) {
-    static thread_local std::vector<Stretch> shadows;
+void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Interval<double>>& lit) {
+    static thread_local std::vector<Interval<double>> shadows;
     static thread_local std::vector<ShadowSlice::Segment> segments;
     lit.clear();
     if (!(ray.t_max > 0) || !is_finite(ray.origin) || !is_finite(ray.direction)) return;
@@ -100,7 +100,7 @@ void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& ligh
             append_shadow(slice, a, b, shadows);
     append_gaps(shadows, t_max, lit);
     if (ball.squared_radius > 0) {
-        const Stretch inside = in_ball({0, 0}, {slice.per_metre, 0}, ball.center, ball.squared_radius);
+        const Interval<double> inside = in_ball({0, 0}, {slice.per_metre, 0}, ball.center, ball.squared_radius);
         add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit);
     }
 }
@@ -126,8 +126,8 @@ bool meets_ball(const LightPoint& light, const ShadowSlices::Node& box) {
 }
 
 void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
-              std::vector<Stretch> (&lit)[16]) {
-    static thread_local std::vector<Stretch> shadows[16];
+              std::vector<Interval<double>> (&lit)[16]) {
+    static thread_local std::vector<Interval<double>> shadows[16];
     static thread_local std::vector<ShadowSlice::Segment> segments;
     ShadowPacket packet;
     Slice planes[16];
@@ -157,7 +157,7 @@ void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<c
         const double t_max = planes[i].x_max / planes[i].per_metre;
         append_gaps(shadows[i], t_max, lit[i]);
         if (!(ball.squared_radius > 0)) continue;
-        const Stretch inside = in_ball({0, 0}, {planes[i].per_metre, 0}, ball.center, ball.squared_radius);
+        const Interval<double> inside = in_ball({0, 0}, {planes[i].per_metre, 0}, ball.center, ball.squared_radius);
         add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit[i]);
     }
 }

@@ -38,10 +38,10 @@ ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, st
 
 // Replaces `lit` by the stretches of the ray 0..t_max, ascending, from which the point of the light is seen. Like
 // shadow rays, the slices look 0.9999 of the way to the point, and nothing inside the light's ball casts shadows.
-void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Stretch>& lit);
+void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Interval<double>>& lit);
 
 // The same for up to 16 rays, each with its own point of one light; quick for rays close to each other after
 // near_rays().
 void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
-              std::vector<Stretch> (&lit)[16]);
+              std::vector<Interval<double>> (&lit)[16]);
 }

@@ -72,8 +72,8 @@ Across across(const ShadowMap& map, const View& view, double near, double far) {
 }
 
 // Planar depths that corners of a box have.
-Stretch depths(const Camera& camera, const Box& box) {
-    Stretch range{endless, -endless};
+Interval<double> depths(const Camera& camera, const Box& box) {
+    Interval<double> range{endless, -endless};
     for (int i = 0; i < 8; ++i) {
         const double depth = glm::dot(dvec3(corner_of(box, i)) - dvec3(camera.position), dvec3(camera.forward));
         range.low = std::min(range.low, depth), range.high = std::max(range.high, depth);
@@ -109,7 +109,7 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOpt
     Across region = across(map, snapshot.occluders->bounds());
     region.cut(across(map, fog));
     const bool bounded = is_finite(fog.low) && is_finite(fog.high);
-    Stretch range = bounded ? depths(view.camera, fog) : Stretch{0, endless};
+    Interval<double> range = bounded ? depths(view.camera, fog) : Interval<double>{0, endless};
     range.low = std::max(range.low, 0.0);
     if (range.empty()) return;
 

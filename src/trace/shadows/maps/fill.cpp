@@ -50,7 +50,7 @@ float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, floa
 }
 
 // Where any look-up that reads texels of a block can lie on the ray through its middle.
-Interval seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
+Interval<float> seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
     const float radius =
         (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(picture.scale.x, picture.scale.y);
     const bool parallel = filling.map.kind == LightKind::sun;
@@ -65,7 +65,7 @@ void fill_block(const Filling& filling, const ShadowPicture& picture, size_t fac
     const ivec2 end = glm::min(corner + block_side, picture.size);
     float* depth = filling.map.depth.data() + picture.first;
     const Ray middle = texel_ray(filling, picture, face, vec2(corner) + 0.5f * block_side);
-    const Interval seen = seen_by_block(filling, picture, middle);
+    const Interval<float> seen = seen_by_block(filling, picture, middle);
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
             const int texel = y * picture.size.x + x;

@@ -40,7 +40,8 @@ HWY_INLINE uint32_t bits_of(const Mask16& mask) {
     return bits;
 }
 
-void append_stretches(const Floats& low, const Floats& high, const Mask16& where, std::vector<Stretch> (&lit)[16]) {
+void append_stretches(const Floats& low, const Floats& high, const Mask16& where,
+                      std::vector<Interval<double>> (&lit)[16]) {
     uint32_t left = bits_of(where);
     if (!left) return;
     alignas(64) float from[16], to[16];
@@ -51,8 +52,8 @@ void append_stretches(const Floats& low, const Floats& high, const Mask16& where
     }
 }
 
-void append_lit_kernel(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Stretch (&ranges)[16],
-                       std::vector<Stretch> (&lit)[16]) {
+void append_lit_kernel(const int (&dark)[16], std::vector<ShadowCrossing>& crossings,
+                       const Interval<double> (&ranges)[16], std::vector<Interval<double>> (&lit)[16]) {
     sort_crossings(crossings);
     alignas(64) float low[16], high[16], counts[16];
     for (int i = 0; i < 16; ++i) {
@@ -78,8 +79,8 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(append_lit_kernel);
 
-void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Stretch (&ranges)[16],
-                std::vector<Stretch> (&lit)[16]) {
+void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Interval<double> (&ranges)[16],
+                std::vector<Interval<double>> (&lit)[16]) {
     HWY_DYNAMIC_DISPATCH(append_lit_kernel)(dark, crossings, ranges, lit);
 }
 }

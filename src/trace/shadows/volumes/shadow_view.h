@@ -98,6 +98,6 @@ void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<
 
 // Sorts the crossings of each ray (but not `behind`) and appends its stretches of low..high in no volume; `dark`: the
 // counts before all crossings.
-void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Stretch (&ranges)[16],
-                std::vector<Stretch> (&lit)[16]);
+void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Interval<double> (&ranges)[16],
+                std::vector<Interval<double>> (&lit)[16]);
 }

@@ -29,7 +29,7 @@ ShadowSlices soup(int triangles, uint32_t seed) {
 }
 
 void expect_same(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points) {
-    std::vector<Stretch> together[16], alone;
+    std::vector<Interval<double>> together[16], alone;
     find_lit(near_rays(slices, rays, points), rays, points, together);
     for (size_t i = 0; i < rays.size(); ++i) {
         find_lit(slices, rays[i], points[i], alone);
@@ -70,7 +70,7 @@ TEST(ShadowSlicesPacket, EmptyRaysAndNoTriangles) {
     std::vector<Ray> rays = bundle(3, 16);
     rays[2].t_max = 0, rays[5].direction.x = std::nanf("");
     const std::vector<LightPoint> points(16, LightPoint{{0, 1, 0}, true});
-    std::vector<Stretch> lit[16];
+    std::vector<Interval<double>> lit[16];
     find_lit(ShadowSlices{}, rays, points, lit);
     for (size_t i = 0; i < 16; ++i) EXPECT_EQ(lit[i].size(), i == 2 || i == 5 ? 0u : 1u);
     find_lit(soup(50, 1), rays, points, lit);

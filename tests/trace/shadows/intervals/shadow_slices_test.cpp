@@ -24,8 +24,8 @@ struct Stage {
         occluders = Occluders::make(scene, seconds, nullptr);
         slices = make_shadow_slices(occluders->shadow_triangles());
     }
-    std::vector<Stretch> lit(const Ray& ray, const LightPoint& light) const {
-        std::vector<Stretch> result;
+    std::vector<Interval<double>> lit(const Ray& ray, const LightPoint& light) const {
+        std::vector<Interval<double>> result;
         find_lit(slices, ray, light, result);
         return result;
     }
@@ -38,7 +38,8 @@ Stage stage_of(std::vector<Mesh> meshes) {
     return stage;
 }
 
-void expect_lit(const std::vector<Stretch>& lit, const std::vector<Stretch>& expected, double tolerance = 1e-12) {
+void expect_lit(const std::vector<Interval<double>>& lit, const std::vector<Interval<double>>& expected,
+                double tolerance = 1e-12) {
     ASSERT_EQ(lit.size(), expected.size());
     for (size_t i = 0; i < lit.size(); ++i) {
         EXPECT_NEAR(lit[i].low, expected[i].low, tolerance);
@@ -127,7 +128,7 @@ TEST(ShadowSlices, ASurfaceDoesNotShadowTheRayThatEndsOnIt) {
         const Ray ray{origin, direction};
         stage.occluders->closest({&ray, 1}, 0, hits);
         if (hits.instance[0] < 0) continue;
-        const std::vector<Stretch> lit = stage.lit({origin, direction, hits.t[0]}, sun_from({0.3f, 1, 0.2f}));
+        const std::vector<Interval<double>> lit = stage.lit({origin, direction, hits.t[0]}, sun_from({0.3f, 1, 0.2f}));
         ASSERT_EQ(lit.size(), 1u);
         EXPECT_EQ(lit[0].low, 0);
         // The float end of the ray may lie an ulp of its coordinates under the floor; seen flat that is longer.
@@ -213,7 +214,7 @@ struct Agreement {
 };
 
 void compare(const Stage& stage, const Ray& ray, const LightPoint& light, int count, double near, Agreement& sum) {
-    const std::vector<Stretch> lit = stage.lit(ray, light);
+    const std::vector<Interval<double>> lit = stage.lit(ray, light);
     for (int first = 0; first < count; first += 16) {
         Occluders::ShadowRays rays;
         double at[16];
@@ -229,7 +230,7 @@ void compare(const Stage& stage, const Ray& ray, const LightPoint& light, int co
         for (int i = 0; i < 16; ++i) {
             bool inside = false;
             double end = std::numeric_limits<double>::infinity();
-            for (const Stretch& stretch : lit) {
+            for (const Interval<double>& stretch : lit) {
                 inside = inside || (at[i] > stretch.low && at[i] < stretch.high);
                 end = std::min({end, std::abs(at[i] - stretch.low), std::abs(at[i] - stretch.high)});
             }
@@ -293,7 +294,7 @@ TEST(ShadowSlices, LeavesNearSomeRaysAnswerAsAllDo) {
             const ShadowSlices near = near_rays(stage.slices, rays, points);
             kept += near.nodes.size();
             for (size_t k = 0; k < 16; ++k) {
-                std::vector<Stretch> lit;
+                std::vector<Interval<double>> lit;
                 find_lit(near, rays[k], points[k], lit);
                 expect_lit(lit, stage.lit(rays[k], points[k]), 0);
             }

@@ -43,7 +43,7 @@ struct Street {
     vec3 seen_point(uint32_t i) const {
         const vec2 pixel(random_unit(i, 0, 0, 2) * 160, random_unit(i, 0, 1, 2) * 90);
         const Ray ray = camera_ray(view.camera, view.size, pixel);
-        const Interval fog = clip(snapshot.media[0].world_bounds, ray.origin, ray.direction, {0, infinity});
+        const Interval<float> fog = clip(snapshot.media[0].world_bounds, ray.origin, ray.direction, {0, infinity});
         return ray.at(glm::mix(fog.low, fog.high, random_unit(i, 0, 2, 2)));
     }
 };

@@ -221,7 +221,8 @@ TEST(ShadowMap, CascadesGetCoarserAndCoverTheView) {
     for (uint32_t i = 0; i < 2000; ++i) {
         const vec2 pixel(random_unit(i, 0, 0, 2) * 160, random_unit(i, 0, 1, 2) * 90);
         const Ray ray = camera_ray(stage.view.camera, stage.view.size, pixel);
-        const Interval fog = clip(stage.snapshot.media[0].world_bounds, ray.origin, ray.direction, {0, infinity});
+        const Interval<float> fog =
+            clip(stage.snapshot.media[0].world_bounds, ray.origin, ray.direction, {0, infinity});
         const vec3 point = ray.at(glm::mix(fog.low, fog.high, random_unit(i, 0, 2, 2)));
         const bool shaded = !clip(casters, point, -light.direction, {0, infinity}).empty();
         if (!shaded) continue;

@@ -45,10 +45,10 @@ struct Counted {
         for (const ShadowCrossing& crossing : crossings) count += crossing.t[lane] <= t ? crossing.change[lane] : 0;
         return static_cast<int>(count);
     }
-    std::vector<Stretch> lit(Stretch range) {
+    std::vector<Interval<double>> lit(Interval<double> range) {
         int counts[16] = {};
-        Stretch ranges[16];
-        std::vector<Stretch> result[16];
+        Interval<double> ranges[16];
+        std::vector<Interval<double>> result[16];
         counts[lane] = dark, ranges[lane] = range;
         append_lit(counts, crossings, ranges, result);
         return result[lane];
@@ -69,13 +69,13 @@ Ray random_ray(uint32_t i, const Box& box) { return {random_point(i, 11, box), r
 
 // Lit stretches as the slices see them, from both kinds of eye, and counts as the triangles have them.
 void expect_right(const Stage& stage, const Ray& ray) {
-    std::vector<Stretch> expected;
+    std::vector<Interval<double>> expected;
     find_lit(stage.slices, ray, stage.light, expected);
     const ShadowView from = view_from(stage.volumes, dvec3(ray.origin));
     const ShadowView along = view_along(stage.volumes, dvec3(ray.origin) + dvec3(1, -2, 0.5), dvec3(ray.direction));
     for (const ShadowView& view : {from, along}) {
         Counted counted = crossings_of(view, ray);
-        const std::vector<Stretch> lit = counted.lit({0, ray.t_max});
+        const std::vector<Interval<double>> lit = counted.lit({0, ray.t_max});
         // The slices leave out the last 0.01 % before the light, and both round to 1e-9.
         EXPECT_LT(difference(lit, expected), 2e-4) << "parallel " << view.parallel;
         for (int k = 0; k < 16; ++k) {
@@ -144,7 +144,7 @@ TEST(ShadowVolumes, CountsTrianglesByHand) {
         if (crossing.t[lane] > 4.5f) continue;
         EXPECT_NEAR(crossing.behind[lane], crossing.t[lane] < 3.5f ? 1 : 2, 1e-6);
     }
-    const std::vector<Stretch> lit = counted.lit({0, 8});
+    const std::vector<Interval<double>> lit = counted.lit({0, 8});
     ASSERT_EQ(lit.size(), 2u);
     EXPECT_NEAR(lit[0].high, 3, 1e-6);
     EXPECT_NEAR(lit[1].low, 5, 1e-6);
@@ -327,12 +327,13 @@ TEST(ShadowVolumes, FarEndsAndGrazingSuns) {
         for (uint32_t i = 0; i < 30; ++i) {
             Ray ray = random_ray(i, room);
             ray.t_max = 1e6f;
-            std::vector<Stretch> expected;
+            std::vector<Interval<double>> expected;
             find_lit(stage.slices, ray, stage.light, expected);
-            const std::vector<Stretch> lit =
+            const std::vector<Interval<double>> lit =
                 crossings_of(view_from(stage.volumes, dvec3(ray.origin)), ray).lit({0, ray.t_max});
             EXPECT_LT(difference(lit, expected), 1e-6 * ray.t_max);
-            for (const Stretch& stretch : lit) EXPECT_TRUE(std::isfinite(stretch.low) && std::isfinite(stretch.high));
+            for (const Interval<double>& stretch : lit)
+                EXPECT_TRUE(std::isfinite(stretch.low) && std::isfinite(stretch.high));
         }
     }
 }
