@@ -7,15 +7,12 @@
 #define TYNDALL_MODES_LIT_FOG_SIMD_H
 #endif
 
-#include "base/simd/angles_simd.h"
-#include "base/simd/simd.h"
+#include "integrate/equi_angular_simd.h"
 #include "integrate/lit_fog.h"
+#include "integrate/scattering_simd.h"
 #include "integrate/shadow_rays_simd.h"
 #include "integrate/style_simd.h"
-#include "trace/fluence/fluence_simd.h"
-#include "trace/transmittance/light_depth_simd.h"
 #include "volume/medium_simd.h"
-#include "volume/phase_simd.h"
 
 #include <array>
 
@@ -89,16 +86,11 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
         amount = amount *
                  share_by_rays(*frame.snapshot.occluders, light, position, light_at, wanted, frame.light_points, key);
     }
-    const Vec3s color = splat(light.intensity * light.volume_scale);
-    const Floats cosine = dot(light_at.to_light, direction);
-    Vec3s scattering = splat(vec3(0));
-    for (const Medium& medium : frame.snapshot.media) {
-        const Floats extinction = density16(medium, position) * medium.optics.extinction;
-        scattering =
-            fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
-    }
-    const Floats dimmed = exp(-light_depth16(frame.depths[index], position, amount > 0.0f));
-    return scattering * (amount * dimmed) * color;
+    const std::vector<Medium>& media = frame.snapshot.media;
+    const Vec3s towards = scattering(media, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
+        return density16(media[m], position) * media[m].optics.extinction;
+    });
+    return scattered_light(light, frame.depths[index], position, amount, towards);
 }
 
 // Emission and ambient light per metre.
@@ -135,10 +127,9 @@ HWY_INLINE Placed place_nodes(const Packet& packet, const Nodes& nodes, const In
     const Floats weight = load(nodes.weight);
     if (packet.spread == Spread::points) return {low, weight};
     if (packet.spread == Spread::length) return {fused(share, high - low, low), weight * (high - low)};
-    const Floats away = gather(packet.away, ray), from = low / away, to = high / away;
-    const Floats angle = angle_between(from, to), further = tan(share * angle);
-    const Floats slope = max(min((from + further) / max(1.0f - from * further, 1e-20f), to), from);
-    return {fused(slope, away, gather(packet.nearest, ray)), weight * angle * away * fused(slope, slope, 1.0f)};
+    const EquiAngular16 turning({low, high}, gather(packet.away, ray));
+    const Floats slope = turning.slope(share);
+    return {fused(slope, turning.height, gather(packet.nearest, ray)), turning.length(weight, slope)};
 }
 
 // Optical depth from the eye to the nodes: between cuts of sampled fog it grows evenly.

@@ -15,15 +15,30 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
+// Shadow rays from points to a light's centre.
+HWY_INLINE void aim_at_center(const Vec3s& position, const Arriving& light_at, const Mask16& wanted,
+                              Occluders::ShadowRays& rays) {
+    store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
+    store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
+    store(light_at.distance * 0.9999f, rays.t_max);
+    alignas(64) float is_wanted[16];
+    store(select(wanted, 1.0f, 0.0f), is_wanted);
+    for (size_t lane = 0; lane < 16; ++lane) rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0, rays.t_min[lane] = 0;
+}
+
+// Turns the ray of a lane to the point of a soft light that u picks.
+inline void aim_at_point(const Light& light, vec2 u, size_t lane, Occluders::ShadowRays& rays) {
+    const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
+    rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
+    rays.t_max[lane] = ray.t_max;
+}
+
 // Turns the shadow rays to the k-th random points of a soft light. `key` gives a number for each lane.
 template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key& key, Occluders::ShadowRays& rays) {
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!rays.active[lane]) continue;
         const uint32_t own = k > 0 ? hash(key(lane), k) : key(lane);
-        const vec2 u(to_unit(hash(own, 0u)), to_unit(hash(own, 1u)));
-        const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
-        rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
-        rays.t_max[lane] = ray.t_max;
+        aim_at_point(light, {to_unit(hash(own, 0u)), to_unit(hash(own, 1u))}, lane, rays);
     }
 }
 
@@ -33,16 +48,8 @@ template<class Key>
 Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position, const Arriving& light_at,
                      const Mask16& wanted, int points, const Key& key) {
     Occluders::ShadowRays rays;
-    store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
-    store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
-    store(light_at.distance * 0.9999f, rays.t_max);
-    alignas(64) float is_wanted[16], share[16];
-    store(select(wanted, 1.0f, 0.0f), is_wanted);
-    for (size_t lane = 0; lane < 16; ++lane) {
-        rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0;
-        rays.t_min[lane] = 0;
-        share[lane] = 0;
-    }
+    alignas(64) float share[16] = {};
+    aim_at_center(position, light_at, wanted, rays);
     if (!is_soft(light)) {
         occluders.transmission(rays, share);
         return load(share);

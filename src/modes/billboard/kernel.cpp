@@ -6,6 +6,7 @@
 
 #include "base/simd/simd.h"
 #include "integrate/batch_simd.h"
+#include "integrate/scattering_simd.h"
 #include "modes/billboard/card_simd.h"
 #include "modes/billboard/reach_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
@@ -19,15 +20,13 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
-    alignas(64) float v[8][16];
+    const Rays16 rays = rays_of(batch);
+    alignas(64) float before[16];
     for (size_t lane = 0; lane < 16; ++lane) {
         const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
-        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
-        v[6][lane] = lane < batch.rays.size() ? ray.t_max : 0;
-        v[7][lane] = glm::dot(ray.origin - billboards.camera.position, ray.direction);
+        before[lane] = glm::dot(ray.origin - billboards.camera.position, ray.direction);
     }
-    return {
-        {load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}, load(v[6]), max(load(v[7]), 0.0f)};
+    return {rays.origin, rays.direction, rays.t_max, max(load(before), 0.0f)};
 }
 
 // Radiance per unit of the light's intensity, by an even beam in even fog: J (1 - e^-σc).
@@ -36,12 +35,13 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     const bool sun = light.kind == LightKind::sun;
     const LightPaths to_light = light_paths(light, on.point), to_eye{packet.origin, packet.direction, on.t};
     Floats extinction = 0.0f, depth = 0.0f;
-    Vec3s scattered = splat(vec3(0));
-    const Floats cosine = dot(to_light.direction, packet.direction);
-    for (const Medium& medium : billboards.snapshot.media) {
-        const Floats here = density16(medium, on.point) * medium.optics.extinction;
+    const std::vector<Medium>& media = billboards.snapshot.media;
+    const Vec3s scattered = scattering(media, dot(to_light.direction, packet.direction), [&](size_t m) HWY_ATTR {
+        const Floats here = density16(media[m], on.point) * media[m].optics.extinction;
         extinction = extinction + here;
-        scattered = fused(splat(medium.optics.albedo), here * phase_value(medium.optics.phase, cosine), scattered);
+        return here;
+    });
+    for (const Medium& medium : media) {
         depth = depth + analytic_depth16(medium, to_light) * billboards.style.light_depth;
         if (billboards.settings.fog) depth = depth + analytic_depth16(medium, to_eye) * billboards.style.view_depth;
     }
@@ -81,13 +81,13 @@ Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet&
         const Floats to = fused(high - low, share, low), middle = 0.5f * (from + to);
         const LightPaths piece{fused(packet.direction, from, packet.origin), packet.direction, to - from};
         const LightPaths to_sun = light_paths(light, fused(packet.direction, middle, packet.origin));
-        Vec3s scattered = splat(vec3(0));
         Floats change = 0.0f, light_depth = 0.0f;
-        for (const Medium& medium : billboards.snapshot.media) {
-            const Floats part = analytic_depth16(medium, piece);
-            scattered = fused(splat(medium.optics.albedo), part * phase_value(medium.optics.phase, cosine), scattered);
-            change = change + part, light_depth = light_depth + analytic_depth16(medium, to_sun);
-        }
+        const std::vector<Medium>& media = billboards.snapshot.media;
+        const Vec3s scattered = scattering(media, cosine, [&](size_t m) HWY_ATTR {
+            const Floats part = analytic_depth16(media[m], piece);
+            change = change + part, light_depth = light_depth + analytic_depth16(media[m], to_sun);
+            return part;
+        });
         const float dimmed = billboards.settings.fog ? style.view_depth : 0;
         Floats arriving =
             exp(-(depth * dimmed + light_depth * style.light_depth)) * mean_transmittance(change * dimmed);
@@ -165,11 +165,7 @@ void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch
     if (billboards.settings.fog)
         for (const Medium& medium : snapshot.media)
             depth = depth + analytic_depth16(medium, {packet.origin, packet.direction, packet.t_max});
-    alignas(64) float v[5][16];
-    store(radiance.x, v[0]), store(radiance.y, v[1]), store(radiance.z, v[2]);
-    store(exp(-depth), v[3]), store(select(drawn > 0.0f, 0.0f, 0.5f), v[4]);
-    for (size_t lane = 0; lane < batch.rays.size(); ++lane)
-        results[lane] = {vec3(v[0][lane], v[1][lane], v[2][lane]), v[3][lane], v[4][lane], 0, vec3(0)};
+    store_results({radiance, exp(-depth), select(drawn > 0.0f, 0.0f, 0.5f), 0.0f}, results.first(batch.rays.size()));
 }
 }
 }

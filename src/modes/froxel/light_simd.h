@@ -7,8 +7,7 @@
 #endif
 
 #include "base/random.h"
-#include "base/simd/simd.h"
-#include "trace/light_simd.h"
+#include "integrate/shadow_rays_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,19 +27,10 @@ struct FroxelLanes {
 HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
                                     const Arriving& arrival, const Mask16& wanted, const Sample2* places) {
     Occluders::ShadowRays rays;
-    store(lanes.point.x, rays.ox), store(lanes.point.y, rays.oy), store(lanes.point.z, rays.oz);
-    store(arrival.to_light.x, rays.dx), store(arrival.to_light.y, rays.dy), store(arrival.to_light.z, rays.dz);
-    store(arrival.distance * 0.9999f, rays.t_max);
-    alignas(64) float is_wanted[16], share[16] = {};
-    store(select(wanted, 1.0f, 0.0f), is_wanted);
-    for (size_t i = 0; i < 16; ++i) {
-        rays.active[i] = is_wanted[i] > 0 ? -1 : 0, rays.t_min[i] = 0;
-        if (!rays.active[i] || !places) continue;
-        const vec3 point(rays.ox[i], rays.oy[i], rays.oz[i]);
-        const Ray ray = ray_to_light(light, point, vec2(places[i].x, places[i].y));
-        rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
-        rays.t_max[i] = ray.t_max;
-    }
+    aim_at_center(lanes.point, arrival, wanted, rays);
+    for (size_t i = 0; i < 16 && places; ++i)
+        if (rays.active[i]) aim_at_point(light, {places[i].x, places[i].y}, i, rays);
+    alignas(64) float share[16] = {};
     occluders.transmission(rays, share);
     return load(share);
 }

@@ -6,13 +6,12 @@
 #define TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
 #endif
 
+#include "integrate/scattering_simd.h"
 #include "integrate/style_simd.h"
 #include "modes/froxel/lit.h"
 #include "modes/froxel/look_simd.h"
 #include "modes/froxel/settings.h"
-#include "trace/fluence/fluence_simd.h"
 #include "trace/transmittance/light_grid_simd.h"
-#include "volume/phase_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -167,29 +166,15 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
         const Vec3s offset = splat(light.position) - arrived.point;
         cosine = dot(offset, lanes.toward) / max(sqrt(dot(offset, offset)), 1e-12f);
     }
-    Vec3s scattering = splat(vec3(0));
-    for (size_t m = 0; m < fill.scene.snapshot.media.size(); ++m) {
-        const Optics& optics = fill.scene.snapshot.media[m].optics;
-        const Floats weight = load(job.extinction[m]) * phase_value(optics.phase, cosine);
-        scattering = fused(splat(optics.albedo), weight, scattering);
-    }
     if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], arrived.point, reached);
-    const Floats dimmed = exp(-light_depth16(fill.scene.depths[index], arrived.point, reached));
-    const Floats amount = zero_unless(reached, arrived.amount * dimmed);
-    return scattering * amount * splat(light.intensity * light.volume_scale);
+    const Vec3s towards =
+        scattering(fill.scene.snapshot.media, cosine, [&](size_t m) HWY_ATTR { return load(job.extinction[m]); });
+    return scattered_light(light, fill.scene.depths[index], arrived.point, arrived.amount, towards);
 }
 
-// Emission, ambient light and light that has been scattered before, per metre.
 Vec3s glow_of(const FroxelScene& scene, const FroxelLanes& lanes, const float (*extinction)[16]) {
-    const Snapshot& snapshot = scene.snapshot;
-    Vec3s glow = splat(vec3(0));
-    for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const vec3 each = glow_per_extinction(snapshot.media[m].optics, snapshot.ambient);
-        glow = fused(splat(each), load(extinction[m]), glow);
-    }
-    if (!scene.fluence) return glow;
-    return glow + scattered_fluence(*scene.fluence, snapshot.media, lanes.point, lanes.toward,
-                                    [&](size_t m) HWY_ATTR { return load(extinction[m]); });
+    return glow(scene.snapshot, scene.fluence.get(), lanes.point, lanes.toward,
+                [&](size_t m) HWY_ATTR { return load(extinction[m]); });
 }
 }
 }

@@ -6,13 +6,11 @@
 
 #include "base/simd/simd.h"
 #include "integrate/batch_simd.h"
+#include "integrate/scattering_simd.h"
 #include "integrate/shadow_rays_simd.h"
 #include "integrate/style_simd.h"
-#include "trace/fluence/fluence_simd.h"
 #include "trace/shadows/maps/shadow_map_simd.h"
-#include "trace/transmittance/light_depth_simd.h"
 #include "volume/medium_simd.h"
-#include "volume/phase_simd.h"
 
 #include <array>
 
@@ -47,19 +45,14 @@ struct Points {
 };
 
 void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
-    alignas(64) float v[6][16] = {};
     packet.longest = 0;
     for (size_t lane = 0; lane < 16; ++lane) {
         std::vector<Step>& steps = packet.scratch.steps[lane];
         steps.clear();
-        const Ray& ray = batch.rays[std::min(lane, batch.rays.size() - 1)];
-        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
         if (lane >= batch.rays.size()) continue;
-        append_march_steps(march.steps, march.snapshot, ray, steps);
+        append_march_steps(march.steps, march.snapshot, batch.rays[lane], steps);
         packet.longest = std::max(packet.longest, steps.size());
     }
-    packet.origin = {load(v[0]), load(v[1]), load(v[2])};
-    packet.direction = {load(v[3]), load(v[4]), load(v[5])};
 }
 
 // The k-th step of every lane: where it looks and how long it is.
@@ -100,16 +93,10 @@ Vec3s scattered_from(const March& march, size_t light_index, const Points& point
     wanted = wanted & (share > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
 
-    const Floats cosine = dot(light_at.to_light, packet.direction);
-    Vec3s scattering = splat(vec3(0));
-    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
-        const Optics& optics = march.snapshot.media[m].optics;
-        const Floats weight = packet.extinction(m) * phase_value(optics.phase, cosine);
-        scattering = fused(splat(optics.albedo), weight, scattering);
-    }
-    const Floats dimmed = exp(-light_depth16(march.depths[light_index], points.position, wanted));
-    const Floats amount = zero_unless(wanted, light_at.amount * share * dimmed);
-    return scattering * amount * splat(light.intensity * light.volume_scale);
+    const Vec3s towards = scattering(march.snapshot.media, dot(light_at.to_light, packet.direction),
+                                     [&](size_t m) HWY_ATTR { return packet.extinction(m); });
+    return scattered_light(light, march.depths[light_index], points.position,
+                           zero_unless(wanted, light_at.amount * share), towards);
 }
 
 // Extinction of all media at the points; remembers each in the packet's scratch.
@@ -125,31 +112,18 @@ Floats extinction_at(const March& march, const Points& points, const Packet& pac
     return total;
 }
 
-// Emission, ambient light and light that has been scattered before, per metre: none needs a light's direction.
-Vec3s glow_at(const March& march, const Points& points, const Packet& packet) {
-    Vec3s glow = splat(vec3(0));
-    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
-        const vec3 each = glow_per_extinction(march.snapshot.media[m].optics, march.snapshot.ambient);
-        glow = fused(splat(each), packet.extinction(m), glow);
-    }
-    if (!march.fluence) return glow;
-    return glow + scattered_fluence(*march.fluence, march.snapshot.media, points.position, packet.direction,
-                                    [&](size_t m) HWY_ATTR { return packet.extinction(m); });
-}
-
 void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local Scratch scratch;
     scratch.extinction.resize(march.snapshot.media.size());
-    Packet packet{splat(vec3(0)), splat(vec3(0)), scratch};
+    const Rays16 rays = rays_of(batch);
+    Packet packet{rays.origin, rays.direction, scratch};
     const size_t light_count = march.snapshot.lights.size();
     place_steps(march, batch, packet);
 
     alignas(64) float jitter[16];
-    for (size_t lane = 0; lane < 16; ++lane) jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
-
+    store(rays.jitter, jitter);
     const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
     Totals totals{splat(vec3(0)), 0.0f, 1.0f};
-    alignas(64) float steps_taken[16] = {};
     Floats taken = 0.0f;
     for (size_t k = 0; k < packet.longest; ++k) {
         Points points = step_points(packet, k, jitter);
@@ -171,7 +145,9 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
             weight = seen * points.length * mean_transmittance(depth * march.style.view_depth) *
                      style_fade(march.style, march.camera, points.position);
         }
-        totals.radiance = totals.radiance + glow_at(march, points, packet) * weight;
+        const Vec3s glowing = glow(march.snapshot, march.fluence.get(), points.position, packet.direction,
+                                   [&](size_t m) HWY_ATTR { return packet.extinction(m); });
+        totals.radiance = totals.radiance + glowing * weight;
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;
             totals.radiance = totals.radiance + added;
@@ -181,16 +157,7 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
         totals.transmittance = exp(-totals.depth);
     }
 
-    alignas(64) float rgbt[4][16];
-    store(totals.radiance.x, rgbt[0]), store(totals.radiance.y, rgbt[1]), store(totals.radiance.z, rgbt[2]);
-    store(totals.transmittance, rgbt[3]), store(taken, steps_taken);
-    for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
-        Scatter& result = results[lane];
-        result.radiance = vec3(rgbt[0][lane], rgbt[1][lane], rgbt[2][lane]);
-        result.transmittance = rgbt[3][lane];
-        result.validity = 1;
-        result.steps = static_cast<int>(steps_taken[lane]);
-    }
+    store_results({totals.radiance, totals.transmittance, 1.0f, taken}, results.first(batch.rays.size()));
 }
 }
 }

@@ -7,7 +7,7 @@
 #define TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
 #endif
 
-#include "base/simd/angles_simd.h"
+#include "integrate/equi_angular_simd.h"
 #include "modes/shadow_map/packet_simd.h"
 #include "modes/shadow_map/settings.h"
 
@@ -85,28 +85,15 @@ struct Spaced {
     }
 };
 
-// Points inside a step, even in the angle around the light: there the light falls off as 1/r², and dt = r²/away dθ.
-struct Turning {
-    Floats low, high, scale, slope, angle;
-
-    Turning(const Floats& from, const Floats& to, const Floats& distance) : low(from), high(to), scale(distance) {
-        slope = low / scale;
-        angle = angle_between(slope, high / scale);
-    }
-    Floats at(const Floats& share) const { // tan(α + β) = (tan α + tan β) / (1 - tan α tan β)
-        const Floats further = tan(share * angle);
-        return max(min((slope + further) / max(1.0f - slope * further, 1e-20f) * scale, high), low);
-    }
-};
-
 // Share of a local light in one step that surfaces let through.
-HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, const Turning& turning,
+HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, const EquiAngular16& turning,
                                const Floats& nearest) {
     const int lookups = rays.map.empty() ? 1 : map_lookups;
     const float part = 1 / static_cast<float>(lookups);
     Floats share = 0.0f;
     for (int i = 0; i < lookups; ++i)
-        share = share + rays.lit_share(nearest + turning.at((packet.jitter + static_cast<float>(i)) * part));
+        share = share + rays.lit_share(nearest +
+                                       turning.slope((packet.jitter + static_cast<float>(i)) * part) * turning.height);
     return share * part;
 }
 
@@ -125,9 +112,9 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
     Floats low = spaced.low;
     for (int k = 0; k < packet.steps; ++k) {
         const Floats high = spaced.at(k + 1, packet.steps), length = high - low;
-        const Turning turning(low, high, scale);
-        const Floats x = turning.at(packet.jitter), slope = x / scale;
-        const Vec3s position = fused(packet.direction, passing.nearest + x, packet.origin);
+        const EquiAngular16 turning({low, high}, scale);
+        const Floats slope = turning.slope(packet.jitter);
+        const Vec3s position = fused(packet.direction, passing.nearest + slope * scale, packet.origin);
         const Arriving light_at = arriving(light, march.cones[index], position);
         Mask16 active = reached & (length > 0.0f) & (light_at.amount > 0.0f);
         Floats share = 0.0f;
@@ -138,8 +125,7 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
             const Floats depth = along.at(passing.nearest + low);
             const Floats seen = seen_share(packet, exp(-depth), depth, inside, mean_transmittance(inside), position);
             const Floats dimmed = exp(-light_depth16(march.depths[index], position, active));
-            const Floats weight = zero_unless(active, seen * turning.angle * scale * fused(slope, slope, 1.0f) *
-                                                          light_at.amount * share * dimmed);
+            const Floats weight = zero_unless(active, turning.length(seen, slope) * light_at.amount * share * dimmed);
             const Floats cosine = dot(light_at.to_light, packet.direction);
             for (size_t m = 0; m < packet.media(); ++m)
                 add(load(extinctions[m].data()) * weight * phase_value(march.snapshot.media[m].optics.phase, cosine),

@@ -9,6 +9,7 @@
 
 #include "base/simd/reduce_simd.h"
 #include "base/simd/simd.h"
+#include "integrate/batch_simd.h"
 #include "integrate/style_simd.h"
 #include "modes/shadow_map/kernel.h"
 #include "scene/light.h"
@@ -86,27 +87,19 @@ HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
 }
 
 Packet make_packet(const ShadowMapMarch& march, const RayBatch& batch, Scratch& scratch) {
-    alignas(64) float v[7][16], jitter[16];
+    const Rays16 rays = rays_of(batch);
     const int steps = march.settings.steps;
     const size_t media = march.snapshot.media.size(), lights = march.snapshot.lights.size();
     scratch.border.resize(16 * static_cast<size_t>(steps + 1));
     scratch.depth.resize(scratch.border.size()), scratch.weight.resize(scratch.border.size());
     scratch.extinction.resize(media * static_cast<size_t>(steps + 1));
     scratch.glowing.assign(media, {}), scratch.scattered.assign(lights * media, {});
-    const auto ray_of = [&](size_t lane) -> const Ray& { return batch.rays[std::min(lane, batch.rays.size() - 1)]; };
-    for (size_t lane = 0; lane < 16; ++lane) {
-        const Ray& ray = ray_of(lane);
-        for (int axis = 0; axis < 3; ++axis) v[axis][lane] = ray.origin[axis], v[3 + axis][lane] = ray.direction[axis];
-        v[6][lane] = ray.t_max;
-        jitter[lane] = lane < batch.jitter.size() ? batch.jitter[lane] : 0.5f;
-    }
     const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
-    const Packet packet{
-        march,        batch, scratch, {load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])},
-        load(jitter), steps, styled};
-    if (!place_even_steps(packet, load(v[6])))
+    const Packet packet{march, batch, scratch, rays.origin, rays.direction, rays.jitter, steps, styled};
+    if (!place_even_steps(packet, rays.t_max))
         for (size_t lane = 0; lane < 16; ++lane)
-            place_steps(march, ray_of(lane), steps, scratch.border.data() + lane, 16);
+            place_steps(march, batch.rays[std::min(lane, batch.rays.size() - 1)], steps, scratch.border.data() + lane,
+                        16);
     return packet;
 }
 

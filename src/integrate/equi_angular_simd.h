@@ -1,0 +1,34 @@
+// Places along sixteen rays that are even in the angle seen from a local light: there 1/r² is constant (Kulla & Fajardo
+// 2012, section 4.1; see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_INTEGRATE_EQUI_ANGULAR_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_EQUI_ANGULAR_SIMD_H
+#undef TYNDALL_INTEGRATE_EQUI_ANGULAR_SIMD_H
+#else
+#define TYNDALL_INTEGRATE_EQUI_ANGULAR_SIMD_H
+#endif
+
+#include "base/simd/angles_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+// Stretches counted from the points next to the light: t = height · slope, slope = tan θ.
+struct EquiAngular16 {
+    Floats height, from, to; // slopes of the ends
+    Floats angle;            // between them
+
+    HWY_INLINE EquiAngular16(const Interval<Floats>& stretch, const Floats& away)
+        : height(away), from(stretch.low / away), to(stretch.high / away), angle(angle_between(from, to)) {}
+
+    // At a share of the angle, by tan(α + β) = (tan α + tan β) / (1 - tan α tan β).
+    HWY_INLINE Floats slope(const Floats& share) const {
+        const Floats further = tan(share * angle);
+        return max(min((from + further) / max(1.0f - from * further, 1e-20f), to), from);
+    }
+    // The length that a weight, in the sum over the shares, stands for there.
+    HWY_INLINE Floats length(const Floats& weight, const Floats& at) const {
+        return weight * angle * height * fused(at, at, 1.0f);
+    }
+};
+}
+HWY_AFTER_NAMESPACE();
+#endif
