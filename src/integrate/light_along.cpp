@@ -1,6 +1,6 @@
 #include "integrate/light_along.h"
 
-#include "scene/cone.h"
+#include "scene/light_reach.h"
 #include "volume/medium.h"
 
 namespace tyndall {

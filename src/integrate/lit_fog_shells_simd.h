@@ -8,7 +8,7 @@
 #endif
 
 #include "integrate/lit_fog_simd.h"
-#include "scene/cone.h"
+#include "scene/light_reach.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,8 +1,8 @@
 // Chances of lights and of distances.
 #include "modes/path/lights.h"
 
-#include "scene/cone.h"
 #include "scene/light.h"
+#include "scene/light_reach.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

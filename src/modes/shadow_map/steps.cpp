@@ -1,6 +1,6 @@
 // Where steps lie: exactly between entry and exit of fog and light.
 #include "modes/shadow_map/kernel.h"
-#include "scene/cone.h"
+#include "scene/light_reach.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 

@@ -2,8 +2,8 @@
 // down: the truth for the `cone` mode.
 #pragma once
 #include "modes/settings.h"
-#include "scene/cone.h"
 #include "scene/light.h"
+#include "scene/light_reach.h"
 #include "volume/medium.h"
 
 #include <functional>

@@ -1,4 +1,4 @@
-#include "scene/cone.h"
+#include "scene/light_reach.h"
 
 namespace tyndall {
 Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dvec3 direction) {

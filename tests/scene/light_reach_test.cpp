@@ -1,4 +1,4 @@
-#include "scene/cone.h"
+#include "scene/light_reach.h"
 
 #include "base/random.h"
 
