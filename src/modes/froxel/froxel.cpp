@@ -42,7 +42,6 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
-    scene.depths.reserve(snapshot.lights.size()); // columns know their grid by its place
     for (const Light& light : scene.snapshot.lights) {
         scene.depths.push_back(
             make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));

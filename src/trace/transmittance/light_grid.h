@@ -18,8 +18,8 @@ void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid);
 // nothing.
 class GridColumns {
 public:
-    GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid);
-    void fill(int packet) const; // sixteen columns of a row, once
+    GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid); // gives the grid its depths
+    void fill(int packet) const;                                         // sixteen columns of a row, once
 
     const LightDepthGrid& grid() const { return grid_; }
     int packets_across() const { return (grid_.size.x + 15) / 16; }
@@ -30,7 +30,7 @@ public:
 private:
     enum State : uint8_t { untouched, at_work, done };
     std::vector<const Medium*> media_;
-    const LightDepthGrid& grid_;
+    LightDepthGrid grid_;
     std::shared_ptr<std::vector<float>> depths_; // the grid's
     std::unique_ptr<std::atomic<uint8_t>[]> states_;
 };

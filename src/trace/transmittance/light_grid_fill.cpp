@@ -87,7 +87,7 @@ GridColumns::GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid)
     : media_(std::move(media)), grid_(grid),
       depths_(std::make_shared<std::vector<float>>(static_cast<size_t>(grid.size.x) * grid.size.y * grid.size.z)),
       states_(std::make_unique<std::atomic<uint8_t>[]>(static_cast<size_t>(packets_across()) * grid.size.y)) {
-    grid.depth = depths_;
+    grid_.depth = grid.depth = depths_;
 }
 
 void GridColumns::fill(int packet) const {
