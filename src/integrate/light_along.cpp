@@ -5,15 +5,7 @@
 
 namespace tyndall {
 namespace {
-double reach_of(const Light& light) { return std::max(light.radius, smallest_radius); }
-
-// Where a sphere about the light cuts the ray.
-Interval<double> inside_sphere(const LightAlong& along, double radius) {
-    const double squared = radius * radius - along.distance * along.distance;
-    if (!(squared > 0)) return {};
-    const double half = std::sqrt(squared) / glm::length(along.direction);
-    return {along.nearest - half, along.nearest + half};
-}
+double radius_of(const Light& light) { return std::max(light.radius, smallest_radius); }
 
 void set_cone(const Light& light, LightAlong& along) {
     const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
@@ -26,17 +18,14 @@ Interval<double> reached(const Light& light, LightAlong& along, Interval<double>
         if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
     };
     along.kinks.push_back(along.nearest);
-    note(inside_sphere(along, reach_of(light)));
-    if (!std::isinf(light.range)) range = common(range, inside_sphere(along, light.range));
-    if (light.kind != LightKind::spot) return range;
-    set_cone(light, along);
-    const dvec3 axis = glm::normalize(dvec3(light.direction));
-    const auto cone = [&](double angle) {
-        return inside_cone(dvec3(light.position), axis, angle, along.origin, along.direction);
-    };
-    const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
-    note(cone(std::acos(std::min(full, 1.0))));
-    return common(range, cone(light.outer_cone));
+    note(inside_ball(light.position, radius_of(light), along.origin, along.direction));
+    if (light.kind == LightKind::spot) {
+        set_cone(light, along);
+        const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
+        note(inside_cone(light.position, glm::normalize(dvec3(light.direction)), std::acos(std::min(full, 1.0)),
+                         along.origin, along.direction));
+    }
+    return common(range, light_reach(light, along.origin, along.direction));
 }
 
 // The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
@@ -92,6 +81,10 @@ double LightAlong::distance_to(double low, double high) const {
     return std::sqrt(off * off + distance * distance);
 }
 
+EquiAngular<double> LightAlong::angles(double low, double high) const {
+    return equi_angular(nearest, std::max(distance, radius_of(*light)), low, high);
+}
+
 double LightAlong::veil_voxels(double low, double high) const {
     double voxels = 0;
     for (const Veil& veil : veils)
@@ -106,7 +99,7 @@ ArrivingAt arriving_at(const LightAlong& along, double t) {
     const Light& light = *along.light;
     if (!along.local()) return {-glm::normalize(dvec3(light.direction)), 1};
     const dvec3 towards = (dvec3(light.position) - along.origin) - t * along.direction;
-    const double squared = glm::dot(towards, towards), away = std::sqrt(squared), reach = reach_of(light);
+    const double squared = glm::dot(towards, towards), away = std::sqrt(squared), reach = radius_of(light);
     const dvec3 to_light = away > 0 ? towards / away : -dvec3(light.direction);
     double amount = 1 / std::max(squared, reach * reach);
     if (!std::isinf(light.range)) {

@@ -1,6 +1,7 @@
 // One light as one camera ray sees it: on which stretches its light arrives, and how much of it where.
 #pragma once
 #include "base/math.h"
+#include "integrate/equi_angular.h"
 #include "scene/light.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 
@@ -28,7 +29,8 @@ struct LightAlong {
 
     bool local() const { return light->kind != LightKind::sun; }
     double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
-    double veil_voxels(double low, double high) const; // per metre, on a stretch that no veil's end divides
+    EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
+    double veil_voxels(double low, double high) const;         // per metre, on a stretch that no veil's end divides
 };
 
 // Unshadowed light at a point of the ray, as arrival() of scene/light.h, in double.

@@ -2,6 +2,7 @@
 #include "integrate/lit_fog.h"
 #include "volume/medium.h"
 
+#include "volume/rays/fog_reach.h"
 #include "volume/rays/spans.h"
 
 namespace tyndall {
@@ -83,14 +84,8 @@ struct Thirds {
 };
 Thirds divide_fog(const LitFog& frame, const Ray& ray) {
     const float end = static_cast<float>(std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media)));
-    Interval<float> fog{infinity, 0};
-    for (const Medium& medium : frame.snapshot.media) {
-        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, end});
-        if (!inside.empty()) fog.low = std::min(fog.low, inside.low), fog.high = std::max(fog.high, inside.high);
-    }
-    if (fog.empty()) return {};
-    const Interval<float> scene = clip(frame.snapshot.bounds, ray.origin, ray.direction, fog);
-    if (scene.empty() || fog.length() < 2 * scene.length()) return {{fog.low, fog.low, fog.high, fog.high}};
+    const Interval<float> fog = fog_stretch(frame.snapshot.media, {ray.origin, ray.direction, end});
+    const Interval<float> scene = scene_part(frame.snapshot, ray, fog);
     return {{fog.low, scene.low, scene.high, fog.high}};
 }
 

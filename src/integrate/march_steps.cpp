@@ -51,12 +51,14 @@ MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights)
     return rule;
 }
 
+Interval<float> scene_part(const Snapshot& snapshot, const Ray& ray, Interval<float> fog) {
+    const Interval<float> scene = clip(snapshot.bounds, ray.origin, ray.direction, fog);
+    return scene.empty() || fog.length() < 2 * scene.length() ? fog : scene;
+}
+
 void append_march_steps(const MarchSteps& rule, const Snapshot& snapshot, const Ray& ray, std::vector<Step>& steps) {
     const Interval<float> stretch = fog_stretch(snapshot.media, ray);
-    // Fog that goes on far beyond the scene holds no shadows there: what the scene covers gets steps of its own.
-    const Interval<float> scene = clip(snapshot.bounds, ray.origin, ray.direction, stretch);
-    if (scene.empty() || stretch.length() < 2 * scene.length())
-        return append_piece(rule, snapshot, ray, stretch, steps);
+    const Interval<float> scene = scene_part(snapshot, ray, stretch);
     append_piece(rule, snapshot, ray, {stretch.low, scene.low}, steps);
     append_piece(rule, snapshot, ray, scene, steps);
     append_piece(rule, snapshot, ray, {scene.high, stretch.high}, steps);

@@ -14,6 +14,10 @@ struct MarchSteps {
 };
 MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights);
 
+// The part of a ray's fog that gets most steps. Fog that goes on far beyond the scene holds no shadows there: what the
+// scene covers gets steps of its own; else all of it.
+Interval<float> scene_part(const Snapshot& snapshot, const Ray& ray, Interval<float> fog);
+
 // Appends the steps of a ray, ascending and disjoint.
 void append_march_steps(const MarchSteps& rule, const Snapshot& snapshot, const Ray& ray, std::vector<Step>& steps);
 }

@@ -1,5 +1,7 @@
 #include "scene/light_reach.h"
 
+#include "scene/light.h"
+
 namespace tyndall {
 Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dvec3 direction) {
     constexpr double endless = std::numeric_limits<double>::infinity();
@@ -41,5 +43,29 @@ Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 or
         return {};
     }
     return inside(0) ? Interval<double>{-endless, endless} : Interval<double>{};
+}
+
+Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 direction) {
+    const double length = glm::length(direction);
+    const dvec3 d = direction / length;
+    const double nearest = glm::dot(center - origin, d), away = glm::length(center - origin - nearest * d);
+    if (!(away < radius)) return {};
+    const double half = std::sqrt((radius - away) * (radius + away));
+    return {(nearest - half) / length, (nearest + half) / length};
+}
+
+Interval<double> light_reach(const Light& light, dvec3 origin, dvec3 direction) {
+    Interval<double> reach{-infinity, infinity};
+    if (light.kind == LightKind::sun) return reach;
+    if (!std::isinf(light.range)) reach = inside_ball(light.position, light.range, origin, direction);
+    if (light.kind != LightKind::spot || reach.empty()) return reach;
+    const dvec3 axis = glm::normalize(dvec3(light.direction));
+    return common(reach, inside_cone(light.position, axis, light.outer_cone, origin, direction));
+}
+
+Interval<float> light_reach(const Light& light, const Ray& ray, Interval<float> stretch) {
+    const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
+    const Interval<float> result = common(stretch, {static_cast<float>(reach.low), static_cast<float>(reach.high)});
+    return result.empty() ? Interval<float>{} : result;
 }
 }

@@ -64,10 +64,8 @@ std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> 
         }
         const LightAlong& along = light.along;
         if (!along.local() || !(first < last)) continue;
-        const double scale = std::max({along.distance, double(along.light->radius), double(smallest_radius)});
-        const double from = std::atan((first - along.nearest) / scale), to = std::atan((last - along.nearest) / scale);
-        for (int i = 1; i < near_steps; ++i)
-            ends.push_back(along.nearest + scale * std::tan(from + (to - from) * i / near_steps));
+        const EquiAngular<double> angles = along.angles(first, last);
+        for (int i = 1; i < near_steps; ++i) ends.push_back(angles.at(double(i) / near_steps).t);
     }
     std::erase_if(ends, [&](double t) { return !(t >= range.low && t <= range.high); });
     std::sort(ends.begin(), ends.end());

@@ -1,6 +1,7 @@
 #include "modes/froxel/lit.h"
 
 #include "base/random.h"
+#include "integrate/gauss_legendre.h"
 #include "integrate/light_along.h"
 
 #include <array>
@@ -18,27 +19,23 @@ struct Moments {
 };
 
 // Light on a stretch without kinks: 2 Gauss points along it, or 4 in the angle seen from the light where that is near
-// (equi-angular: Kulla & Fajardo 2012).
+// (equi-angular).
 Moments light_on(const LightAlong& along, double low, double high) {
-    const double length = high - low, middle = 0.5 * (low + high);
-    if (!along.local()) return {length, length * middle};
+    const double length = high - low;
+    if (!along.local()) return {length, length * 0.5 * (low + high)};
     Moments sum;
     const auto add = [&](double t, double weight) {
         const double light = weight * arriving_at(along, t).amount;
         sum.amount += light, sum.first += light * t;
     };
     if (length < 0.25 * along.distance_to(low, high)) {
-        for (const double side : {-1.0, 1.0}) add(middle + side * 0.2886751345948129 * length, 0.5 * length);
+        for (const QuadratureNode& node : gauss_legendre(2)) add(low + length * node.at, length * node.weight);
         return sum;
     }
-    constexpr double nodes[] = {0.3399810435848563, 0.8611363115940526},
-                     weights[] = {0.6521451548625461, 0.3478548451374538};
-    const double h = std::max(along.distance, 1e-5);
-    const double from = std::atan((low - along.nearest) / h), to = std::atan((high - along.nearest) / h);
-    for (int i = 0; i < 4; ++i) {
-        const double angle = 0.5 * (from + to + (i & 1 ? 1 : -1) * nodes[i / 2] * (to - from));
-        const double tangent = std::tan(angle);
-        add(along.nearest + h * tangent, 0.5 * weights[i / 2] * (to - from) * h * (1 + tangent * tangent));
+    const EquiAngular<double> angles = equi_angular(along.nearest, std::max(along.distance, 1e-5), low, high);
+    for (const QuadratureNode& node : gauss_legendre(4)) {
+        const auto [t, stands_for] = angles.at(node.at);
+        add(t, stands_for * node.weight);
     }
     return sum;
 }

@@ -1,5 +1,6 @@
 // Froxels near a local light: points spread over them.
 #include "base/random.h"
+#include "integrate/equi_angular.h"
 #include "modes/froxel/lit.h"
 #include "modes/froxel/settings.h"
 
@@ -8,9 +9,9 @@ namespace {
 // One line of a froxel as a light near it sees it.
 struct NearLine {
     vec3 start, direction;
-    float length, nearest, h; // nearest, h: where the line passes the light, and how near
-    float from, to;           // angles of its ends
-    float width2;             // of the light's 1/r²: at least that of the part of the froxel the line stands for
+    float length;
+    EquiAngular<float> angles;
+    float width2; // of the light's 1/r²: at least that of the part of the froxel the line stands for
 };
 
 size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, int slice, const Light& light,
@@ -27,18 +28,15 @@ size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, in
         lines[count++] = {start,
                           direction,
                           slant * (std::min(high, depth[ray]) - low),
-                          glm::dot(offset, direction),
-                          glm::length(glm::cross(offset, direction)),
-                          0,
-                          0,
+                          {glm::dot(offset, direction), glm::length(glm::cross(offset, direction))},
                           0};
     }
     const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
     for (size_t i = 0; i < count; ++i) {
         NearLine& line = lines[i];
         line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), smallest_radius * smallest_radius);
-        line.h = std::sqrt(line.h * line.h + line.width2);
-        line.from = std::atan(-line.nearest / line.h), line.to = std::atan((line.length - line.nearest) / line.h);
+        const float nearest = line.angles.nearest, height = line.angles.height;
+        line.angles = equi_angular(nearest, std::sqrt(height * height + line.width2), 0.0f, line.length);
     }
     return count;
 }
@@ -70,10 +68,9 @@ FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, con
         const auto on_line = static_cast<float>((16 - i % count + count - 1) / count);
         const uint32_t key = hash(index, static_cast<uint32_t>(light_index), static_cast<uint32_t>(i));
         const float u = (static_cast<float>(i / count) + to_unit(key)) / on_line;
-        const float tangent = std::tan(line.from + u * (line.to - line.from));
-        points[i] = line.start + (line.nearest + line.h * tangent) * line.direction;
-        weight[i] = (line.to - line.from) * line.h * (1 + tangent * tangent) /
-                    (on_line * line.length * static_cast<float>(count));
+        const auto [t, stands_for] = line.angles.at(u);
+        points[i] = line.start + t * line.direction;
+        weight[i] = stands_for / (on_line * line.length * static_cast<float>(count));
         weight[i] *= falloff_at(light, points[i], line.width2);
 
         const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));

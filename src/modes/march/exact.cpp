@@ -1,21 +1,17 @@
 #include "modes/march/exact.h"
 
+#include "integrate/gauss_legendre.h"
 #include "integrate/light_along.h"
 #include "integrate/light_point.h"
 #include "integrate/style.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_pieces.h"
 
-#include <array>
 #include <utility>
 
 namespace tyndall {
 namespace {
-// Gauss–Legendre on -1..1.
-struct Node {
-    double at, weight;
-};
-constexpr std::array<Node, 2> gauss{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
+constexpr int nodes_per_part = 2;
 
 // A stretch from which a share of a light's points is seen.
 struct LitPart {
@@ -81,9 +77,9 @@ template<class Body> void at_nodes(RayMarch& on, const Body& body) {
     const FogPieces& fog = on.scratch.fog;
     for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
         split(on, piece, fog.pieces[piece].low, fog.pieces[piece].high, nullptr, [&](double low, double high) {
-            for (const Node node : gauss) {
-                const double t = 0.5 * (low + high) + 0.5 * (high - low) * node.at;
-                body(piece, t, 0.5 * (high - low) * node.weight * seen(on, piece, t));
+            for (const QuadratureNode& node : gauss_legendre(nodes_per_part)) {
+                const double t = low + (high - low) * node.at;
+                body(piece, t, (high - low) * node.weight * seen(on, piece, t));
                 ++on.nodes;
             }
         });
@@ -180,19 +176,17 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     return scattering * (weight * light_at.amount * seen(on, piece, t));
 }
 
-// Nodes of one part: for the sun in t; for a local light in θ with t = nearest + scale·tan θ, so that
-// dt = (scale² + (t - nearest)²) / scale dθ.
+// Nodes of one part: even in t for the sun, in the angle seen from a local light.
 template<class Add> void visit_nodes(const LightAlong& along, double low, double high, const Add& add) {
+    const std::span<const QuadratureNode> nodes = gauss_legendre(nodes_per_part);
     if (!along.local()) {
-        for (const Node node : gauss)
-            add(0.5 * (low + high) + 0.5 * (high - low) * node.at, 0.5 * (high - low) * node.weight);
+        for (const QuadratureNode& node : nodes) add(low + (high - low) * node.at, (high - low) * node.weight);
         return;
     }
-    const double scale = std::max({along.distance, double(along.light->radius), double(smallest_radius)});
-    const double from = std::atan((low - along.nearest) / scale), to = std::atan((high - along.nearest) / scale);
-    for (const Node node : gauss) {
-        const double x = std::tan(0.5 * (from + to) + 0.5 * (to - from) * node.at);
-        add(along.nearest + scale * x, 0.5 * (to - from) * node.weight * scale * (1 + x * x));
+    const EquiAngular<double> angles = along.angles(low, high);
+    for (const QuadratureNode& node : nodes) {
+        const auto [t, length] = angles.at(node.at);
+        add(t, length * node.weight);
     }
 }
 

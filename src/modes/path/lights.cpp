@@ -25,23 +25,6 @@ Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
     return stretch;
 }
 
-// The part inside the ball of a light's range.
-Interval<float> within_range(const LineLight& along, float range, Interval<float> stretch) {
-    if (std::isinf(range)) return stretch;
-    if (along.height >= range) return {};
-    const double half = std::sqrt((range - along.height) * (range + along.height));
-    return {static_cast<float>(std::max<double>(stretch.low, along.closest - half)),
-            static_cast<float>(std::min<double>(stretch.high, along.closest + half))};
-}
-
-Interval<float> within_cone(const Light& light, const Ray& line, Interval<float> stretch) {
-    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi) return stretch;
-    const Interval<double> inside =
-        inside_cone(light.position, light.direction, light.outer_cone, dvec3(line.origin), dvec3(line.direction));
-    return {static_cast<float>(std::max<double>(stretch.low, inside.low)),
-            static_cast<float>(std::min<double>(stretch.high, inside.high))};
-}
-
 LineLight light_on_line(const Light& light, const Ray& line, Interval<float> stretch) {
     LineLight along;
     along.reach = stretch;
@@ -50,15 +33,13 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
         return along;
     }
     const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
-    along.closest = glm::dot(offset, direction);
-    const double nearest = std::max(light.radius, smallest_radius);
-    along.height = std::max(glm::length(offset - along.closest * direction), nearest);
-    along.reach = within_cone(light, line, within_range(along, light.range, stretch));
+    const double closest = glm::dot(offset, direction), nearest = std::max(light.radius, smallest_radius);
+    along.reach = light_reach(light, line, stretch);
     if (along.reach.empty()) return along;
-    along.low_angle = std::atan((along.reach.low - along.closest) / along.height);
-    along.high_angle = std::atan((along.reach.high - along.closest) / along.height);
-    if (!(along.high_angle > along.low_angle)) return along;
-    along.chance = static_cast<float>(volume_brightness(light) * (along.high_angle - along.low_angle) / along.height);
+    along.angles = equi_angular<double>(closest, std::max(glm::length(offset - closest * direction), nearest),
+                                        along.reach.low, along.reach.high);
+    const double angle = along.angles.to - along.angles.from;
+    if (angle > 0) along.chance = static_cast<float>(volume_brightness(light) * angle / along.angles.height);
     return along;
 }
 
@@ -80,16 +61,13 @@ template<class Irradiance> LightPick pick(size_t count, float u, const Irradianc
 }
 
 float LineLight::distance(float u) const {
-    if (height == 0) return reach.low + u * reach.length();
-    const double t = closest + height * std::tan(low_angle + u * (high_angle - low_angle));
-    return std::clamp(static_cast<float>(t), reach.low, reach.high);
+    if (angles.height == 0) return reach.low + u * reach.length();
+    return std::clamp(static_cast<float>(angles.at(u).t), reach.low, reach.high);
 }
 
 float LineLight::density(float t) const {
     if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
-    if (height == 0) return 1 / reach.length();
-    const double off = t - closest;
-    return static_cast<float>(height / ((high_angle - low_angle) * (height * height + off * off)));
+    return angles.height == 0 ? 1 / reach.length() : static_cast<float>(angles.density(t));
 }
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {

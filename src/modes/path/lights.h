@@ -1,6 +1,7 @@
 // Which light a path turns to next, and how far along a line through fog it looks for it.
 #pragma once
 #include "base/math.h"
+#include "integrate/equi_angular.h"
 
 #include <span>
 #include <vector>
@@ -9,13 +10,12 @@ namespace tyndall {
 struct Light;
 struct Snapshot;
 
-// One light along a line: distances are picked even in angle around a local light (Kulla & Fajardo 2012), even in
+// One light along a line: distances are picked even in angle around a local light, even in
 // length under the sun.
 struct LineLight {
-    Interval<float> reach;                // of the line, where there is fog and the light can be; empty = nowhere
-    double closest = 0, height = 0;       // local lights: the line's closest point, and how far the light is from it
-    double low_angle = 0, high_angle = 0; // of `reach`, seen from the light
-    float chance = 0;                     // of being picked among the lights
+    Interval<float> reach;      // of the line, where there is fog and the light can be; empty = nowhere
+    EquiAngular<double> angles; // of `reach`, seen from a local light
+    float chance = 0;           // of being picked among the lights
 
     float distance(float u) const;
     float density(float t) const; // of the distances picked, 1/m

@@ -34,9 +34,6 @@ inline constexpr int least_uneven_steps = 8; // fewer are even
 // there is no fog.
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride);
 
-// The part of a stretch of the ray that a local light reaches: its cone, and the sphere of its range.
-Interval<float> lit_interval(const Light& light, const Ray& ray, Interval<float> stretch);
-
 // Fog along up to 16 rays, in steps of even fog whose integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015,
 // section 5.6.3). Suns are asked for at the steps of the ray; a local light has as many steps of its own on what it
 // reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).

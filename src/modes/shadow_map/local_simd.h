@@ -10,6 +10,7 @@
 #include "integrate/equi_angular_simd.h"
 #include "modes/shadow_map/packet_simd.h"
 #include "modes/shadow_map/settings.h"
+#include "scene/light_reach.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -55,7 +56,7 @@ Passing pass_light(const Packet& packet, const Light& light) {
     for (size_t lane = 0; lane < packet.batch.rays.size(); ++lane) {
         const Ray& ray = packet.batch.rays[lane];
         const Interval<float> stretch{border[lane], border[16 * static_cast<size_t>(packet.steps) + lane]};
-        const Interval<float> lit = lit_interval(light, ray, stretch);
+        const Interval<float> lit = light_reach(light, ray, stretch);
         if (lit.empty()) continue;
         const vec3 offset = light.position - ray.origin;
         const float nearest = glm::dot(offset, ray.direction);

@@ -1,6 +1,6 @@
 // Where steps lie: exactly between entry and exit of fog and light.
+#include "integrate/march_steps.h"
 #include "modes/shadow_map/kernel.h"
-#include "scene/light_reach.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 
@@ -12,9 +12,8 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
         for (int k = 0; k <= steps; ++k)
             t[static_cast<size_t>(first + k) * stride] = part.low + step * static_cast<float>(k);
     };
-    const Interval<float> scene = clip(march.snapshot.bounds, ray.origin, ray.direction, stretch);
-    if (scene.empty() || stretch.length() < 2 * scene.length() || count < least_uneven_steps)
-        return even(stretch, 0, count);
+    const Interval<float> scene = scene_part(march.snapshot, ray, stretch);
+    if (scene.length() == stretch.length() || count < least_uneven_steps) return even(stretch, 0, count);
 
     const int before = scene.low > stretch.low ? count / 8 : 0, after = stretch.high > scene.high ? count / 4 : 0;
     even({stretch.low, scene.low}, 0, before);
@@ -23,25 +22,5 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
     for (int k = 1; k <= after; ++k)
         t[static_cast<size_t>(count - after + k) * stride] =
             scene.high + start * (std::pow(1 + growth, static_cast<float>(k) / static_cast<float>(after)) - 1);
-}
-
-Interval<float> lit_interval(const Light& light, const Ray& ray, Interval<float> stretch) {
-    if (std::isfinite(light.range)) {
-        const dvec3 offset = dvec3(light.position) - dvec3(ray.origin);
-        const double nearest = glm::dot(offset, dvec3(ray.direction));
-        const double off = glm::length(offset - nearest * dvec3(ray.direction)), range = light.range;
-        if (!(off < range)) return {};
-        const double half = std::sqrt((range - off) * (range + off));
-        stretch.low = std::max(stretch.low, static_cast<float>(nearest - half));
-        stretch.high = std::min(stretch.high, static_cast<float>(nearest + half));
-    }
-    if (light.kind == LightKind::spot && !stretch.empty()) {
-        const Interval<double> cone =
-            inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
-        stretch.low = std::max(stretch.low, static_cast<float>(cone.low));
-        stretch.high = std::min(stretch.high, static_cast<float>(cone.high));
-        if (cone.empty()) return {};
-    }
-    return stretch.empty() ? Interval<float>{} : stretch;
 }
 }
