@@ -93,7 +93,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
     const Floats cosine = dot(light_at.to_light, direction);
     Vec3s scattering = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
-        const Floats extinction = density16(medium, position) * medium.optics.extinction;
+        const Floats extinction = density16(medium, position) * grey_extinction(medium.optics);
         scattering =
             fused(splat(medium.optics.albedo), extinction * phase_value(medium.optics.phase, cosine), scattering);
     }
@@ -106,7 +106,7 @@ HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
-        const vec3 per_density = optics.extinction * optics.albedo * frame.snapshot.ambient + optics.emission;
+        const vec3 per_density = grey_extinction(optics) * optics.albedo * frame.snapshot.ambient + optics.emission;
         sum = fused(splat(per_density), density16(medium, position), sum);
     }
     return sum;
@@ -116,7 +116,7 @@ HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
 HWY_INLINE Vec3s scattered_again(const LitFog& frame, const Vec3s& position, const Vec3s& direction) {
     const std::vector<Medium>& media = frame.snapshot.media;
     return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
-        return density16(media[m], position) * media[m].optics.extinction;
+        return density16(media[m], position) * grey_extinction(media[m].optics);
     });
 }
 

@@ -39,7 +39,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     Vec3s scattered = splat(vec3(0));
     const Floats cosine = dot(to_light.direction, packet.direction);
     for (const Medium& medium : billboards.snapshot.media) {
-        const Floats here = density16(medium, on.point) * medium.optics.extinction;
+        const Floats here = density16(medium, on.point) * grey_extinction(medium.optics);
         extinction = extinction + here;
         scattered = fused(splat(medium.optics.albedo), here * phase_value(medium.optics.phase, cosine), scattered);
         depth = depth + analytic_depth16(medium, to_light) * billboards.style.light_depth;

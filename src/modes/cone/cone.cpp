@@ -110,7 +110,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
 
 float AnchoredFog::extinction() const {
     float sum = 0;
-    for (const Medium& medium : media) sum += medium.optics.extinction;
+    for (const Medium& medium : media) sum += grey_extinction(medium.optics);
     return sum;
 }
 

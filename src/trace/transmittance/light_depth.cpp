@@ -61,7 +61,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 KeptKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
     KeptKey key;
     key.add(light).add(resolution);
-    for (const Medium* medium : bricks) key.add(medium->bricks).add(medium->optics.extinction);
+    for (const Medium* medium : bricks) key.add(medium->bricks).add(grey_extinction(medium->optics));
     return key;
 }
 

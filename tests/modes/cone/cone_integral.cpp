@@ -39,7 +39,8 @@ double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, doubl
         const double h0 = origin.y + in.low * direction.y - medium.height_base;
         const double h1 = origin.y + in.high * direction.y - medium.height_base;
         const bool height = medium.kind == DensityKind::height;
-        sum += medium.optics.extinction * in.length() * (height ? mean_density(h0, h1, medium.height_falloff) : 1);
+        sum +=
+            grey_extinction(medium.optics) * in.length() * (height ? mean_density(h0, h1, medium.height_falloff) : 1);
     }
     return sum;
 }
@@ -98,8 +99,8 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
                 continue;
             const double height = std::max(point.y - medium.height_base, 0.0) / medium.height_falloff;
             const double density = medium.kind == DensityKind::height ? std::exp(-height) : 1;
-            scattered +=
-                medium.optics.extinction * density * phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
+            scattered += grey_extinction(medium.optics) * density *
+                         phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
         }
         const double dim =
             depth(media, o, d, t) + depth(media, point, to_light, sun ? 1e12 : std::max(away - light.radius, 0.0));
