@@ -30,7 +30,7 @@ Stretch reached(const Light& light, LightAlong& along, Stretch range) {
     along.kinks.push_back(along.nearest);
     note(inside_sphere(along, reach_of(light)));
     if (!std::isinf(light.range)) range = common(range, inside_sphere(along, light.range));
-    if (light.kind != LightKind::spot) return range;
+    if (!has_cone(light)) return range;
     set_cone(light, along);
     const dvec3 axis = glm::normalize(dvec3(light.direction));
     const auto cone = [&](double angle) {
@@ -115,7 +115,7 @@ ArrivingAt arriving_at(const LightAlong& along, double t) {
         const double share = away / light.range;
         amount *= std::clamp(1 - share * share * share * share, 0.0, 1.0);
     }
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         const double cosine = -glm::dot(to_light, dvec3(light.direction));
         const double edge = std::clamp(cosine * along.cone_scale + along.cone_offset, 0.0, 1.0);
         amount *= edge * edge;

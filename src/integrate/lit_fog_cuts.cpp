@@ -22,7 +22,7 @@ void add_levels(const Medium& medium, const Ray& ray, Stretch inside, std::vecto
 // through has a kink there. With the way x + u·(light - far·x), far = 0 for suns, the faces f of axes i and j are met
 // at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which is linear in x.
 void add_exits(const Medium& medium, const Light& light, const Ray& ray, Stretch inside, std::vector<double>& cuts) {
-    const double far = light.kind == LightKind::sun ? 0 : 1;
+    const double far = is_distant(light) ? 0 : 1;
     const glm::dvec4 source = far == 0 ? glm::dvec4(-dvec3(light.direction), 0) : glm::dvec4(light.position, 1);
     const dvec3 to(dmat4(medium.world_to_local) * source);
     const LocalRay local = local_ray(medium.world_to_local, ray);

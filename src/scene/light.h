@@ -2,6 +2,7 @@
 #pragma once
 #include "base/math.h"
 #include "scene/light_kind.h"
+#include "volume/bricks/brick_walk.h"
 
 #include <string>
 
@@ -22,7 +23,10 @@ struct Light {
 };
 
 // Whether its shadows have soft edges: each shadow ray then goes to another point of the light.
-inline bool is_soft(const Light& light) { return light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0; }
+bool is_soft(const Light& light);
+
+// What the scene has to hold of it: the place of a light that has one.
+Box light_bounds(const Light& light);
 
 // What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
 struct Arrival {
@@ -31,6 +35,13 @@ struct Arrival {
     float distance = infinity; // metres, infinite for the sun
 };
 Arrival arrival(const Light& light, vec3 point);
+
+// The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
+// or disc is seen under; its centre when the light is a point. Ends just before the light.
+Ray ray_to_light(const Light& light, vec3 point, vec2 u);
+
+// Where on origin + t·direction, a direction of any length, its light arrives with nothing in the way. May be endless.
+Stretch light_reach(const Light& light, dvec3 origin, dvec3 direction);
 
 inline constexpr float smallest_radius = 1e-4f; // metres; 1/r² is capped here when a light has no radius
 

@@ -110,7 +110,7 @@ HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
 
 HWY_INLINE Floats light_depth(const Packet& packet, const ConeLight& light, const Vec3s& point,
                               const Floats& distance) {
-    const bool sun = light.light.kind == LightKind::sun;
+    const bool sun = is_distant(light.light);
     const Floats length = sun ? Floats(sun_distance) : max(distance - light.light.radius, 0.0f);
     const float scale = packet.cone.style.light_depth;
     if (packet.fog.direct) return length * (packet.fog.extinction() * scale);

@@ -1,7 +1,6 @@
 // Chances of lights and of distances.
 #include "modes/path/lights.h"
 
-#include "scene/cone.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
@@ -25,27 +24,10 @@ Interval fog_stretch(const Snapshot& snapshot, const Ray& line) {
     return stretch;
 }
 
-// The part inside the ball of a light's range.
-Interval within_range(const LineLight& along, float range, Interval stretch) {
-    if (std::isinf(range)) return stretch;
-    if (along.height >= range) return {};
-    const double half = std::sqrt((range - along.height) * (range + along.height));
-    return {static_cast<float>(std::max<double>(stretch.low, along.closest - half)),
-            static_cast<float>(std::min<double>(stretch.high, along.closest + half))};
-}
-
-Interval within_cone(const Light& light, const Ray& line, Interval stretch) {
-    if (light.kind != LightKind::spot || light.outer_cone >= 0.5f * pi) return stretch;
-    const Stretch inside =
-        inside_cone(light.position, light.direction, light.outer_cone, dvec3(line.origin), dvec3(line.direction));
-    return {static_cast<float>(std::max<double>(stretch.low, inside.low)),
-            static_cast<float>(std::min<double>(stretch.high, inside.high))};
-}
-
 LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
     LineLight along;
     along.reach = stretch;
-    if (light.kind == LightKind::sun) {
+    if (is_distant(light)) {
         along.chance = volume_brightness(light) * along.reach.length();
         return along;
     }
@@ -53,7 +35,9 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval stretch) {
     along.closest = glm::dot(offset, direction);
     const double nearest = std::max(light.radius, smallest_radius);
     along.height = std::max(glm::length(offset - along.closest * direction), nearest);
-    along.reach = within_cone(light, line, within_range(along, light.range, stretch));
+    const Stretch reach = light_reach(light, dvec3(line.origin), direction);
+    along.reach = {static_cast<float>(std::max<double>(stretch.low, reach.low)),
+                   static_cast<float>(std::min<double>(stretch.high, reach.high))};
     if (along.reach.empty()) return along;
     along.low_angle = std::atan((along.reach.low - along.closest) / along.height);
     along.high_angle = std::atan((along.reach.high - along.closest) / along.height);

@@ -171,7 +171,7 @@ void find_lit(const Packet& packet) {
     const auto steps = static_cast<size_t>(packet.steps);
     packet.scratch.lit.resize(packet.lights() * steps);
     for (size_t i = 0; i < packet.lights(); ++i) {
-        if (packet.march.snapshot.lights[i].kind != LightKind::sun) continue;
+        if (!is_distant(packet.march.snapshot.lights[i])) continue;
         const RaysInMap rays(packet, i);
         const LitSteps search(packet, rays, packet.scratch.lit.data() + i * steps);
         search.find(0, packet.steps, search.reach_at(0), search.reach_at(packet.steps));

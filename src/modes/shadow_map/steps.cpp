@@ -1,6 +1,6 @@
 // Where steps lie: exactly between entry and exit of fog and light.
 #include "modes/shadow_map/kernel.h"
-#include "scene/cone.h"
+#include "scene/light.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 
@@ -26,21 +26,9 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
 }
 
 Interval lit_interval(const Light& light, const Ray& ray, Interval stretch) {
-    if (std::isfinite(light.range)) {
-        const dvec3 offset = dvec3(light.position) - dvec3(ray.origin);
-        const double nearest = glm::dot(offset, dvec3(ray.direction));
-        const double off = glm::length(offset - nearest * dvec3(ray.direction)), range = light.range;
-        if (!(off < range)) return {};
-        const double half = std::sqrt((range - off) * (range + off));
-        stretch.low = std::max(stretch.low, static_cast<float>(nearest - half));
-        stretch.high = std::min(stretch.high, static_cast<float>(nearest + half));
-    }
-    if (light.kind == LightKind::spot && !stretch.empty()) {
-        const Stretch cone = inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
-        stretch.low = std::max(stretch.low, static_cast<float>(cone.low));
-        stretch.high = std::min(stretch.high, static_cast<float>(cone.high));
-        if (cone.empty()) return {};
-    }
-    return stretch.empty() ? Interval{} : stretch;
+    const Stretch reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
+    stretch.low = std::max(stretch.low, static_cast<float>(reach.low));
+    stretch.high = std::min(stretch.high, static_cast<float>(reach.high));
+    return reach.empty() || stretch.empty() ? Interval{} : stretch;
 }
 }

@@ -22,7 +22,7 @@ struct LightPaths {
 inline constexpr float sun_distance = 1e12f; // metres: beyond all fog, and its square is still a float
 
 HWY_INLINE LightPaths light_paths(const Light& light, const Vec3s& point) {
-    if (light.kind == LightKind::sun) return {point, splat(-light.direction), sun_distance};
+    if (is_distant(light)) return {point, splat(-light.direction), sun_distance};
     const Vec3s towards = splat(light.position) - point;
     const Floats distance = max(sqrt(dot(towards, towards)), 1e-12f);
     return {point, towards * (1.0f / distance), max(distance - light.radius, 0.0f)};

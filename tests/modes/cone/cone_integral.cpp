@@ -49,7 +49,7 @@ double strength(const Light& light, dvec3 to_light, double distance) {
     const double reach = std::max(light.radius, smallest_radius);
     double amount = 1 / std::max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) amount *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
-    if (light.kind != LightKind::spot) return amount;
+    if (!has_cone(light)) return amount;
     const dvec3 axis(light.direction);
     const double sine = glm::length(glm::cross(axis, to_light)), cosine = -glm::dot(axis, to_light);
     const double versine = cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
@@ -85,7 +85,7 @@ double adaptive(const std::function<double(double)>& f, double a, double b, doub
 
 double cone_integral(const Light& light, std::span<const Medium> media, const Ray& ray) {
     const dvec3 o(ray.origin), d(ray.direction), apex(light.position), axis = glm::normalize(dvec3(light.direction));
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     const auto integrand = [&](double t) {
         const dvec3 point = o + t * d, towards = apex - point;
         const double away = glm::length(towards);
@@ -113,7 +113,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
     std::vector<double> cuts{0, double(ray.t_max), nearest};
     const auto add = [&](Stretch s) { cuts.push_back(s.low), cuts.push_back(s.high); };
     for (const Medium& medium : media) add(inside(medium.bounds, o, d, ray.t_max));
-    if (light.kind == LightKind::spot)
+    if (has_cone(light))
         add(inside_cone(apex, axis, light.outer_cone, o, d)), add(inside_cone(apex, axis, light.inner_cone, o, d));
     for (const double radius : {double(light.range), double(std::max(light.radius, smallest_radius))})
         if (!sun && radius > off && std::isfinite(radius)) {
