@@ -285,6 +285,17 @@ TEST(Steps, FogWithoutEndIsCutWhereItIsOpaque) {
     EXPECT_TRUE(ascending(Ray{}, steps_of(Ray{vec3(0, 3, 0), vec3(1, 0, 0)}, both)));
 }
 
+TEST(Steps, FogThatOnlyGlowsHasStepsAndWhatDoesNeitherHasNone) {
+    Medium fog = even_medium(0, {vec3(-1), vec3(1)});
+    const Ray ray{vec3(-3, 0, 0), vec3(1, 0, 0)};
+    EXPECT_TRUE(steps_of(ray, fog).empty());
+    fog.optics.emission = vec3(1);
+    const auto steps = steps_of(ray, fog);
+    ASSERT_FALSE(steps.empty());
+    EXPECT_FLOAT_EQ(steps.front().low, 2);
+    EXPECT_FLOAT_EQ(steps.back().high, 4);
+}
+
 TEST(Steps, AxisParallelAndDegenerateRays) {
     const std::vector<Medium> media{medium_of(volume_of(ivec3(0), ivec3(23), exact_noise)),
                                     even_medium(1, {vec3(0), vec3(23)})};
