@@ -141,7 +141,7 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
 
 Mode cone_mode() {
     return {.name = "cone",
-            .summary = "closed forms for the light of spots, points and suns in even fog, without shadows",
+            .summary = "closed forms for the light of spots, points and suns in homogeneous fog, without shadows",
             .use = "spots and lamps that nothing obstructs, in homogeneous fog: exact and the fastest",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,
