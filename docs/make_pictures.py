@@ -36,7 +36,8 @@ def make(tyndall, picture, words, directory):
     made = [directory / f"out/{stem}.{extension}", directory / f"out/{stem}.modes.{extension}"]
     written, kept = next(path for path in made if path.exists()), ROOT / "docs/images" / picture
     if extension == "png":
-        Image.open(written).convert("RGB").quantize(256).save(kept, optimize=True)  # a third of the bytes
+        image = Image.open(written).convert("RGB")  # in 256 colours, dithered so that beams show no bands
+        image.quantize(palette=image.quantize(256), dither=Image.FLOYDSTEINBERG).save(kept, optimize=True)
     else:
         shutil.copyfile(written, kept)
 

@@ -64,10 +64,10 @@ vec2 drawn_direction(const ViewState& state, ivec2 size, const LightIcon& icon) 
 void draw_icon(const ViewState& state, ivec2 size, const LightIcon& icon, ImVec2 at, bool bright, ImU32 fill) {
     const float r = 0.42f * ImGui::GetFontSize();
     const ImU32 color = bright ? ImGui::GetColorU32(accent) : IM_COL32(255, 255, 255, 130);
-    const LightKind kind = state.scene->lights[icon.light].kind;
-    if (kind == LightKind::sun) rays(at, 1.7f * r, 2.5f * r, 8, color);
-    if (kind == LightKind::point) rays(at, 1.6f * r, 2.1f * r, 4, color);
-    if (kind == LightKind::spot) cone(at, drawn_direction(state, size, icon), 2.6f * r, color);
+    const LightSource& light = state.scene->lights[icon.light];
+    if (is_distant(light)) rays(at, 1.7f * r, 2.5f * r, 8, color);
+    if (shines_around(light)) rays(at, 1.6f * r, 2.1f * r, 4, color);
+    if (has_cone(light)) cone(at, drawn_direction(state, size, icon), 2.6f * r, color);
     ImGui::GetWindowDrawList()->AddCircleFilled(at, r, fill);
     ring(at, r, color, 1.5f);
 }
@@ -109,7 +109,7 @@ void draw_words(ImVec2 at, const std::string& text) {
 // A spot's beam as far as its target, or as its handles.
 void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const Zoom& zoom, float length) {
     const LightSource& light = state.scene->lights[icon.light];
-    if (light.kind != LightKind::spot) return;
+    if (!has_cone(light)) return;
     const Camera camera = camera_now(state);
     const double seconds = seconds_of(state);
     const LightPlace place = light_place(*state.scene, icon.light, seconds);

@@ -107,7 +107,8 @@ void draw_list(const ViewState& state, const Act& act) {
     small_heading("Lights");
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const LightSource& light = scene.lights[i];
-        draw_line(state, {Part::light, i}, light.name, kind_name(light), hue_of(light.color.at(seconds)), act);
+        draw_line(state, {Part::light, i}, light.name, std::string(traits_of(light.kind).noun).c_str(),
+                  hue_of(light.color.at(seconds)), act);
     }
     if (scene.lights.empty()) ImGui::TextDisabled("none");
     small_heading("Fog");
@@ -133,7 +134,7 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     if (properties.empty()) ImGui::TextDisabled("belongs to the glTF; nothing to change here");
     ImGui::PushID(place_of(scene, thing.part, thing.index).c_str());
     for (const Property* property : properties) {
-        const bool sun = thing.part == Part::light && scene.lights[thing.index].kind == LightKind::sun;
+        const bool sun = thing.part == Part::light && is_distant(scene.lights[thing.index]);
         if (sun && std::string_view(property->name) == "direction") draw_sun_place(state, thing.index, memory, act);
         draw_property(state, *property, thing.index, memory, act);
     }

@@ -73,9 +73,9 @@ ViewerOptions read_options(const Texts& texts) {
     if (!texts.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     if (!texts.rate.empty()) state.wanted_rate = number_option("--fps", texts.rate, 1, 1000);
     constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    options.load.light_units = units[choice_option("--light-units", texts.units, {"spec", "unitless", "raw"})];
+    options.load.light_units = units[choice_among("--light-units", texts.units, {"spec", "unitless", "raw"})];
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    state.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
+    state.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
     options.stats = texts.stats;
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
     options.isa = chosen_isa("auto");

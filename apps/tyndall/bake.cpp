@@ -15,7 +15,7 @@ struct Options {
 BakeOptions bake_options(const Options& texts) {
     BakeOptions options;
     options.write.half = !texts.full_float;
-    options.write.blosc = choice_option("--compression", texts.compression, {"blosc", "zip"}) == 0;
+    options.write.blosc = choice_among("--compression", texts.compression, {"blosc", "zip"}) == 0;
     options.resume = texts.resume;
     options.cancel = &cancel_flag();
     return options;

@@ -37,7 +37,7 @@ std::vector<const Mode*> asked_modes(const std::string& text) {
     if (text == "all") return result;
     result.clear();
     for (const std::string& name : comma_list(text)) {
-        const Mode* mode = &modes()[choice_option("--modes", name, names)];
+        const Mode* mode = &modes()[choice_among("--modes", name, names)];
         if (std::ranges::count(result, mode)) fail(ExitCode::usage, "--modes", name + " is named twice");
         result.push_back(mode);
     }

@@ -8,6 +8,7 @@
 #include "scene/gltf/gltf.h"
 #include "volume/vdb/vdb.h"
 
+#include <algorithm>
 #include <set>
 
 namespace tyndall {
@@ -84,6 +85,8 @@ void check_sequence(const std::string& pattern, Problems& problems) {
     const VdbSequence sequence = find_sequence(pattern, ".");
     for (int frame = sequence.files.front(); frame <= sequence.files.back(); ++frame)
         guarded(pattern, problems, [&] {
+            if (!std::ranges::count(sequence.files, frame))
+                fail(ExitCode::unreadable, "", "frame " + std::to_string(frame) + " is missing");
             const auto file = sequence_file(sequence, frame, MissingFrame::error);
             if (file && file->extension() == ".exr")
                 check_exr(file->string(), problems);

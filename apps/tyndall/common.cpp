@@ -56,12 +56,6 @@ ivec2 resolution_option(std::string_view option, std::string_view text) {
             integer_option(option, text.substr(cross + 1), 1, largest_side)};
 }
 
-size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices) {
-    for (size_t i = 0; i < choices.size(); ++i)
-        if (choices[i] == text) return i;
-    fail(ExitCode::usage, option, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
-}
-
 std::string chosen_isa(const std::string& text) {
     set_isa(text);
     set_embree_isa(text);

@@ -1,5 +1,6 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
+#include "base/choice.h"
 #include "base/io/json.h"
 #include "base/io/progress.h"
 #include "base/math.h"
@@ -55,8 +56,6 @@ double number_option(std::string_view option, std::string_view text, double low,
 // WIDTHxHEIGHT in pixels, each up to largest_side.
 inline constexpr int largest_side = 16384; // what EXR readers take
 ivec2 resolution_option(std::string_view option, std::string_view text);
-// The position of an option's value among its choices. Throws Error (usage) listing them.
-size_t choice_option(std::string_view option, std::string_view text, const std::vector<std::string>& choices);
 // Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
 // the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
 std::string chosen_isa(const std::string& text);

@@ -64,7 +64,7 @@ Job make_job(const Options& texts, OutputPlaces& places) {
         job.pixels_per_degree = number_option("--ppd", texts.pixels_per_degree, 1, 1000);
     if (!texts.map.empty() && texts.heatmap.empty())
         fail(ExitCode::usage, "--map", "says what a heat map shows: add --heatmap FILE.png");
-    if (!texts.map.empty()) job.map = choice_option("--map", texts.map, {"error", "flip"});
+    if (!texts.map.empty()) job.map = choice_among("--map", texts.map, {"error", "flip"});
     job.heatmap = texts.heatmap;
     if (job.heatmap.empty()) return job;
 

@@ -10,10 +10,7 @@
 
 namespace tyndall {
 namespace {
-constexpr const char* kind_names[] = {"point", "spot", "sun"};
 constexpr const char* medium_names[] = {"homogeneous", "height", "noise", "vdb"};
-
-const char* unit_of(const LightSource& light) { return light.kind == LightKind::sun ? "lux" : "candela"; }
 
 struct Totals {
     uint64_t triangles = 0, animated_nodes = 0;
@@ -44,9 +41,9 @@ Json lights_json(const Scene& scene) {
     std::vector<Json> lights;
     for (const LightSource& light : scene.lights)
         lights.push_back(json_object({{"name", json_of(std::string_view(light.name))},
-                                      {"kind", json_of(kind_names[static_cast<int>(light.kind)])},
+                                      {"kind", json_of(traits_of(light.kind).name)},
                                       {"intensity", json_of(double{light.intensity.at(0)})},
-                                      {"unit", json_of(unit_of(light))},
+                                      {"unit", json_of(traits_of(light.kind).unit)},
                                       {"color", json_of(light.color.at(0))},
                                       {"range", json_of(double{light.range})}}));
     return json_array(std::move(lights));
@@ -110,7 +107,8 @@ std::string content_text(const Scene& scene) {
     for (const LightSource& light : scene.lights)
         text += formatted("  light         %s, %s, %g %s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),
-                          kind_names[static_cast<int>(light.kind)], double{light.intensity.at(0)}, unit_of(light));
+                          std::string(traits_of(light.kind).name).c_str(), double{light.intensity.at(0)},
+                          std::string(traits_of(light.kind).unit).c_str());
     const std::string hint = light_units_hint(scene);
     if (!hint.empty()) text += "  light units   " + hint + "\n";
     for (const MediumSource& medium : scene.media)

@@ -16,10 +16,10 @@ bool typed(double value) {
 
 // The number a Blender user would have typed for a light, by kind of export.
 double spec_value(const LightSource& light, double intensity) {
-    return light.kind == LightKind::sun ? intensity / lumens_per_watt : intensity / lumens_per_watt * sphere;
+    return is_distant(light) ? intensity / lumens_per_watt : intensity / lumens_per_watt * sphere;
 }
 double unitless_value(const LightSource& light, double intensity) {
-    return light.kind == LightKind::sun ? intensity : intensity * sphere;
+    return is_distant(light) ? intensity : intensity * sphere;
 }
 
 // 0 for a light of the scene file, whose unit is known.
@@ -40,8 +40,8 @@ std::string light_units_hint(const Scene& scene) {
         const double intensity = exported(light);
         if (!(intensity > 0)) continue;
         any = true;
-        any_local |= light.kind != LightKind::sun;
-        if (light.kind != LightKind::sun) all_large &= intensity >= 100;
+        any_local |= !is_distant(light);
+        if (!is_distant(light)) all_large &= intensity >= 100;
     }
     if (!any) return "";
     if (all_typed(scene, spec_value))

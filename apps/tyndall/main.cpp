@@ -90,7 +90,7 @@ void apply_globals(Globals& globals, const GlobalTexts& texts) {
     const std::vector<std::string> styles{"alf", "json", "bar", "none"};
     constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::json, ProgressStyle::bar,
                                         ProgressStyle::none};
-    if (!texts.progress.empty()) globals.progress = values[choice_option("--progress", texts.progress, styles)];
+    if (!texts.progress.empty()) globals.progress = values[choice_among("--progress", texts.progress, styles)];
     if (globals.quiet && (texts.progress.empty() || globals.progress == ProgressStyle::none))
         globals.progress = ProgressStyle::silent;
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));

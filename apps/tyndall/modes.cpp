@@ -55,7 +55,10 @@ std::string rows_text(const std::vector<SettingRow>& rows) {
         text += formatted("  %-25s", row.name.c_str());
         for (const Quality quality : qualities) text += formatted(" %15s", row.get(settings_for(quality)).c_str());
         text += "\n      " +
-                wrapped(row.doc + " (" + range_of(row) + (row.unit.empty() ? "" : " " + row.unit) + ")", 113, 6) + "\n";
+                wrapped(row.doc + " (" + range_of(row) + (row.unit.empty() ? "" : " " + row.unit) +
+                            (row.advanced ? "; advanced)" : ")"),
+                        113, 6) +
+                "\n";
     }
     return text;
 }

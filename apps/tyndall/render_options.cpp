@@ -27,7 +27,7 @@ std::vector<std::string> parsed_layers(const std::string& text) {
     if (text == "none") return {};
     const std::vector<std::string>& known = layer_names();
     std::vector<std::string> layers;
-    for (const std::string& name : comma_list(text)) layers.push_back(known[choice_option("--aov", name, known)]);
+    for (const std::string& name : comma_list(text)) layers.push_back(known[choice_among("--aov", name, known)]);
     return layers;
 }
 
@@ -210,7 +210,7 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
     if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(job, job.resolution);
     if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    job.missing = missing[choice_option("--missing", texts.missing, {"error", "hold", "skip"})];
+    job.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
     if (!texts.exposure.empty() && !texts.png)
         fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
     if (!texts.exposure.empty())
@@ -224,6 +224,6 @@ RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
 
 LoadOptions load_options(const RenderOptions& texts) {
     constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    return {units[choice_option("--light-units", texts.light_units, {"spec", "unitless", "raw"})]};
+    return {units[choice_among("--light-units", texts.light_units, {"spec", "unitless", "raw"})]};
 }
 }

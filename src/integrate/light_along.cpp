@@ -19,7 +19,7 @@ Interval<double> reached(const Light& light, LightAlong& along, Interval<double>
     };
     along.kinks.push_back(along.nearest);
     note(inside_ball(light.position, radius_of(light), along.origin, along.direction));
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         set_cone(light, along);
         const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
         note(inside_cone(light.position, glm::normalize(dvec3(light.direction)), std::acos(std::min(full, 1.0)),
@@ -106,7 +106,7 @@ ArrivingAt arriving_at(const LightAlong& along, double t) {
         const double share = away / light.range;
         amount *= std::clamp(1 - share * share * share * share, 0.0, 1.0);
     }
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         const double cosine = -glm::dot(to_light, dvec3(light.direction));
         const double edge = std::clamp(cosine * along.cone_scale + along.cone_offset, 0.0, 1.0);
         amount *= edge * edge;

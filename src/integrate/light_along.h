@@ -27,7 +27,7 @@ struct LightAlong {
     std::vector<Veil> veils;
     std::vector<double> kinks; // memory that find_light() reuses
 
-    bool local() const { return light->kind != LightKind::sun; }
+    bool local() const { return !is_distant(*light); }
     double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
     EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
     double veil_voxels(double low, double high) const;         // per metre, on a stretch that no veil's end divides

@@ -24,7 +24,7 @@ void add_levels(const Medium& medium, const Ray& ray, Interval<double> inside, s
 // at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which is linear in x.
 void add_exits(const Medium& medium, const Light& light, const Ray& ray, Interval<double> inside,
                std::vector<double>& cuts) {
-    const double far = light.kind == LightKind::sun ? 0 : 1;
+    const double far = is_distant(light) ? 0 : 1;
     const glm::dvec4 source = far == 0 ? glm::dvec4(-dvec3(light.direction), 0) : glm::dvec4(light.position, 1);
     const dvec3 to(dmat4(medium.world_to_local) * source);
     const LocalRay local = local_ray(medium.world_to_local, ray);
@@ -54,7 +54,7 @@ void divide(const LitFog& frame, const Ray& ray, double low, double high, std::v
     double extinction = 0;
     const vec3 middle = ray.at(static_cast<float>(0.5 * (low + high)));
     for (const Medium& medium : frame.snapshot.media)
-        extinction += double(medium.optics.extinction) * density_at(medium, middle);
+        extinction += double(grey_extinction(medium.optics)) * density_at(medium, middle);
     const int parts = static_cast<int>(std::clamp(std::ceil(extinction * (high - low) / most_depth), 1.0, 64.0));
     for (int i = 1; i <= parts; ++i) cuts.push_back(low + (high - low) * i / parts);
 }

@@ -19,7 +19,7 @@ constexpr double most_parts = 4096;  // of a piece
 double extinction_at(const LitFog& frame, vec3 point) {
     double extinction = 0;
     for (const Medium& medium : frame.snapshot.media)
-        extinction += double(medium.optics.extinction) * density_at(medium, point);
+        extinction += double(grey_extinction(medium.optics)) * density_at(medium, point);
     return extinction * frame.style.view_depth;
 }
 

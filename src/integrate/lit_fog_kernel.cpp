@@ -31,7 +31,7 @@ Packet make_packet(const LitFog& frame, const RayBatch& batch, Scratch& scratch)
 Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
     const FogCuts& cuts = packet.scratch.cuts;
     if (cuts.pieces[i] == 0) return {};
-    if (light.kind == LightKind::sun) return {cuts.low(i), cuts.high(i)};
+    if (is_distant(light)) return {cuts.low(i), cuts.high(i)};
     const Ray& ray = packet.batch.rays[i];
     LightAlong& along = packet.scratch.along[i];
     find_light(light, center_of(light), {ray.origin, ray.direction, cuts.high(i)}, nullptr, {}, along);
@@ -45,7 +45,7 @@ Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
 // Nodes on the lit stretches within reach.
 void push_all(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     Scratch& scratch = packet.scratch;
-    const bool sun = packet.frame.snapshot.lights[index].kind == LightKind::sun;
+    const bool sun = is_distant(packet.frame.snapshot.lights[index]);
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         if (reached[i].empty()) continue;
         const std::span<const Interval<double>> parts =
@@ -100,9 +100,9 @@ void add_light(Packet& packet, size_t index) {
     const size_t count = packet.batch.rays.size();
     Interval<double> reached[16];
     for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
-    packet.spread = light.kind == LightKind::sun ? Spread::length : Spread::angle;
+    packet.spread = is_distant(light) ? Spread::length : Spread::angle;
     const ShadowsBy by = frame.shadows[index].by;
-    packet.by_rows = frame.sampled && light.kind == LightKind::sun && by != ShadowsBy::rays && !frame.shells;
+    packet.by_rows = frame.sampled && is_distant(light) && by != ShadowsBy::rays && !frame.shells;
     if (packet.by_rows) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.most), 0.0f);
     if (by == ShadowsBy::slices)
         add_sliced(packet, index, reached);
@@ -126,7 +126,7 @@ void sample_depths(Packet& packet) {
         const Vec3s point = fused(direction, (from + to) * 0.5f, origin);
         Floats extinction = 0.0f;
         for (size_t m = 0; m < media.size(); ++m) {
-            const Floats own = density16(media[m], point) * media[m].optics.extinction;
+            const Floats own = density16(media[m], point) * grey_extinction(media[m].optics);
             store(own, scratch.extinction.data() + 16 * ((k - 1) * media.size() + m));
             extinction = extinction + own;
         }

@@ -79,7 +79,7 @@ HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
 }
 
 bool in_soft_edge(const LightAlong& along, Interval<double> part) {
-    if (along.light->kind != LightKind::spot) return false;
+    if (!has_cone(*along.light)) return false;
     const dvec3 from = along.origin + 0.5 * (part.low + part.high) * along.direction - dvec3(along.light->position);
     const double cosine = glm::dot(from, dvec3(along.light->direction)) / glm::length(from);
     return cosine * along.cone_scale + along.cone_offset < 1;

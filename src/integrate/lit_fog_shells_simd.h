@@ -21,7 +21,7 @@ struct Shell {
 
 // The mantle of a spot's beam, half way down its soft edge: it changes no count.
 void append_mantle(const Light& light, const Ray& ray, std::vector<Shell>& shells) {
-    if (light.kind != LightKind::spot) return;
+    if (!has_cone(light)) return;
     const dvec3 origin(ray.origin), direction(ray.direction), apex(light.position);
     const double angle = std::acos(0.5 * (std::cos(double(light.inner_cone)) + std::cos(double(light.outer_cone))));
     const Interval<double> beam = inside_cone(apex, glm::normalize(dvec3(light.direction)), angle, origin, direction);

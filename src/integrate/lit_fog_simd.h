@@ -88,7 +88,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
     }
     const std::vector<Medium>& media = frame.snapshot.media;
     const Vec3s towards = scattering(media, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
-        return density16(media[m], position) * media[m].optics.extinction;
+        return density16(media[m], position) * grey_extinction(media[m].optics);
     });
     return scattered_light(light, frame.depths[index], position, amount, towards);
 }
@@ -98,7 +98,7 @@ HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
-        const vec3 per_density = optics.extinction * optics.albedo * frame.snapshot.ambient + optics.emission;
+        const vec3 per_density = grey_extinction(optics) * optics.albedo * frame.snapshot.ambient + optics.emission;
         sum = fused(splat(per_density), density16(medium, position), sum);
     }
     return sum;
@@ -108,7 +108,7 @@ HWY_INLINE Vec3s glow(const LitFog& frame, const Vec3s& position) {
 HWY_INLINE Vec3s scattered_again(const LitFog& frame, const Vec3s& position, const Vec3s& direction) {
     const std::vector<Medium>& media = frame.snapshot.media;
     return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
-        return density16(media[m], position) * media[m].optics.extinction;
+        return density16(media[m], position) * grey_extinction(media[m].optics);
     });
 }
 

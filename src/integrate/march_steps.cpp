@@ -14,7 +14,7 @@ constexpr int max_steps = 65536; // per ray; longer ones beyond
 void find_beams(const MarchSteps& rule, const Ray& ray, Interval<float> piece, std::vector<Step>& beams) {
     beams.clear();
     for (const Light& light : rule.lights) {
-        if (light.kind != LightKind::spot) continue;
+        if (!has_cone(light)) continue;
         const Interval<double> cone =
             inside_cone(light.position, light.direction, light.outer_cone, ray.origin, ray.direction);
         const float low = std::max(static_cast<float>(cone.low), piece.low) - piece.low;
@@ -47,7 +47,7 @@ void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& 
 MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights) {
     MarchSteps rule{settings, std::move(lights), {}};
     for (const Light& light : rule.lights)
-        if (light.kind != LightKind::sun) rule.near_points.push_back(light.position);
+        if (!is_distant(light)) rule.near_points.push_back(light.position);
     return rule;
 }
 

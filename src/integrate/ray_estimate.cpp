@@ -5,7 +5,7 @@
 
 namespace tyndall {
 RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int samples,
-                  const std::function<vec3(const Scatter&)>& part) {
+                         const std::function<vec3(const Scatter&)>& part) {
     constexpr int batches = 64;
     std::vector<dvec3> means(batches, dvec3(0));
     parallel_for(batches, [&](int64_t b) {

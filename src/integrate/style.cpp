@@ -21,7 +21,7 @@ Medium at_mean_density(const Medium& medium) {
 
 // A snapshot's media all take light away.
 void drop_clear(std::vector<Medium>& media) {
-    std::erase_if(media, [](const Medium& medium) { return !(medium.optics.extinction > 0); });
+    std::erase_if(media, [](const Medium& medium) { return !(grey_extinction(medium.optics) > 0); });
 }
 }
 

@@ -27,9 +27,8 @@ bool is_cut(const View& a, const View& b, const Snapshot& snapshot) {
 std::vector<vec3> lights_of(const Snapshot& snapshot) {
     std::vector<vec3> lights;
     for (const Light& light : snapshot.lights)
-        lights.insert(lights.end(),
-                      {light.intensity * light.volume_scale, light.kind == LightKind::sun ? vec3(0) : light.position,
-                       light.kind == LightKind::point ? vec3(0) : light.direction});
+        lights.insert(lights.end(), {light.intensity * light.volume_scale, is_distant(light) ? vec3(0) : light.position,
+                                     !is_aimed(light) ? vec3(0) : light.direction});
     return lights;
 }
 

@@ -45,7 +45,7 @@ bool error_is_noise(const Mode& mode) {
 }
 
 std::string_view name_of(Accuracy accuracy) {
-    constexpr std::string_view names[] = {"look", "even fog", "single scattering", "multiple scattering"};
+    constexpr std::string_view names[] = {"artistic", "homogeneous fog", "single scattering", "multiple scattering"};
     return names[static_cast<size_t>(accuracy)];
 }
 }

@@ -37,12 +37,6 @@ vec3 parsed_color(std::string_view row, std::string_view text, double low, doubl
             part(text.substr(second + 1))};
 }
 
-size_t parsed_choice(std::string_view row, std::string_view text, const std::vector<std::string>& choices) {
-    for (size_t i = 0; i < choices.size(); ++i)
-        if (choices[i] == text) return i;
-    fail(ExitCode::usage, row, "expected " + joined(choices, ", ") + "; got '" + printable(text, 40) + "'");
-}
-
 void mark_advanced(std::vector<SettingRow>& rows, std::initializer_list<std::string_view> names) {
     for (const std::string_view name : names) {
         const auto ends = [&](const SettingRow& row) { return row.name.substr(row.name.find('.') + 1) == name; };
@@ -111,9 +105,6 @@ std::string_view name_of(Quality quality) {
 }
 
 Quality quality_named(std::string_view name) {
-    for (const Quality quality : {Quality::draft, Quality::preview, Quality::final, Quality::reference})
-        if (name_of(quality) == name) return quality;
-    fail(ExitCode::usage, "--quality",
-         "expected draft, preview, final or reference; got '" + printable(name, 40) + "'");
+    return static_cast<Quality>(choice_among("--quality", name, {"draft", "preview", "final", "reference"}));
 }
 }

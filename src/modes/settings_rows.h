@@ -1,5 +1,6 @@
 // How a technique describes its settings as named rows. For settings.cpp of each technique.
 #pragma once
+#include "base/choice.h"
 #include "modes/settings.h"
 
 #include <type_traits>
@@ -10,9 +11,6 @@ double parsed_number(std::string_view row, std::string_view text, double low, do
 std::string short_number(double value);
 
 vec3 parsed_color(std::string_view row, std::string_view text, double low, double high);
-
-// Position of `text` among `choices`. Throws Error (usage) listing them.
-size_t parsed_choice(std::string_view row, std::string_view text, const std::vector<std::string>& choices);
 
 // A row for a number: `field` finds it in the settings.
 template<class Field>
@@ -35,7 +33,7 @@ SettingRow choice_row(std::string name, std::vector<std::string> choices, std::s
         return choices[static_cast<size_t>(field(const_cast<Settings&>(settings)))];
     };
     row.set = [field, name, choices](Settings& settings, std::string_view text) {
-        field(settings) = static_cast<T>(parsed_choice(name, text, choices));
+        field(settings) = static_cast<T>(choice_among(name, text, choices));
     };
     return row;
 }

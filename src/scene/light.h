@@ -22,7 +22,10 @@ struct Light {
 };
 
 // Whether its shadows have soft edges: each shadow ray then goes to another point of the light.
-inline bool is_soft(const Light& light) { return light.kind == LightKind::sun ? light.angle > 0 : light.radius > 0; }
+bool is_soft(const Light& light);
+
+// What the scene has to hold of it: the place of a light that has one.
+Box light_bounds(const Light& light);
 
 // What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
 struct Arrival {
@@ -31,6 +34,10 @@ struct Arrival {
     float distance = infinity; // metres, infinite for the sun
 };
 Arrival arrival(const Light& light, vec3 point);
+
+// The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
+// or disc is seen under; its centre when the light is a point. Ends just before the light.
+Ray ray_to_light(const Light& light, vec3 point, vec2 u);
 
 inline constexpr float smallest_radius = 1e-4f; // metres; 1/r² is capped here when a light has no radius
 

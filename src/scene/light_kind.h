@@ -1,6 +1,28 @@
-// Kinds of lights, as in KHR_lights_punctual.
+// The kinds of light, as in KHR_lights_punctual, and what is true of all lights of a kind. What a kind does to light is
+// in scene/lights.
 #pragma once
+#include <string_view>
 
 namespace tyndall {
 enum class LightKind { point, spot, sun };
+
+struct LightTraits {
+    std::string_view name, noun; // in scene files and in messages
+    std::string_view unit;       // of its intensity
+    bool distant = false;        // parallel light from far away: no place, no falloff
+    bool aimed = false;          // shines in a direction
+    bool cone = false;           // within inner_cone and outer_cone only
+};
+inline constexpr LightTraits light_kinds[] = {
+    {.name = "point", .noun = "point light", .unit = "candela"},
+    {.name = "spot", .noun = "spot", .unit = "candela", .aimed = true, .cone = true},
+    {.name = "sun", .noun = "sun", .unit = "lux", .distant = true, .aimed = true},
+};
+constexpr const LightTraits& traits_of(LightKind kind) { return light_kinds[static_cast<int>(kind)]; }
+
+// Of a Light or a LightSource.
+template<class T> constexpr bool is_distant(const T& light) { return traits_of(light.kind).distant; }
+template<class T> constexpr bool is_aimed(const T& light) { return traits_of(light.kind).aimed; }
+template<class T> constexpr bool has_cone(const T& light) { return traits_of(light.kind).cone; }
+template<class T> constexpr bool shines_around(const T& light) { return !is_distant(light) && !has_cone(light); }
 }

@@ -54,15 +54,6 @@ Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 di
     return {(nearest - half) / length, (nearest + half) / length};
 }
 
-Interval<double> light_reach(const Light& light, dvec3 origin, dvec3 direction) {
-    Interval<double> reach{-infinity, infinity};
-    if (light.kind == LightKind::sun) return reach;
-    if (!std::isinf(light.range)) reach = inside_ball(light.position, light.range, origin, direction);
-    if (light.kind != LightKind::spot || reach.empty()) return reach;
-    const dvec3 axis = glm::normalize(dvec3(light.direction));
-    return common(reach, inside_cone(light.position, axis, light.outer_cone, origin, direction));
-}
-
 Interval<float> light_reach(const Light& light, const Ray& ray, Interval<float> stretch) {
     const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
     const Interval<float> result = common(stretch, {static_cast<float>(reach.low), static_cast<float>(reach.high)});

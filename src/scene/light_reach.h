@@ -12,7 +12,8 @@ Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 or
 // The stretch inside a ball.
 Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 direction);
 
-// Inside the ball of the light's range and the cone of a spot; endless where nothing bounds it.
+// Where its light arrives with nothing in the way: inside the ball of its range and the cone of a spot; endless where
+// nothing bounds it.
 Interval<double> light_reach(const Light& light, dvec3 origin, dvec3 direction);
 
 // What of a stretch of a ray that is.

@@ -30,7 +30,7 @@ float brightest_illuminance(const Scene& scene, const Box& bounds) {
     float sum = 0;
     for (const LightSource& light : scene.lights) {
         const float intensity = light.intensity.at(0) * max_component(light.color.at(0));
-        sum += light.kind == LightKind::sun ? intensity : intensity / (radius * radius);
+        sum += is_distant(light) ? intensity : intensity / (radius * radius);
     }
     return sum;
 }

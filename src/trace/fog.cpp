@@ -25,7 +25,7 @@ mat4 medium_matrix(const Scene& scene, const MediumSource& source, double second
 }
 
 Optics optics_at(const MediumSource& source, double seconds) {
-    return {source.extinction.at(seconds), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
+    return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
             source.emission.at(seconds)};
 }
 
@@ -124,7 +124,7 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         Medium medium;
         medium.name = source.name;
         medium.optics = optics_at(source, moment.seconds);
-        if (!(medium.optics.extinction > 0)) {
+        if (!(grey_extinction(medium.optics) > 0)) {
             if (max_component(medium.optics.emission) > 0 && !comparable)
                 snapshot.notes.push_back("medium " + source.name + ": emits nothing, as its extinction is 0");
             fog = before;

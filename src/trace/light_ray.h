@@ -1,14 +1,8 @@
-// Rays from a point to a light.
+// The point of a light that a whole camera ray sees.
 #pragma once
-#include "base/math.h"
+#include "scene/light.h"
 
 namespace tyndall {
-struct Light;
-
-// The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
-// or disc is seen under; its centre when the light is a point. Ends just before the light.
-Ray ray_to_light(const Light& light, vec3 point, vec2 u);
-
 // One point of a light for a whole camera ray.
 struct LightPoint {
     dvec3 at{0};      // its place; of a sun the direction towards it, unit

@@ -20,7 +20,7 @@ struct Arriving {
 
 // As arrival() of scene/light.h. `cone`: the light's cone_falloff().
 HWY_INLINE Arriving arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
-    if (light.kind == LightKind::sun) return {splat(-light.direction), infinity, 1.0f};
+    if (is_distant(light)) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - position;
     const float reach = std::max(light.radius, smallest_radius);
     const Floats squared = dot(offset, offset);
@@ -30,7 +30,7 @@ HWY_INLINE Arriving arriving(const Light& light, const ConeFalloff& cone, const 
         const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
         result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);
     }
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         const Floats cosine = -dot(result.to_light, splat(light.direction));
         const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
         result.amount = result.amount * edge * edge;

@@ -12,7 +12,7 @@ Phase forward_phase(float g) { return {PhaseKind::henyey_greenstein, g}; }
 Medium even_medium(float extinction, Box box, Phase phase, vec3 albedo) {
     Medium medium;
     medium.name = "even";
-    medium.optics = {extinction, albedo, phase, vec3(0)};
+    medium.optics = {vec3(extinction), albedo, phase, vec3(0)};
     medium.bounds = medium.world_bounds = box;
     return medium;
 }

@@ -36,7 +36,7 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds) {
         light.position = source.position.at(seconds);
         const vec3 direction = source.direction.at(seconds);
         const float length = glm::length(direction);
-        if (source.kind != LightKind::point && !(length > 0))
+        if (is_aimed(source) && !(length > 0))
             refuse(scene.file.string(), "light " + source.name + ": its direction has no length");
         if (length > 0) light.direction = direction / length;
     }
@@ -71,8 +71,7 @@ bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_f
 
 Box scene_bounds(const Snapshot& snapshot) {
     Box box = snapshot.occluders->bounds();
-    for (const Light& light : snapshot.lights)
-        if (light.kind != LightKind::sun) box.grow(light.position);
+    for (const Light& light : snapshot.lights) box.grow(light_bounds(light));
     for (const Medium& medium : snapshot.media)
         if (bounded(medium.world_bounds)) box.grow(medium.world_bounds);
     return box;

@@ -23,7 +23,9 @@ void densities(const Medium& medium, const float* x, const float* y, const float
     HWY_DYNAMIC_DISPATCH(densities_kernel)(medium, x, y, z, density);
 }
 
-float Medium::majorant() const { return optics.extinction * (kind == DensityKind::bricks ? bricks->highest : 1.0f); }
+float Medium::majorant() const {
+    return grey_extinction(optics) * (kind == DensityKind::bricks ? bricks->highest : 1.0f);
+}
 
 float density_at(const Medium& medium, vec3 point) {
     if (medium.kind == DensityKind::bricks) return sample_density(*medium.bricks, point);

@@ -3,6 +3,7 @@
 #include "base/math.h"
 #include "volume/phase.h"
 
+#include <cassert>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,11 +13,17 @@ namespace tyndall {
 struct BrickPool;
 
 struct Optics {
-    float extinction = 0.1f; // 1/m at density 1
-    vec3 albedo{0.95f};      // scattered share of the extinction, 0..1
+    vec3 extinction{0.1f}; // 1/m at density 1; the same in all channels, as loaders see to
+    vec3 albedo{0.95f};    // scattered share of the extinction, 0..1
     Phase phase;
     vec3 emission{0}; // radiance per metre at density 1
 };
+
+// What kernels ask for while all media are grey.
+inline float grey_extinction(const Optics& optics) {
+    assert(optics.extinction.x == optics.extinction.y && optics.extinction.x == optics.extinction.z);
+    return optics.extinction.x;
+}
 
 // What fog sends on of emission and even light from all around, per unit of its extinction, which is not 0.
 inline vec3 glow_per_extinction(const Optics& optics, vec3 ambient) {

@@ -138,7 +138,7 @@ double density_column(const Medium& medium, const Ray& ray) {
 }
 
 double optical_depth(const Medium& medium, const Ray& ray) {
-    return medium.optics.extinction == 0 ? 0 : medium.optics.extinction * density_column(medium, ray);
+    return grey_extinction(medium.optics) == 0 ? 0 : grey_extinction(medium.optics) * density_column(medium, ray);
 }
 
 double optical_depth(std::span<const Medium> media, const Ray& ray) {

@@ -81,7 +81,7 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval<float> r
                          int& lookups) {
     double left = free_depth(first), found = infinity; // optical depth, by majorants, to the next collision
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
-        const double majorant = static_cast<double>(medium.optics.extinction) * fog.majorant;
+        const double majorant = static_cast<double>(grey_extinction(medium.optics)) * fog.majorant;
         for (double t = fog.low; majorant > 0;) {
             const double step = left / majorant;
             if (t + step >= fog.high) {
@@ -102,7 +102,7 @@ float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> 
     constexpr double small = 0.1;
     double share = 1, left = free_depth(random.next());
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
-        const double majorant = static_cast<double>(medium.optics.extinction) * fog.majorant;
+        const double majorant = static_cast<double>(grey_extinction(medium.optics)) * fog.majorant;
         if (fog.even) return majorant == 0 || (share *= std::exp(-majorant * (fog.high - fog.low))) > 0;
         for (double t = fog.low; majorant > 0;) {
             const double step = left / majorant;

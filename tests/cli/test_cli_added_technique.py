@@ -20,7 +20,7 @@ class Added(ProgramTest):
 
     def test_the_table_and_its_settings_are_listed(self):
         told = self.succeed("modes").stdout
-        self.assertRegex(told, r"mist +even fog +fog of one brightness")
+        self.assertRegex(told, r"mist +homogeneous fog +fog of one brightness")
         rows = {row["name"]: row for row in json.loads(self.succeed("modes", "--json").stdout)["settings"]}
         self.assertEqual(rows["mist.brightness"]["values"]["draft"], "0.5")
         self.refuse(2, ["mist"], "render", self.scene, "-o", self.path("a.exr"), "--mode", "fogg")

@@ -24,7 +24,7 @@ class Plan(ProgramTest):
         self.assertIn("error at most 0.05 of the mean", text)
         self.assertIn("shadows of spot", text)
         self.assertIn("there is nothing that could cast them", text)
-        self.assertIn("a look, not light", text)
+        self.assertIn("artistic: no error bound", text)
         self.assertIn("tyndall render", text.splitlines()[-1])
 
     def test_json_holds_terms_and_modes(self):

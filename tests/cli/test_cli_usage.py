@@ -3,7 +3,7 @@ import json
 import subprocess
 import unittest
 
-from program import TYNDALL, ProgramTest, run, scene
+from program import TYNDALL, ProgramTest, recipe, run, scene
 
 COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "explain"]
 OPTIONS = {
@@ -56,7 +56,41 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["rneder", "did you mean render"], "rneder", self.scene)
         self.refuse(2, ["--framse", "did you mean --frames"], *self.render("--framse", "1-3"))
         self.refuse(2, ["--thraeds", "did you mean --threads"], "modes", "--thraeds", "2")
-        self.refuse(2, ["march.step_dpeth", "march.step_depth"], *self.render("--set", "march.step_dpeth=1"))
+
+    def test_unknown_names_get_those_like_them(self):
+        for option, value, meant in [
+                ("--mode", "marhc", "march"), ("--set", "march.step_dpeth=1", "march.step_depth"),
+                ("--set", "light_resolution=8", "terms.light_resolution"), ("--set", "pixel.jitter=bleu", "blue"),
+                ("--set", "terms.light=gird", "grid"), ("--quality", "fianl", "final"), ("--camera", "camrea", "camera"),
+                ("--aov", "transmitance", "transmittance"), ("--aov", "Z,validty", "validity"),
+                ("--light-units", "untiless", "unitless"), ("--missing", "hodl", "hold"), ("--isa", "avx52", "avx2 or avx512"),
+                ("--progress", "jsn", "json")]:
+            with self.subTest(option=option, value=value):
+                self.refuse(2, [value.split("=")[0].split(",")[-1], f"did you mean {meant}?"], *self.render(option, value))
+        self.refuse(2, ["did you mean froxel?"], "modes", "forxel")
+        self.refuse(2, ["did you mean cone?"], "chart", self.scene, "-o", self.path("out"), "--modes", "march,coen")
+        self.refuse(2, ["did you mean cone?"], "stress", "-o", self.path("out"), "--modes", "march,coen")
+        self.refuse(2, ["did you mean cone?"], "explain", self.scene, "--pixel", "3,3", "--modes", "coen")
+        self.refuse(2, ["did you mean zip?"], "bake", self.write("r.json", recipe()), "-o", self.path("fog.####.vdb"),
+                    "--compression", "zpi")
+        self.succeed(*self.render("--quality", "draft"))
+        picture = self.path("out.0001.exr")
+        self.refuse(2, ["did you mean flip?"], "compare", picture, picture, "--fail-above", "flop=1")
+        self.refuse(2, ["did you mean error?"], "compare", picture, picture, "--heatmap", self.path("h.png"), "--map", "eror")
+
+    def test_unknown_names_without_one_like_them_get_the_list(self):
+        self.refuse(2, ["there is march, froxel"], *self.render("--mode", "rasterize"))
+        self.refuse(2, ["there is camera"], *self.render("--camera", "nobody"))
+        self.refuse(2, ["there is box, tent"], *self.render("--set", "pixel.filter=sharp"))
+        self.refuse(2, ["tyndall modes"], *self.render("--set", "zzzzzz=1"))
+
+    def test_unknown_names_in_scenes_get_those_like_them(self):
+        card = {"light": "snu", "from": [0, 0, 0], "to": [0, 1, 0]}
+        self.refuse(3, ["/billboards/0/light", "did you mean sun?"], "render",
+                    self.write("card.json", scene(billboards=[card])), "-o", self.output)
+        self.refuse(3, ["/camera", "did you mean main?"], "render",
+                    self.write("camera.json", scene(camera="mian", cameras=[dict(scene()["camera"], name="main")])),
+                    "-o", self.output)
 
     def test_what_is_missing_is_named(self):
         self.refuse(2, ["SCENE"], "render")
@@ -117,7 +151,7 @@ class CommandLine(ProgramTest):
             self.refuse(2, [option, "--orders 1", "--mode path"], *self.render("--orders", "2", option, "0.1"))
         for option in ["--target-error", "--time-budget"]:
             for mode in ["billboard", "radial-blur", "march,billboard"]:
-                self.refuse(2, [option, mode.split(",")[-1], "is a look"],
+                self.refuse(2, [option, mode.split(",")[-1], "is artistic"],
                             *self.render(option, "0.1", "--mode", mode))
             for more in [("--samples", "8"), ("--set", "pixel.samples=8")]:
                 self.refuse(2, ["--samples", option], *self.render(option, "0.1", *more))
@@ -163,6 +197,22 @@ class Modes(ProgramTest):
         for row in report["settings"]:
             self.assertIn(row["name"], text)
             self.assertEqual(list(row["values"]), ["draft", "preview", "final", "reference"])
+
+    def test_one_mode_with_what_it_reads(self):
+        every = json.loads(self.succeed("modes", "--json").stdout)
+        for mode in every["modes"]:
+            text = self.succeed("modes", mode["name"]).stdout
+            one = json.loads(self.succeed("--json", "modes", mode["name"]).stdout)
+            self.assertEqual(one["modes"], [mode])
+            self.assertEqual(one["settings"], [row for row in every["settings"] if mode["name"] in row["modes"]])
+            for row in every["settings"]:
+                self.assertEqual(f"\n  {row['name']} " in text, mode["name"] in row["modes"], row["name"])
+
+    def test_settings_that_most_leave_alone_are_marked_advanced(self):
+        rows = json.loads(self.succeed("modes", "--json").stdout)["settings"]
+        marked = sum(row["advanced"] for row in rows)
+        self.assertTrue(5 < marked < len(rows) / 2, marked)
+        self.assertEqual(self.succeed("modes").stdout.count("advanced)"), marked)
 
     def test_every_setting_takes_its_own_values(self):
         path = self.write("scene.json", scene(frames="1", resolution=[2, 2]))

@@ -238,7 +238,8 @@ TEST(Snapshot, CamerasAreFoundByName) {
     scene.camera = 1;
     EXPECT_EQ(find_camera(scene, ""), 1);
     EXPECT_EQ(find_camera(scene, "wide"), 0);
-    EXPECT_THAT([&] { find_camera(scene, "wid"); }, testing::ThrowsMessage<Error>(testing::HasSubstr("wide, close")));
+    EXPECT_THAT([&] { find_camera(scene, "wid"); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("did you mean wide?")));
     EXPECT_NEAR(camera_at(scene, 1, 0).forward.z, -1, 1e-6);
     scene.cameras[0].target = scene.cameras[0].position;
     EXPECT_THROW(camera_at(scene, 0, 0), Error);

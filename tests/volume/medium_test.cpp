@@ -151,7 +151,7 @@ double height_depth_by_quadrature(const Medium& fog, const Ray& ray) {
         const double t = (i + 0.5) * ray.t_max / pieces, y = ray.origin.y + t * ray.direction.y;
         sum += std::exp(-std::max(y - fog.height_base, 0.0) / fog.height_falloff);
     }
-    return fog.optics.extinction * sum * ray.t_max / pieces;
+    return grey_extinction(fog.optics) * sum * ray.t_max / pieces;
 }
 
 TEST(OpticalDepth, HeightFogFromAnywhereToAnywhere) {

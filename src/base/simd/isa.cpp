@@ -1,5 +1,6 @@
 #include "base/simd/isa.h"
 
+#include "base/choice.h"
 #include "base/error.h"
 
 #include <hwy/targets.h>
@@ -10,14 +11,13 @@ namespace tyndall {
 std::string_view isa_name() { return hwy::SupportedTargets() & HWY_AVX3 ? "avx512" : "avx2"; }
 
 std::string_view set_isa(std::string_view name) {
-    if (name != "auto" && name != "avx2" && name != "avx512")
-        fail(ExitCode::usage, "instruction set", std::string(name) + " is none of auto, avx2, avx512");
+    choice_among("--isa", name, {"auto", "avx2", "avx512"});
     // Zero lifts an earlier choice, so that the question below is about the machine.
     hwy::SetSupportedTargetsForTest(0);
     if (name != "auto") {
         const int64_t target = name == "avx2" ? HWY_AVX2 : HWY_AVX3;
         if (!(hwy::SupportedTargets() & target))
-            fail(ExitCode::usage, "instruction set", "this machine has no " + std::string(name));
+            fail(ExitCode::usage, "--isa", "this machine has no " + std::string(name));
         hwy::SetSupportedTargetsForTest(target);
     }
     return isa_name();

@@ -88,9 +88,9 @@ RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on,
     step.low = part.start + place.low, step.high = part.start + place.high;
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
-        step.extinction += place.densities[m] * optics.extinction;
+        step.extinction += place.densities[m] * grey_extinction(optics);
         step.glow += static_cast<float>(place.densities[m]) *
-                     (optics.extinction * optics.albedo * scene.fog.ambient + optics.emission);
+                     (grey_extinction(optics) * optics.albedo * scene.fog.ambient + optics.emission);
     }
     const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
     const bool fades = style.range < StyleSettings{}.range;
@@ -138,7 +138,7 @@ vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& pa
     dvec3 sum(0);
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
-        sum += place.densities[m] * optics.extinction * phase_value_of<double>(optics.phase, cosine) *
+        sum += place.densities[m] * grey_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
                dvec3(optics.albedo);
     }
     return vec3(arriving.amount * sum * dvec3(along.light->intensity * along.light->volume_scale));

@@ -40,10 +40,6 @@ std::string ray_text(const RayStory& story) {
     return text;
 }
 
-const char* kind_text(LightKind kind) {
-    return kind == LightKind::sun ? "sun" : kind == LightKind::spot ? "spot" : "point";
-}
-
 // Metres of the ray on which a light does this.
 double length_of(const LightOnRay& light, Lighting state) {
     double sum = 0;
@@ -56,13 +52,15 @@ std::string lights_text(const RayStory& story) {
     std::string text = "Light that arrives, nits (other: ambient light, emission, background)\n";
     text += formatted("  %-16s %-5s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
     text += formatted("  %-16s %-5s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
-    const auto row = [&](const std::string& name, const char* kind, vec3 fog, vec3 surfaces, const std::string& lit) {
-        text += formatted("  %-16s %-5s %s %s %8s\n", cut(printable(name, 40), 16).c_str(), kind,
+    const auto row = [&](const std::string& name, std::string_view kind, vec3 fog, vec3 surfaces,
+                         const std::string& lit) {
+        text += formatted("  %-16s %-5s %s %s %8s\n", cut(printable(name, 40), 16).c_str(), std::string(kind).c_str(),
                           color_columns(fog).c_str(), color_columns(surfaces).c_str(), lit.c_str());
     };
     vec3 of_lights(0);
     for (const LightOnRay& light : story.lights) {
-        row(light.name, kind_text(light.kind), light.fog, light.surfaces, digits(length_of(light, Lighting::full)));
+        row(light.name, traits_of(light.kind).name, light.fog, light.surfaces,
+            digits(length_of(light, Lighting::full)));
         of_lights += light.surfaces;
     }
     const vec3 behind = story.reference.color - story.reference.inscatter;

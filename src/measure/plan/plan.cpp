@@ -59,7 +59,7 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
     std::vector<Standing> standings;
     const Contender& winner = contest.best();
     for (const Mode& mode : modes) {
-        Standing standing{&mode, {}, "a look, not light: its error is as large as it is"};
+        Standing standing{&mode, {}, "artistic: no error bound"};
         if (mode.accuracy == Accuracy::multiple_scattering)
             standing.why = "takes no part: errors here are of light scattered once, it traces all (--mode path)";
         else if (mode.accuracy != Accuracy::look)

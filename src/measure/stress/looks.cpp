@@ -96,7 +96,7 @@ double eccentricity(Trial& trial) {
 
 StressScene in_thick_fog(double extinction) {
     StressScene scene = sun_aside(5);
-    scene.snapshot.media[0].optics.extinction = static_cast<float>(extinction);
+    scene.snapshot.media[0].optics.extinction = vec3(static_cast<float>(extinction));
     return scene;
 }
 

@@ -204,8 +204,7 @@ StressScene stress_scene(std::vector<Medium> media, std::vector<Light> lights, C
     Box bounds;
     for (const Medium& medium : media)
         if (is_finite(medium.world_bounds.size())) bounds.grow(medium.world_bounds);
-    for (const Light& light : lights)
-        if (light.kind != LightKind::sun) bounds.grow(light.position);
+    for (const Light& light : lights) bounds.grow(light_bounds(light));
     result.snapshot = snapshot_of(std::move(media), std::move(lights));
     if (!bounds.empty()) result.snapshot.bounds = bounds;
     result.snapshot.scene = result.scene.get();

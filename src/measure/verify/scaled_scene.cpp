@@ -10,7 +10,7 @@ template<class T> void scale(Keyed<T>& keyed, float factor) {
 void scale_light(LightSource& light, float factor) {
     scale(light.position, factor), scale(light.radius, factor);
     light.range *= factor;
-    if (light.kind != LightKind::sun) scale(light.intensity, factor * factor);
+    if (!is_distant(light)) scale(light.intensity, factor * factor);
 }
 
 void scale_medium(MediumSource& medium, float factor) {

@@ -18,7 +18,7 @@ ScatterFunction prepare_billboard(const View& view, const Snapshot& snapshot, co
 
 Mode billboard_mode() {
     return {.name = "billboard",
-            .summary = "textured beam cards where light leaks into the scene: a look, not light",
+            .summary = "textured beam cards where light leaks into the scene: artistic, not light transport",
             .use = "beams as an effect, placed and tinted by hand; no setting makes them converge",
             .accuracy = Accuracy::look,
             .surfaces = Surfaces::shared,

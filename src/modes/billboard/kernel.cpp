@@ -32,12 +32,12 @@ Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
 // Radiance per unit of the light's intensity, by an even beam in even fog: J (1 - e^-σc).
 Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const Light& light = billboards.snapshot.lights[quad.light];
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     const LightPaths to_light = light_paths(light, on.point), to_eye{packet.origin, packet.direction, on.t};
     Floats extinction = 0.0f, depth = 0.0f;
     const std::vector<Medium>& media = billboards.snapshot.media;
     const Vec3s scattered = scattering(media, dot(to_light.direction, packet.direction), [&](size_t m) HWY_ATTR {
-        const Floats here = density16(media[m], on.point) * media[m].optics.extinction;
+        const Floats here = density16(media[m], on.point) * grey_extinction(media[m].optics);
         extinction = extinction + here;
         return here;
     });

@@ -48,7 +48,7 @@ BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
     const float count = static_cast<float>(opening.size());
     BeamCard card;
     const Light& light = *view.light;
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
     // The beam begins where the surfaces around the opening are; cells of gaps in the open begin there themselves.
     const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
@@ -85,7 +85,7 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
                float& open) {
     const Light& light = snapshot.lights[index];
     const bool blocked = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
-    if (settings.cards == 0 || (!blocked && light.kind != LightKind::spot)) return;
+    if (settings.cards == 0 || (!blocked && !has_cone(light))) return;
     const Openings openings = find_openings(light, snapshot);
     open = openings.open;
     const auto add = [&](BeamCard card) {
@@ -95,7 +95,7 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
         card.seed = hash(static_cast<uint32_t>(index), static_cast<uint32_t>(cards.size()));
         cards.push_back(card);
     };
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         size_t in_cone = 0, largest = 0;
         for (const Cell& cell : openings.cells) in_cone += cell.hit > 0;
         for (const auto& opening : openings.found) largest = std::max(largest, opening.size());

@@ -130,7 +130,7 @@ std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>&
 
 Openings find_openings(const Light& light, const Snapshot& snapshot) {
     // A sun's first look only finds out where to look closer.
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     constexpr int rays = 128; // across the light's view that looks for openings
     const int first = sun ? (rays + 1) / 2 : rays;
     Openings result{light_view(light, snapshot, first, false), {}, {}};

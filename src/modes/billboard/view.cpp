@@ -28,28 +28,28 @@ Box shown(const Snapshot& snapshot) {
 Ray LightView::ray(int cell) const {
     const float x = (static_cast<float>(cell % n) + 0.5f) / static_cast<float>(n);
     const float y = (static_cast<float>(cell / n) + 0.5f) / static_cast<float>(n);
-    if (light->kind == LightKind::sun) return {corner + x * right + y * up, light->direction, reach};
-    if (light->kind == LightKind::point) return {light->position, octahedral_direction(2 * x - 1, 2 * y - 1), reach};
+    if (is_distant(*light)) return {corner + x * right + y * up, light->direction, reach};
+    if (shines_around(*light)) return {light->position, octahedral_direction(2 * x - 1, 2 * y - 1), reach};
     const vec3 direction = light->direction + (2 * x - 1) * right + (2 * y - 1) * up;
     return {light->position, glm::normalize(direction), reach};
 }
 
 vec3 LightView::place(int cell) const {
     const Ray at = ray(cell);
-    return light->kind == LightKind::sun ? at.origin : at.direction;
+    return is_distant(*light) ? at.origin : at.direction;
 }
 
 float LightView::cell_size() const {
-    if (light->kind == LightKind::point) return std::sqrt(4 * pi) / static_cast<float>(n);
+    if (shines_around(*light)) return std::sqrt(4 * pi) / static_cast<float>(n);
     const float side = std::sqrt(glm::length(right) * glm::length(up));
-    return (light->kind == LightKind::sun ? side : 2 * side) / static_cast<float>(n);
+    return (is_distant(*light) ? side : 2 * side) / static_cast<float>(n);
 }
 
 int LightView::neighbour(int cell, int dx, int dy) const {
     int x = cell % n + dx, y = cell / n + dy;
     const bool beside = x < 0 || x >= n, above = y < 0 || y >= n;
     if (!beside && !above) return y * n + x;
-    if (light->kind != LightKind::point || (beside && above)) return -1;
+    if (!shines_around(*light) || (beside && above)) return -1;
     // The octahedron's borders fold onto themselves.
     if (beside) x = std::clamp(x, 0, n - 1), y = n - 1 - y;
     if (above) y = std::clamp(y, 0, n - 1), x = n - 1 - x;
@@ -66,10 +66,10 @@ LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool l
         u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // rows of the grid follow the ground
         v = glm::cross(light.direction, u);
     }
-    if (light.kind == LightKind::spot) {
+    if (has_cone(light)) {
         const float half = std::tan(std::min(light.outer_cone, 1.4f));
         view.right = half * u, view.up = half * v;
-    } else if (light.kind == LightKind::sun) {
+    } else if (is_distant(light)) {
         Box flat; // the box in the light's frame
         for (int corner = 0; corner < 8; ++corner) {
             const vec3 p(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
@@ -101,7 +101,7 @@ std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
                 const Interval<float> in = clip(medium.world_bounds, rays[i].origin, rays[i].direction, {0, cell.hit});
                 if (!in.empty()) cell.from = std::min(cell.from, in.low), cell.to = std::max(cell.to, in.high);
             }
-            const bool in_cone = view.light->kind != LightKind::spot ||
+            const bool in_cone = !has_cone(*view.light) ||
                                  glm::dot(rays[i].direction, view.light->direction) >= std::cos(view.light->outer_cone);
             if (!in_cone) cell.from = cell.to = cell.hit = 0;
         }

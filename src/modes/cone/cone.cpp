@@ -34,7 +34,7 @@ std::vector<double> faces(const Medium& medium, int axis, double towards_low, do
 // Planes through the light and the edges of a box.
 void add_edge_planes(const Medium& medium, const Light& light, bool both, std::vector<vec4>& planes) {
     const dmat4 m(medium.world_to_local);
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     const dvec3 apex(m[3]), travel = glm::dmat3(m) * dvec3(light.direction); // local; the light is the anchor
     const auto faces_of = [&](int axis) {
         const double low = medium.bounds.low[axis], high = medium.bounds.high[axis];
@@ -67,7 +67,7 @@ bool endless(const Medium& medium) {
 AnchoredFog anchored(std::span<const Medium> media, dvec3 anchor, const Light* light) {
     AnchoredFog fog;
     fog.anchor = anchor;
-    fog.direct = light && light->kind != LightKind::sun;
+    fog.direct = light && !is_distant(*light);
     for (const Medium& medium : media) {
         const Medium& moved = fog.media.emplace_back(seen_from(medium, anchor));
         const bool height = moved.kind == DensityKind::height;
@@ -95,12 +95,12 @@ ConeEdges edges_of(const Light& light, const ConeSettings& settings) {
 
 ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& cone) {
     ConeLight result;
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     result.light = light;
     result.fog = anchored(snapshot.media, sun ? dvec3(cone.eye) : dvec3(light.position), &light);
     result.edges = edges_of(light, cone.settings);
     result.reach = std::max(light.radius, smallest_radius);
-    if (light.kind == LightKind::spot && light.outer_cone > 0)
+    if (has_cone(light) && light.outer_cone > 0)
         result.near_plane = static_cast<float>(cone.settings.near_radius / std::tan(double(light.outer_cone)));
     result.light.position = vec3(0);
     result.linear_range = std::isinf(light.range) ? glm::length(snapshot.bounds.size()) : light.range;
@@ -110,7 +110,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
 
 float AnchoredFog::extinction() const {
     float sum = 0;
-    for (const Medium& medium : media) sum += medium.optics.extinction;
+    for (const Medium& medium : media) sum += grey_extinction(medium.optics);
     return sum;
 }
 
@@ -141,7 +141,7 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
 
 Mode cone_mode() {
     return {.name = "cone",
-            .summary = "closed forms for the light of spots, points and suns in even fog, without shadows",
+            .summary = "closed forms for the light of spots, points and suns in homogeneous fog, without shadows",
             .use = "spots and lamps that nothing obstructs, in homogeneous fog: exact and the fastest",
             .accuracy = Accuracy::even_fog,
             .surfaces = Surfaces::shared,

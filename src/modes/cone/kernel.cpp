@@ -116,7 +116,7 @@ void cone_packet_kernel(const Cone& cone, const RayBatch& batch, std::span<Scatt
     for (size_t l = 0; media > 0 && l < cone.lights.size(); ++l) {
         const ConeLight& light = cone.lights[l];
         Packet packet = make_packet(cone, light.fog, batch, scratch);
-        if (!(light.light.kind == LightKind::sun ? add_even(packet, &light) : add_local(packet, light))) continue;
+        if (!(is_distant(light.light) ? add_even(packet, &light) : add_local(packet, light))) continue;
         const Vec3s added = taken_sums(packet, nullptr, light.light.intensity * light.light.volume_scale);
         radiance = radiance + added;
         if (cone.casts && light.light.shadows) unshadowed = unshadowed + added.x + added.y + added.z;

@@ -32,7 +32,7 @@ void add_light(const View& view, const Snapshot& snapshot, const Light& light, c
     const auto add = [&](Severity severity, const LimitationKind& kind) {
         limitations.push_back({severity, &kind, Subject::light, light.name});
     };
-    const bool sun = light.kind == LightKind::sun, spot = light.kind == LightKind::spot;
+    const bool sun = is_distant(light), spot = has_cone(light);
     const bool shadows = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
     if (shadows && sun && is_shadowed(view, snapshot, light))
         add(Severity::wrong, limitation::sun_without_shadows);

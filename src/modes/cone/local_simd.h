@@ -46,7 +46,7 @@ HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const S
     }
     if (packet.cone.settings.attenuation == ConeAttenuation::linear)
         amount = max(1.0f - distance * (1 / light.linear_range), 0.0f);
-    if (light.light.kind == LightKind::spot) {
+    if (has_cone(light.light)) {
         const Floats aside = fused(s, seen.axis_out, -(seen.distance * seen.axis_along)) * inverse;
         const Floats cosine = fused(s, seen.axis_along, seen.distance * seen.axis_out) * inverse;
         amount = amount * edge(packet, light.edges, fused(aside, aside, seen.axis_across * seen.axis_across), cosine);
@@ -67,7 +67,7 @@ Interval<Floats> reached(const Packet& packet, const ConeLight& light, const See
         cut({-half, half});
     }
     if (packet.cone.style.range < no_range) cut({-infinity, packet.cone.style.range - packet.before - seen.nearest});
-    if (light.light.kind != LightKind::spot) return stretch;
+    if (!has_cone(light.light)) return stretch;
     cut(inside_wedge(seen, light.edges.cosine, light.edges.sine));
     if (light.near_plane > 0) {
         const Floats along = seen.axis_along, start = light.near_plane - seen.distance * seen.axis_out;
@@ -102,7 +102,7 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
         const Floats half = sqrt(max(light.reach * light.reach - seen.squared, 0.0f));
         add_break(packet, half), add_break(packet, -half);
     }
-    if (light.light.kind == LightKind::spot && light.edges.even_sine > 0) {
+    if (has_cone(light.light) && light.edges.even_sine > 0) {
         const Interval<Floats> even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
         add_break(packet, even.low), add_break(packet, even.high);
     }
@@ -139,7 +139,7 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
 
 bool add_local(Packet& packet, const ConeLight& light) {
     const SeenRays seen = seen_rays(packet.origin, packet.rest, packet.direction, light.light.direction);
-    if (light.light.kind == LightKind::spot) {
+    if (has_cone(light.light)) {
         const Interval<Floats> wedge = inside_wedge(seen, light.edges.cosine, light.edges.sine);
         if (!any((wedge.high > wedge.low) & (wedge.high > -seen.nearest) & (wedge.low < packet.t_max - seen.nearest)))
             return false;

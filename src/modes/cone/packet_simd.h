@@ -86,7 +86,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
         const Medium& medium = packet.fog.media[m];
         const Floats from = load(packet.scratch.from[m].data());
         const Floats to = min(t, load(packet.scratch.to[m].data()));
-        Floats depth = max(to - from, 0.0f) * medium.optics.extinction;
+        Floats depth = max(to - from, 0.0f) * grey_extinction(medium.optics);
         if (medium.kind == DensityKind::height) {
             const Floats y0 = fused(packet.direction.y, from, packet.origin.y);
             const Floats y1 = fused(packet.direction.y, to, packet.origin.y);
@@ -101,7 +101,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
 HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
     const Medium& medium = packet.fog.media[m];
     const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
-    Floats value = medium.optics.extinction;
+    Floats value = grey_extinction(medium.optics);
     if (medium.kind == DensityKind::height) {
         const Floats height = max(fused(packet.direction.y, t, packet.origin.y) - medium.height_base, 0.0f);
         value = value * exp(height * (-1 / medium.height_falloff));
@@ -111,7 +111,7 @@ HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
 
 HWY_INLINE Floats light_depth(const Packet& packet, const ConeLight& light, const Vec3s& point,
                               const Floats& distance) {
-    const bool sun = light.light.kind == LightKind::sun;
+    const bool sun = is_distant(light.light);
     const Floats length = sun ? Floats(sun_distance) : max(distance - light.light.radius, 0.0f);
     const float scale = packet.cone.style.light_depth;
     if (packet.fog.direct) return length * (packet.fog.extinction() * scale);

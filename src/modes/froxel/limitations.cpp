@@ -65,7 +65,7 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
         add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
     if (shadows && is_soft(light) && settings.shadow_rays == 1) add(Severity::degraded, limitation::hard_shadows);
     if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
-    if (light.kind != LightKind::sun && in_fog(snapshot, light.position))
+    if (!is_distant(light) && in_fog(snapshot, light.position))
         add(Severity::info, limitation::flat_glow, {size.coarse()});
 }
 

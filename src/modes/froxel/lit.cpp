@@ -213,7 +213,7 @@ void add_local(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTil
                const ivec2* lanes, size_t ray, const uint32_t* indices, FroxelLit::Arrivals* slices) {
     static thread_local std::vector<double> lengths[16];
     const Light& shining = scene.snapshot.lights[light];
-    const bool all = shining.kind == LightKind::spot;
+    const bool all = has_cone(shining);
     for (std::vector<double>& of_lane : lengths) of_lane.assign(static_cast<size_t>(grid.slices()), 0);
     for (size_t i = all ? 0 : ray; i < (all ? tiles.rays() : ray + 1); ++i) {
         const Lines lines = find_lines(grid, tiles, shining, static_cast<uint32_t>(light), lanes, i, indices);
@@ -236,7 +236,7 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
                      size_t ray, const uint32_t* indices, FroxelLit& lit) {
     const std::vector<Light>& lights = scene.snapshot.lights;
     const size_t slices = static_cast<size_t>(grid.slices());
-    const auto is_sun = [](const Light& light) { return light.kind == LightKind::sun; };
+    const auto is_sun = [](const Light& light) { return is_distant(light); };
     const bool suns = std::ranges::any_of(lights, is_sun), all_suns = std::ranges::all_of(lights, is_sun);
     lit.depths.assign(suns ? lights.size() * slices : 0, {});
     lit.arrivals.assign(all_suns ? 0 : lights.size() * slices, {});

@@ -22,7 +22,7 @@ bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const 
     const float reach = near * std::max(width, high - low);
     return std::ranges::any_of(lights, [&](const Light& light) {
         const vec3 offset = light.position - center;
-        return light.kind != LightKind::sun && glm::dot(offset, offset) < reach * reach;
+        return !is_distant(light) && glm::dot(offset, offset) < reach * reach;
     });
 }
 
@@ -48,7 +48,7 @@ std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& re
                                    int frame, bool still) {
     const ivec2 turns[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
     const ivec2 turn = turns[frame % 4];
-    const auto is_local = [](const Light& light) { return light.kind != LightKind::sun; };
+    const auto is_local = [](const Light& light) { return !is_distant(light); };
     const bool local = std::ranges::any_of(lights, is_local);
     const size_t slices = static_cast<size_t>(grid.slices());
     std::vector<uint8_t> stale(grid.tiles() * slices);

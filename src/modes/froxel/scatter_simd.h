@@ -52,7 +52,7 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
     const Floats length = max(lanes.length, 1e-30f);
     const Floats mean = max(min(dot(arrived.point - lanes.start, lanes.toward) / length, 1.0f), 0.0f);
     Floats spread = min(mean, 1.0f - mean) * 2.0f;
-    if (light.kind != LightKind::sun) {
+    if (!is_distant(light)) {
         const Vec3s offset = splat(light.position) - arrived.point;
         const float least = std::max(light.radius, smallest_radius);
         const Floats ratio = spread * length * 0.5f / max(sqrt(dot(offset, offset)), least);
@@ -69,7 +69,7 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
 // their width where that is a single ray.
 Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes, const Floats& distance) {
     constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
-    if (light.kind == LightKind::sun || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
+    if (is_distant(light) || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
     const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
     return lanes.active & (distance * distance < size2 * (near * near));
 }
@@ -127,7 +127,7 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
         const Mask16 sliced = lit & !near & (load(job.looks.first) > 0.0f);
         const size_t at = index * static_cast<size_t>(fill.grid.slices()) + static_cast<size_t>(job.slice);
         by_rays = by_rays & !sliced, along = along | sliced;
-        if (light.kind == LightKind::sun) {
+        if (is_distant(light)) {
             const FroxelLit::Depths& depths = job.exact->depths[at];
             const Floats length = zero_unless(sliced, load(depths.length));
             const Mask16 some = length > 0.0f;
@@ -162,7 +162,7 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
     if (!any(reached)) return splat(vec3(0));
 
     Floats cosine = dot(splat(-light.direction), lanes.toward);
-    if (light.kind != LightKind::sun) {
+    if (!is_distant(light)) {
         const Vec3s offset = splat(light.position) - arrived.point;
         cosine = dot(offset, lanes.toward) / max(sqrt(dot(offset, offset)), 1e-12f);
     }

@@ -22,7 +22,7 @@ bool same(const std::shared_ptr<const Occluders>& a, const std::shared_ptr<const
 
 // Where and how dense, not how it scatters.
 bool same(const Medium& a, const Medium& b) {
-    return a.kind == b.kind && a.optics.extinction == b.optics.extinction && same(a.bounds, b.bounds) &&
+    return a.kind == b.kind && grey_extinction(a.optics) == grey_extinction(b.optics) && same(a.bounds, b.bounds) &&
            a.world_to_local == b.world_to_local && same(a.world_bounds, b.world_bounds) &&
            a.height_base == b.height_base && a.height_falloff == b.height_falloff && a.bricks == b.bricks;
 }

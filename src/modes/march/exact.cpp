@@ -92,7 +92,8 @@ dvec3 glow(RayMarch& on) {
     at_nodes(on, [&](size_t piece, double t, double weight) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.march.snapshot.media[m].optics;
-            const dvec3 per_density = double(optics.extinction) * dvec3(optics.albedo * on.march.snapshot.ambient);
+            const dvec3 per_density =
+                double(grey_extinction(optics)) * dvec3(optics.albedo * on.march.snapshot.ambient);
             sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
         }
     });

@@ -105,7 +105,7 @@ Floats extinction_at(const March& march, const Points& points, const Packet& pac
     for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
         const Medium& medium = march.snapshot.media[m];
         const Floats density = density16(medium, points.position);
-        const Floats extinction = zero_unless(points.active, density * medium.optics.extinction);
+        const Floats extinction = zero_unless(points.active, density * grey_extinction(medium.optics));
         store(extinction, packet.scratch.extinction[m].data());
         total = total + extinction;
     }

@@ -53,7 +53,7 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, 
     Connection c;
     c.point = point, c.to_light = to_light;
     c.fog_length = infinity;
-    if (light.kind != LightKind::sun) c.fog_length = std::max(0.0f, glm::length(light.position - point) - light.radius);
+    if (!is_distant(light)) c.fog_length = std::max(0.0f, glm::length(light.position - point) - light.radius);
     c.shadow = shadow.direction, c.shadow_length = shadow.t_max;
     c.shadows = light.shadows, c.light_index = index;
     return c;

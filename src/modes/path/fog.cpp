@@ -10,7 +10,7 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
     fog.position = position, fog.total = 0;
     fog.extinction.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
-        fog.extinction[m] = snapshot.media[m].optics.extinction * density_at(snapshot.media[m], position);
+        fog.extinction[m] = grey_extinction(snapshot.media[m].optics) * density_at(snapshot.media[m], position);
         fog.total += fog.extinction[m];
     }
 }
@@ -28,7 +28,7 @@ float guessed_transmittance(const Snapshot& snapshot, const Line& line, float di
             continue;
         }
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
-        in_grids += static_cast<double>(inside.length()) * medium.optics.extinction * medium.bricks->mean;
+        in_grids += static_cast<double>(inside.length()) * grey_extinction(medium.optics) * medium.bricks->mean;
     }
     return static_cast<float>(std::exp(-depth - std::min(in_grids, most_in_grids)));
 }
@@ -170,7 +170,7 @@ void collide(const Walk& walk, Line& line) {
 
     const Optics& optics = snapshot.media[hit].optics;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
-    add_light(walk, line, optics.emission / optics.extinction, in_fog);
+    add_light(walk, line, optics.emission / grey_extinction(optics), in_fog);
     if (!walk.turns) return;
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);

@@ -28,7 +28,7 @@ Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
 LineLight light_on_line(const Light& light, const Ray& line, Interval<float> stretch) {
     LineLight along;
     along.reach = stretch;
-    if (light.kind == LightKind::sun) {
+    if (is_distant(light)) {
         along.chance = volume_brightness(light) * along.reach.length();
         return along;
     }

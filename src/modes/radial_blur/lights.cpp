@@ -36,7 +36,7 @@ vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& to
         const float depth = static_cast<float>(optical_depth(medium, towards));
         sum += medium.optics.albedo * depth, whole += depth;
     }
-    const float share = light.kind == LightKind::spot ? 0.5f * (1 - std::cos(light.outer_cone)) : 1.0f;
+    const float share = has_cone(light) ? 0.5f * (1 - std::cos(light.outer_cone)) : 1.0f;
     const float at_edge = std::exp(-whole) / (std::max(towards.t_max, 1e-3f) * 4 * radius);
     return sum * light.intensity * (light.volume_scale * share * 2 * at_edge);
 }
@@ -58,7 +58,7 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
     float total = 0;
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const Light& light = snapshot.lights[i];
-        const bool sun = light.kind == LightKind::sun;
+        const bool sun = is_distant(light);
         if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the picture
         const vec3 at = sun ? view.camera.position - far_away * light.direction : light.position;
         const std::optional<vec2> position = pixel_of(view.camera, view.size, at);

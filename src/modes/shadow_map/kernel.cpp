@@ -100,7 +100,7 @@ void march_shadow_maps_kernel(const ShadowMapMarch& march, const RayBatch& batch
     find_lit(packet);
     Totals totals = march_rays(packet);
     for (size_t i = 0; i < packet.lights(); ++i)
-        march.snapshot.lights[i].kind == LightKind::sun ? march_sun(packet, i) : march_light(packet, i, totals.taken);
+        is_distant(march.snapshot.lights[i]) ? march_sun(packet, i) : march_light(packet, i, totals.taken);
 
     alignas(64) float transmittance[16], taken[16], first[16], last[16];
     store(totals.transmittance, transmittance), store(totals.taken, taken);

@@ -108,7 +108,7 @@ HWY_INLINE Floats extinction_at(const Packet& packet, const Vec3s& position, Six
     Floats total = 0.0f;
     for (size_t m = 0; m < packet.media(); ++m) {
         const Medium& medium = packet.march.snapshot.media[m];
-        const Floats extinction = density16(medium, position) * medium.optics.extinction;
+        const Floats extinction = density16(medium, position) * grey_extinction(medium.optics);
         store(extinction, each[m].data());
         total = total + extinction;
     }
@@ -166,7 +166,7 @@ void find_lit(const Packet& packet) {
     const auto steps = static_cast<size_t>(packet.steps);
     packet.scratch.lit.resize(packet.lights() * steps);
     for (size_t i = 0; i < packet.lights(); ++i) {
-        if (packet.march.snapshot.lights[i].kind != LightKind::sun) continue;
+        if (!is_distant(packet.march.snapshot.lights[i])) continue;
         const RaysInMap rays(packet, i);
         const LitSteps search(packet, rays, packet.scratch.lit.data() + i * steps);
         search.find(0, packet.steps, search.reach_at(0), search.reach_at(packet.steps));

@@ -198,8 +198,7 @@ int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_
 void check_target(const Mode& mode, std::string_view option) {
     if (error_can_be_told(mode)) return;
     fail(ExitCode::usage, std::string(option),
-         "mode '" + std::string(mode.name) +
-             "' is a look: its error is as large as it is; --mode auto picks one that fits");
+         "mode '" + std::string(mode.name) + "' is artistic: it has no error bound; --mode auto picks one that has");
 }
 
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,

@@ -5,27 +5,22 @@
 namespace tyndall {
 namespace {
 LightKind kind_named(std::string_view name) {
-    if (name == "sun") return LightKind::sun;
-    return name == "spot" ? LightKind::spot : LightKind::point;
-}
-
-const char* kind_name(LightKind kind) {
-    return kind == LightKind::sun ? "sun" : kind == LightKind::spot ? "spot" : "point light";
+    return static_cast<LightKind>(std::ranges::find(light_kinds, name, &LightTraits::name) - light_kinds);
 }
 
 // Fields that mean something only for some kinds of light.
-void check_fields(const Field& field, LightKind kind) {
+void check_fields(const Field& field, const LightTraits& kind) {
     const auto only = [&](const char* name, bool fits, const char* who) {
         if (const Field given = field.member(name); given && !fits)
-            refuse(given, std::string("is for ") + who + " only; this light is a " + kind_name(kind));
+            refuse(given, "is for " + std::string(who) + " only; this light is a " + std::string(kind.noun));
     };
-    only("inner_cone", kind == LightKind::spot, "spots");
-    only("outer_cone", kind == LightKind::spot, "spots");
-    only("direction", kind != LightKind::point, "spots and suns");
-    only("target", kind != LightKind::point, "spots and suns");
-    only("range", kind != LightKind::sun, "point lights and spots");
-    only("radius", kind != LightKind::sun, "point lights and spots");
-    only("angle", kind == LightKind::sun, "suns");
+    only("inner_cone", kind.cone, "spots");
+    only("outer_cone", kind.cone, "spots");
+    only("direction", kind.aimed, "spots and suns");
+    only("target", kind.aimed, "spots and suns");
+    only("range", !kind.distant, "point lights and spots");
+    only("radius", !kind.distant, "point lights and spots");
+    only("angle", kind.distant, "suns");
     if (const Field target = field.member("target"); target && field.member("direction"))
         refuse(target, "and direction exclude each other");
 }
@@ -39,10 +34,9 @@ void read_placement(const Field& field, LightSource& light) {
         return;
     }
     const bool aims = target || direction;
-    if (light.kind != LightKind::sun && !position) refuse(field, "a light that is placed here needs a position");
-    if (light.kind != LightKind::point && !aims)
-        refuse(field, "a light that is placed here needs a direction or a target");
-    if (light.kind == LightKind::sun && target && !position)
+    if (!is_distant(light) && !position) refuse(field, "a light that is placed here needs a position");
+    if (is_aimed(light) && !aims) refuse(field, "a light that is placed here needs a direction or a target");
+    if (is_distant(light) && target && !position)
         refuse(target, "needs a position to aim from; a sun can have a direction instead");
     light.node = -1;
     if (position) light.position = keyed_vector(position);
@@ -68,7 +62,7 @@ void read_fields(const Field& field, LightSource& light) {
     number("angle", light.angle, keyed_degrees);
     if (const Field range = field.member("range")) light.range = read_number(range);
     light.shadows = field.json->boolean_or("shadows", light.shadows);
-    if (light.kind == LightKind::spot && !cones_fit(light))
+    if (has_cone(light) && !cones_fit(light))
         refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
                "outer_cone must not be less than inner_cone, at any moment");
 }
@@ -116,11 +110,11 @@ void read_lights(const Field& root, Scene& scene) {
         if (known && known >= scene.lights.data() + of_gltf)
             refuse(field.member("name"), "another light has this name already");
         if (known && field.member("type") && kind_named(field.member("type").json->string) != known->kind)
-            refuse(field.member("type"), std::string("the light of the glTF is a ") + kind_name(known->kind) +
-                                             "; its type cannot be changed");
+            refuse(field.member("type"), std::string("the light of the glTF is a ") +
+                                             std::string(traits_of(known->kind).noun) + "; its type cannot be changed");
         LightSource light = known ? *known : new_light(field, scene);
         if (!known && find(scene, light.name)) refuse(field, "the name \"" + light.name + "\" is taken");
-        check_fields(field, light.kind);
+        check_fields(field, traits_of(light.kind));
         light.entry = field.pointer;
         read_placement(field, light);
         read_fields(field, light);

@@ -55,8 +55,7 @@ bool is_dark(const Scene& scene) {
 
 // A sun is infinitely far away: homogeneous fog without end lets none of its light through.
 void warn_of_endless_fog(Scene& scene) {
-    const auto sun =
-        std::ranges::find_if(scene.lights, [](const LightSource& light) { return light.kind == LightKind::sun; });
+    const auto sun = std::ranges::find_if(scene.lights, [](const LightSource& light) { return is_distant(light); });
     if (sun == scene.lights.end()) return;
     for (const MediumSource& medium : scene.media)
         if (medium.kind == MediumKind::homogeneous && !is_finite(medium.bounds.low) && medium.extinction.at(0) > 0)

@@ -156,7 +156,7 @@ CameraSource camera_source(GltfDocument& document, const tinygltf::Camera& sourc
 // Blender writes candela and lux, or leaves out 683 lm/W, or writes watts, which points and spots spread all around.
 float unit_factor(LightUnits units, LightKind kind) {
     if (units == LightUnits::spec) return 1;
-    return units == LightUnits::raw && kind != LightKind::sun ? 683 / (4 * pi) : 683.0f;
+    return units == LightUnits::raw && !traits_of(kind).distant ? 683 / (4 * pi) : 683.0f;
 }
 
 bool known_light(std::string_view type) { return type == "point" || type == "spot" || type == "directional"; }
@@ -168,8 +168,8 @@ LightSource light_source(const GltfDocument& document, int index) {
     if (source.type == "directional") light.kind = LightKind::sun;
     if (source.color.size() == 3) light.color = vec3(source.color[0], source.color[1], source.color[2]);
     light.intensity = static_cast<float>(source.intensity) * unit_factor(document.options.light_units, light.kind);
-    if (source.range > 0 && light.kind != LightKind::sun) light.range = static_cast<float>(source.range);
-    if (light.kind != LightKind::spot) return light;
+    if (source.range > 0 && !is_distant(light)) light.range = static_cast<float>(source.range);
+    if (!has_cone(light)) return light;
     if (source.spot.innerConeAngle > source.spot.outerConeAngle)
         refuse(document.place("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
                "innerConeAngle is greater than outerConeAngle");

@@ -155,7 +155,7 @@ KeptKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, u
         key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale);
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
-        key.add(medium.kind).add(optics.extinction).add(optics.albedo).add(optics.phase.kind).add(optics.phase.g);
+        key.add(medium.kind).add(grey_extinction(optics)).add(optics.albedo).add(optics.phase.kind).add(optics.phase.g);
         key.add(medium.bounds).add(medium.world_bounds).add(medium.height_base).add(medium.height_falloff);
         for (int column = 0; column < 4; ++column) key.add(medium.world_to_local[column]);
         key.add(medium.bricks);

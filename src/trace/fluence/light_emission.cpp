@@ -34,7 +34,7 @@ void fit_directions(const Box& reach, LightSquare& square) {
     const Light& light = *square.light;
     vec3 axis = light.direction;
     float cosine = std::cos(std::min(light.outer_cone, pi));
-    if (light.kind == LightKind::point) {
+    if (shines_around(light)) {
         const vec3 towards = reach.center() - light.position;
         const float distance = glm::length(towards), radius = 0.5f * glm::length(reach.size()) + light.radius;
         cosine = distance > radius ? std::sqrt(1 - radius * radius / (distance * distance)) : -1;
@@ -51,12 +51,12 @@ LightSquare square_of(const Light& light, const Box& reach) {
     square.light = &light;
     square.axis = light.direction;
     make_frame(square.axis, square.across, square.up);
-    light.kind == LightKind::sun ? fit_sun(reach, square) : fit_directions(reach, square);
+    is_distant(light) ? fit_sun(reach, square) : fit_directions(reach, square);
     return square;
 }
 
 Ray LightSquare::ray(vec2 place, vec2 soft) const {
-    if (light->kind == LightKind::sun) {
+    if (is_distant(*light)) {
         const vec2 at = low + place * (high - low), disc = on_disc(soft) * std::tan(light->angle);
         const vec3 direction = light->angle > 0 ? glm::normalize(axis + disc.x * across + disc.y * up) : axis;
         return {at.x * across + at.y * up + start * axis, direction};
@@ -71,6 +71,6 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
 }
 
 float LightSquare::share(vec3 direction) const {
-    return light->kind == LightKind::spot ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f;
+    return has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f;
 }
 }

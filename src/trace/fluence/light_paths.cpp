@@ -63,7 +63,7 @@ Walker start(const Walk& walk, int64_t index, int64_t total) {
     if (inside.empty()) return walker;
     float left = square.share(walker.ray.direction);
     walker.ray.origin = walker.ray.at(inside.low);
-    if (walk.endless && square.light->kind == LightKind::sun)
+    if (walk.endless && is_distant(*square.light))
         left *= static_cast<float>(
             std::exp(-optical_depth(walk.snapshot.media, {walker.ray.origin, -walker.ray.direction, infinity})));
     walker.light = square.power * (left / static_cast<float>(chance * strata * static_cast<double>(total)));
@@ -84,7 +84,7 @@ void note(const Walk& walk, Walker& walker, float length) {
 // What the light's range leaves of light that comes straight from it.
 float ranged(const Walk& walk, const Walker& walker, vec3 point) {
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
-    return light.kind == LightKind::sun ? 1 : range_window(glm::length(point - light.position), light.range);
+    return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
 // Goes on from a point with a share of the light, unless roulette ends the path.
@@ -185,8 +185,7 @@ Box light_reach(const Snapshot& snapshot) {
         reach.low -= margin, reach.high += margin;
     }
     if (thickest == 0) return reach;
-    for (const Light& light : snapshot.lights)
-        if (light.kind != LightKind::sun) reach.grow(light.position);
+    for (const Light& light : snapshot.lights) reach.grow(light_bounds(light));
     if (reach.empty()) reach = snapshot.bounds;
     if (reach.empty()) reach.grow(vec3(0));
     const float further = std::min(2 / thickest, std::max(glm::length(reach.size()), 1.0f));

@@ -22,7 +22,7 @@ void set_beam(const View& view, const Light& light, View::Lamp& lamp) {
     const vec3 sight = flat ? view.camera.forward : glm::normalize(light.position - view.camera.position);
     const vec3 across = light.direction - glm::dot(light.direction, sight) * sight;
     const float sine = glm::length(across), reach = std::sin(std::min(light.outer_cone, pi / 2));
-    if (light.kind != LightKind::spot || light.outer_cone >= pi / 2 || reach >= sine) return;
+    if (!has_cone(light) || light.outer_cone >= pi / 2 || reach >= sine) return;
     const float step = 1e-3f * std::max(glm::distance(light.position, view.camera.position), 1e-3f);
     const std::optional<vec2> beside = pixel_of(view.camera, view.size, light.position + step / sine * across);
     if (!beside || *beside == lamp.at) return;
@@ -84,7 +84,7 @@ std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
     if (view.filter == PixelFilter::center || snapshot.media.empty()) return lamps;
     for (const Light& light : snapshot.lights) {
         const std::optional<vec2> at =
-            light.kind == LightKind::sun ? std::nullopt : pixel_of(view.camera, view.size, light.position);
+            is_distant(light) ? std::nullopt : pixel_of(view.camera, view.size, light.position);
         if (!at) continue;
         const vec3 rim = light.position + light.radius * view.camera.right;
         View::Lamp lamp{*at, glm::distance(*at, pixel_of(view.camera, view.size, rim).value_or(*at))};

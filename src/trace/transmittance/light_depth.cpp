@@ -61,7 +61,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 KeptKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
     KeptKey key;
     key.add(light).add(resolution);
-    for (const Medium* medium : bricks) key.add(medium->bricks).add(medium->optics.extinction);
+    for (const Medium* medium : bricks) key.add(medium->bricks).add(grey_extinction(medium->optics));
     return key;
 }
 
@@ -126,7 +126,7 @@ void marched_depths(const LightDepth& depth, const float* x, const float* y, con
         result[lane] = 0;
         if (!active[lane]) continue;
         Ray ray{{x[lane], y[lane], z[lane]}, -depth.light.direction};
-        if (depth.light.kind != LightKind::sun) {
+        if (!is_distant(depth.light)) {
             const vec3 towards = depth.light.position - ray.origin;
             const float distance = glm::length(towards);
             if (!(distance > depth.light.radius)) continue;

@@ -22,7 +22,7 @@ struct LightPaths {
 inline constexpr float sun_distance = 1e12f; // metres: beyond all fog, and its square is still a float
 
 HWY_INLINE LightPaths light_paths(const Light& light, const Vec3s& point) {
-    if (light.kind == LightKind::sun) return {point, splat(-light.direction), sun_distance};
+    if (is_distant(light)) return {point, splat(-light.direction), sun_distance};
     const Vec3s towards = splat(light.position) - point;
     const Floats distance = max(sqrt(dot(towards, towards)), 1e-12f);
     return {point, towards * (1.0f / distance), max(distance - light.radius, 0.0f)};
@@ -72,7 +72,7 @@ HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, co
 // Exact optical depth of homogeneous and height fog.
 HWY_INLINE Floats analytic_depth16(const Medium& medium, const LightPaths& paths) {
     const Interval<Floats> range = inside_box(medium, paths);
-    const Floats length = max(range.high - range.low, 0.0f) * medium.optics.extinction;
+    const Floats length = max(range.high - range.low, 0.0f) * grey_extinction(medium.optics);
     if (medium.kind == DensityKind::homogeneous) return length;
     const Floats y0 = fused(paths.direction.y, range.low, paths.origin.y);
     const Floats y1 = fused(paths.direction.y, range.high, paths.origin.y);

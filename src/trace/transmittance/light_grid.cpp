@@ -213,18 +213,18 @@ void fit_octahedron(std::span<const Block> blocks, const Light& light, float cel
 
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution) {
     LightDepthGrid grid;
-    const std::vector<Block> blocks = blocks_of(media, light.kind == LightKind::sun);
+    const std::vector<Block> blocks = blocks_of(media, is_distant(light));
     if (blocks.empty()) return grid;
     Box fog;
     for (const Block& block : blocks) fog.grow(block.center);
     const float cells = static_cast<float>(std::max(resolution, 1));
-    if (light.kind == LightKind::sun) {
+    if (is_distant(light)) {
         fit_sun(media, blocks, light, fog, cells, grid);
         return grid;
     }
 
     // Perspective columns when one cone holds all that matters, else all directions.
-    const bool spot = light.kind == LightKind::spot && light.outer_cone <= widest_cone;
+    const bool spot = has_cone(light) && light.outer_cone <= widest_cone;
     const vec3 axis = spot ? light.direction : stable_direction(fog.center() - light.position);
     const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);
     if (spot || angle < widest_view)

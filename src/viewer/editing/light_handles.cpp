@@ -13,8 +13,7 @@ bool has(const Scene& scene, size_t light, std::string_view property) {
 
 // A sun that nothing gives a place.
 bool is_nowhere(const LightSource& light) {
-    return light.kind == LightKind::sun && light.node < 0 && light.position.times.empty() &&
-           light.position.values[0] == vec3(0);
+    return is_distant(light) && light.node < 0 && light.position.times.empty() && light.position.values[0] == vec3(0);
 }
 
 vec3 axis_of(Handle handle) {
@@ -94,8 +93,7 @@ std::vector<HandlePoint> light_handles(const Camera& camera, ivec2 size, const L
     };
     for (const Handle axis : {Handle::x, Handle::y, Handle::z})
         if (moves) add(axis, axis_of(axis));
-    if (scene.lights[icon.light].kind != LightKind::point)
-        add(Handle::direction, light_place(scene, icon.light, seconds).direction);
+    if (is_aimed(scene.lights[icon.light])) add(Handle::direction, light_place(scene, icon.light, seconds).direction);
     return handles;
 }
 

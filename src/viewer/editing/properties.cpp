@@ -8,14 +8,12 @@ namespace tyndall {
 namespace {
 using enum ValueKind;
 
-bool is_spot(const Scene& scene, size_t i) { return scene.lights[i].kind == LightKind::spot; }
-bool is_sun(const Scene& scene, size_t i) { return scene.lights[i].kind == LightKind::sun; }
+bool is_spot(const Scene& scene, size_t i) { return has_cone(scene.lights[i]); }
+bool is_sun(const Scene& scene, size_t i) { return is_distant(scene.lights[i]); }
 bool is_local(const Scene& scene, size_t i) { return !is_sun(scene, i); }
 bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
 bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
-bool has_direction(const Scene& scene, size_t i) {
-    return scene.lights[i].kind != LightKind::point && !has_target(scene, i);
-}
+bool has_direction(const Scene& scene, size_t i) { return is_aimed(scene.lights[i]) && !has_target(scene, i); }
 bool has_mean_cosine(const Scene& scene, size_t i) {
     const PhaseKind phase = scene.media[i].phase;
     return phase == PhaseKind::henyey_greenstein || phase == PhaseKind::schlick;

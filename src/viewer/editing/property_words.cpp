@@ -103,18 +103,6 @@ vec3 direction_from(const SunPlace& place) {
     return -vec3(std::cos(height) * std::sin(bearing), std::sin(height), std::cos(height) * std::cos(bearing));
 }
 
-const char* kind_name(const LightSource& light) {
-    switch (light.kind) {
-    case LightKind::point:
-        return "lamp";
-    case LightKind::spot:
-        return "spot";
-    case LightKind::sun:
-        break;
-    }
-    return "sun";
-}
-
 const char* kind_name(const MediumSource& medium) {
     switch (medium.kind) {
     case MediumKind::homogeneous:

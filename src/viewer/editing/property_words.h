@@ -31,6 +31,5 @@ SunPlace sun_place(vec3 direction);         // the way the light travels, of any
 vec3 direction_from(const SunPlace& place); // of unit length
 
 // Of lights and fog, for people: "spot", "sun", "even fog".
-const char* kind_name(const LightSource& light);
 const char* kind_name(const MediumSource& medium);
 }

@@ -59,9 +59,9 @@ void follow(Background& background, const Edit& edit) {
 // What scene files refuse.
 void check(const LightSource& light, const std::string& place) {
     const auto is_zero = [](vec3 direction) { return glm::dot(direction, direction) == 0; };
-    if (light.kind != LightKind::point && std::ranges::any_of(light.direction.values, is_zero))
+    if (is_aimed(light) && std::ranges::any_of(light.direction.values, is_zero))
         refuse(place, "leaves the light without a direction");
-    if (light.kind == LightKind::spot && !cones_fit(light))
+    if (has_cone(light) && !cones_fit(light))
         refuse(place, "outer_cone must not be less than inner_cone, at any moment");
 }
 
@@ -134,7 +134,7 @@ std::vector<Edit> off_its_node(const Scene& scene, const Edit& edit) {
     if (is_animated(scene, light.node))
         refuse(place_of(scene, edit),
                "is animated in the glTF (node \"" + scene.nodes[light.node].name + "\"); change it there");
-    if (light.kind != LightKind::spot) return {edit};
+    if (!has_cone(light)) return {edit};
     const LightPlace place = light_place(scene, edit.index, edit.seconds);
     Edit position = edit, direction = edit;
     position.property = "position", direction.property = "direction";

@@ -141,7 +141,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Scene& scene, co
                                                    double(medium.height_falloff), double(medium.height_base))
                                        : "even");
     }
-    facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(medium.optics.extinction)));
+    facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(grey_extinction(medium.optics))));
     return facts;
 }
 }
@@ -158,7 +158,7 @@ std::shared_ptr<const VolumePicture> volume_picture(const Request& request, cons
         shown->remark = wanted.empty() ? "there is no fog at this moment" : wanted + " has no fog at this moment";
         return shown;
     }
-    shown->medium = medium->name, shown->extinction = medium->optics.extinction;
+    shown->medium = medium->name, shown->extinction = grey_extinction(medium->optics);
     shown->right = axes_across[static_cast<size_t>(request.volume->axis)].x;
     shown->up = axes_across[static_cast<size_t>(request.volume->axis)].y;
     shown->box = shown_box(*medium, snapshot, request.camera);

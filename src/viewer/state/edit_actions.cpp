@@ -1,5 +1,6 @@
 #include "viewer/state/edit_actions.h"
 
+#include "base/choice.h"
 #include "base/error.h"
 #include "base/io/json_pointer.h"
 #include "base/text.h"
@@ -117,8 +118,7 @@ void close_window(ViewState& state, const Action& action) {
 
 void answer(ViewState& state, const std::string& word) {
     if (!state.asked) fail(ExitCode::usage, "answer", "nothing was asked");
-    if (word != "save" && word != "discard" && word != "cancel")
-        fail(ExitCode::usage, "answer", "no '" + printable(word, 40) + "'; there is save, discard, cancel");
+    choice_among("answer", word, {"save", "discard", "cancel"});
     if (word == "save" && is_unsaved(state)) save_scene(state, {});
     const Action action = *std::exchange(state.asked, std::nullopt);
     if (word == "cancel") return;

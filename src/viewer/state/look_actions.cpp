@@ -1,4 +1,5 @@
 // How pictures are shown, what is asked about them, and which panels are there.
+#include "base/choice.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/scene.h"
@@ -20,10 +21,7 @@ void set_wipe(ViewState& state, const Action& action) {
 }
 
 void set_shown(ViewState& state, const Action& action) {
-    const auto& names = shown_layer_names();
-    const auto found = std::ranges::find(names, action.words[0]);
-    if (found == names.end()) fail(ExitCode::usage, "show", unknown_name("layer", action.words[0], names));
-    state.shown.layer = static_cast<ShownLayer>(found - names.begin());
+    state.shown.layer = static_cast<ShownLayer>(choice_among("show", action.words[0], shown_layer_names()));
     ++state.shown_revision;
 }
 
@@ -79,10 +77,7 @@ void project_volume(ViewState& state, const Action& action) {
 }
 
 void show_tab(ViewState& state, const Action& action) {
-    const std::string& name = action.words[0];
-    if (name != "render" && name != "lights")
-        fail(ExitCode::usage, "tab", "no '" + printable(name, 40) + "'; there is render, lights");
-    state.lights_tab = name == "lights";
+    state.lights_tab = choice_among("tab", action.words[0], {"render", "lights"}) == 1;
 }
 
 constexpr VerbAction table[] = {

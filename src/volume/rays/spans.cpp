@@ -43,7 +43,7 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
                         std::vector<Span>& spans) {
     const BrickPool& pool = *medium.bricks;
     const LocalRay local = local_ray(pool, ray);
-    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = medium.optics.extinction;
+    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
     const size_t first = spans.size();
 
     // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
@@ -72,7 +72,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
         if (medium.kind == DensityKind::bricks) continue;
         double depth = 0;
         walk_bands(ray, medium, [&](Interval<double> stretch, double, double smallest) {
-            const double extinction = medium.optics.extinction * smallest;
+            const double extinction = grey_extinction(medium.optics) * smallest;
             const double opaque = stretch.low + (opaque_depth - depth) / extinction;
             if (depth < opaque_depth && opaque < stretch.high) end = std::min(end, opaque);
             depth += extinction * stretch.length();
@@ -85,7 +85,7 @@ void append_spans(const Ray& ray, const Medium& medium, double t_end, const Step
     if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
     walk_bands(ray, medium, [&](Interval<double> stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
-        if (stretch.low < high) spans.push_back({stretch.low, high, medium.optics.extinction * largest, 0});
+        if (stretch.low < high) spans.push_back({stretch.low, high, grey_extinction(medium.optics) * largest, 0});
     });
 }
 

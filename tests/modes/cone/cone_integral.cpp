@@ -39,7 +39,8 @@ double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, doubl
         const double h0 = origin.y + in.low * direction.y - medium.height_base;
         const double h1 = origin.y + in.high * direction.y - medium.height_base;
         const bool height = medium.kind == DensityKind::height;
-        sum += medium.optics.extinction * in.length() * (height ? mean_density(h0, h1, medium.height_falloff) : 1);
+        sum +=
+            grey_extinction(medium.optics) * in.length() * (height ? mean_density(h0, h1, medium.height_falloff) : 1);
     }
     return sum;
 }
@@ -48,7 +49,7 @@ double strength(const Light& light, dvec3 to_light, double distance) {
     const double reach = std::max(light.radius, smallest_radius);
     double amount = 1 / std::max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) amount *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
-    if (light.kind != LightKind::spot) return amount;
+    if (!has_cone(light)) return amount;
     const dvec3 axis(light.direction);
     const double sine = glm::length(glm::cross(axis, to_light)), cosine = -glm::dot(axis, to_light);
     const double versine = cosine > 0 ? sine * sine / (1 + cosine) : 1 - cosine;
@@ -84,7 +85,7 @@ double adaptive(const std::function<double(double)>& f, double a, double b, doub
 
 double cone_integral(const Light& light, std::span<const Medium> media, const Ray& ray) {
     const dvec3 o(ray.origin), d(ray.direction), apex(light.position), axis = glm::normalize(dvec3(light.direction));
-    const bool sun = light.kind == LightKind::sun;
+    const bool sun = is_distant(light);
     const auto integrand = [&](double t) {
         const dvec3 point = o + t * d, towards = apex - point;
         const double away = glm::length(towards);
@@ -98,8 +99,8 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
                 continue;
             const double height = std::max(point.y - medium.height_base, 0.0) / medium.height_falloff;
             const double density = medium.kind == DensityKind::height ? std::exp(-height) : 1;
-            scattered +=
-                medium.optics.extinction * density * phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
+            scattered += grey_extinction(medium.optics) * density *
+                         phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
         }
         const double dim =
             depth(media, o, d, t) + depth(media, point, to_light, sun ? 1e12 : std::max(away - light.radius, 0.0));
@@ -112,7 +113,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
     std::vector<double> cuts{0, double(ray.t_max), nearest};
     const auto add = [&](Interval<double> s) { cuts.push_back(s.low), cuts.push_back(s.high); };
     for (const Medium& medium : media) add(inside(medium.bounds, o, d, ray.t_max));
-    if (light.kind == LightKind::spot)
+    if (has_cone(light))
         add(inside_cone(apex, axis, light.outer_cone, o, d)), add(inside_cone(apex, axis, light.inner_cone, o, d));
     for (const double radius : {double(light.range), double(std::max(light.radius, smallest_radius))})
         if (!sun && radius > off && std::isfinite(radius)) {

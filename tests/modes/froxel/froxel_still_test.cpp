@@ -103,7 +103,8 @@ TEST(FroxelStill, SettledFogIsAsGoodAsFogFoundAnew) {
             const float along = static_cast<float>(frame);
             here.snapshot.lights[0].direction = glm::normalize(vec3(0.3f + turn * along, -1, 0.1f));
             if (restless)
-                here.snapshot.media[0].optics.extinction = still.media[0].optics.extinction * (1 + 1e-6f * along);
+                here.snapshot.media[0].optics.extinction =
+                    vec3(grey_extinction(still.media[0].optics) * (1 + 1e-6f * along));
             results = scattered(froxels(still_view(), here.snapshot, settings, &history),
                                 picture_rays(still_view(), here.snapshot, 12));
         }

@@ -92,7 +92,7 @@ TEST(MarchExact, RayThroughTheLightItself) {
 
 TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
     Medium fog;
-    fog.kind = DensityKind::height, fog.optics = {0.4f, vec3(0.9f), {PhaseKind::isotropic, 0}, vec3(0)};
+    fog.kind = DensityKind::height, fog.optics = {vec3(0.4f), vec3(0.9f), {PhaseKind::isotropic, 0}, vec3(0)};
     fog.height_base = 0.5f, fog.height_falloff = 2;
     const Light light = sun_light({0.6f, -0.8f, 0}, 5);
     const Stage stage = stage_of({fog}, {light}, {shade(-30, 30)}); // above everything that counts
@@ -147,7 +147,7 @@ TEST(MarchExact, GridFogMatchesMidpointSums) {
                 float x[16], y[16], z[16], density[16];
                 std::fill(x, x + 16, point.x), std::fill(y, y + 16, point.y), std::fill(z, z + 16, point.z);
                 densities(media[m], x, y, z, density);
-                total += extinction[m] = double(media[m].optics.extinction) * density[0];
+                total += extinction[m] = double(grey_extinction(media[m].optics)) * density[0];
             }
             if (total == 0) continue;
             for (const Light& light : stage.snapshot.lights) {

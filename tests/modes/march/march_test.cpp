@@ -109,7 +109,7 @@ TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
 TEST(March, HeightFogTransmittanceMatchesClosedForm) {
     // s0 = 0.1, H = 10, upward cosine 0.5, length 40 from the base: tau = 1.729329434.
     Medium medium;
-    medium.kind = DensityKind::height, medium.optics = {0.1f, vec3(1), {}, vec3(0)}, medium.height_falloff = 10;
+    medium.kind = DensityKind::height, medium.optics = {vec3(0.1f), vec3(1), {}, vec3(0)}, medium.height_falloff = 10;
     Settings settings = sampled_settings();
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
     EXPECT_NEAR(marched(snapshot_of({medium}, {}), settings, ray).transmittance / 0.177403331, 1, 1e-4);

@@ -19,7 +19,7 @@ namespace tyndall::test {
 namespace {
 // What the renderer does for prepare_glow and surfaces that only glow, done by the mode: ray by ray.
 Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
-    const float extinction = snapshot.media[0].optics.extinction;
+    const float extinction = grey_extinction(snapshot.media[0].optics);
     Scatter result;
     float through = 1;
     for (int layer = 0; layer < 64; ++layer) {

@@ -24,7 +24,7 @@ Light with_radius(Light light, float radius) {
 }
 
 double exact_depth(const std::vector<Medium>& media, const Light& light, vec3 point) {
-    if (light.kind == LightKind::sun) return optical_depth(media, {point, -light.direction});
+    if (is_distant(light)) return optical_depth(media, {point, -light.direction});
     const vec3 towards = light.position - point;
     const float distance = glm::length(towards);
     return optical_depth(media, {point, towards / distance, std::max(0.0f, distance - light.radius)});

@@ -57,7 +57,7 @@ Accuracy accuracy_of(const LightDepth& depth, const Medium& fog, const std::vect
         light_depths(depth, v[0], v[1], v[2], active, found);
         for (int lane = 0; lane < 16; ++lane) {
             Ray ray{points[first + lane], -light.direction};
-            if (light.kind != LightKind::sun) {
+            if (!is_distant(light)) {
                 const vec3 towards = light.position - ray.origin;
                 ray.t_max = glm::length(towards), ray.direction = towards / ray.t_max;
             }

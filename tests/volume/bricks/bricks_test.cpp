@@ -108,6 +108,15 @@ TEST(Bricks, LinearRampHasNoSeamsAtLeafFaces) {
     }
 }
 
+TEST(Bricks, ALeafComesBeforeTheTileAroundIt) {
+    SparseVolume volume = constant_box(8, 0.25f);
+    volume.active_high = ivec3(15);
+    volume.tiles = {{ivec3(0), ivec3(15), 1}};
+    const auto pool = make_bricks(volume);
+    EXPECT_EQ(sample_density(*pool, vec3(3)), 0.25f);
+    EXPECT_EQ(sample_density(*pool, vec3(12)), 1);
+}
+
 TEST(Bricks, MaximumIsTheLargestCornerValue) {
     const SparseVolume volume = mixed_volume();
     const auto pool = make_bricks(volume);

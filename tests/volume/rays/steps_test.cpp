@@ -22,7 +22,7 @@ double marched_depth(const Medium& medium, const Ray& ray, const StepRule& rule)
     double sum = 0;
     for (const Step& step : steps_of(ray, medium, rule))
         sum += double(density_at(medium, ray.at(0.5f * (step.low + step.high)))) * (step.high - step.low);
-    return sum * medium.optics.extinction;
+    return sum * grey_extinction(medium.optics);
 }
 
 bool ascending(const Ray& ray, const std::vector<Step>& steps) {
@@ -283,6 +283,17 @@ TEST(Steps, FogWithoutEndIsCutWhereItIsOpaque) {
     EXPECT_NEAR(level.back().high, 128 * std::exp(1.0), 0.1);
     const std::vector<Medium> both{fog, medium_of(islands())};
     EXPECT_TRUE(ascending(Ray{}, steps_of(Ray{vec3(0, 3, 0), vec3(1, 0, 0)}, both)));
+}
+
+TEST(Steps, FogThatOnlyGlowsHasStepsAndWhatDoesNeitherHasNone) {
+    Medium fog = even_medium(0, {vec3(-1), vec3(1)});
+    const Ray ray{vec3(-3, 0, 0), vec3(1, 0, 0)};
+    EXPECT_TRUE(steps_of(ray, fog).empty());
+    fog.optics.emission = vec3(1);
+    const auto steps = steps_of(ray, fog);
+    ASSERT_FALSE(steps.empty());
+    EXPECT_FLOAT_EQ(steps.front().low, 2);
+    EXPECT_FLOAT_EQ(steps.back().high, 4);
 }
 
 TEST(Steps, AxisParallelAndDegenerateRays) {

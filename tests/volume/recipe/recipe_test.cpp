@@ -102,6 +102,8 @@ TEST(Recipe, MistakesAreNamed) {
               std::string::npos);
     EXPECT_NE(refusal(R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 2})").find("/voxel_size"),
               std::string::npos);
+    EXPECT_NE(refusal(R"({"bounds": {"low": [0, 0, 0], "high": [9, 1, 9]}, "voxel_size": 2})").find("/voxel_size"),
+              std::string::npos); // larger than one side
     EXPECT_NE(refusal(R"({"voxel_size": 2})").find("bounds"), std::string::npos);
     EXPECT_NE(refusal("[]"), "");
 }

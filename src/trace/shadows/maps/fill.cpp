@@ -109,8 +109,7 @@ void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& li
         filling.nearest = std::max(light.radius, shadow_offset(light.position));
         // Filters reach two texels beyond the cone.
         const float texel = 1 / map.pictures[0].scale.x;
-        if (light.kind == LightKind::spot)
-            filling.smallest_cosine = std::cos(std::min(light.outer_cone + 4 * texel, pi));
+        if (has_cone(light)) filling.smallest_cosine = std::cos(std::min(light.outer_cone + 4 * texel, pi));
     }
 
     size_t texels = 0;

@@ -34,7 +34,7 @@ constexpr float widest_picture = 70 * pi / 180; // half angle of a spot
 
 // A spot's picture of its cone, or a cube's six.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
-    const bool cube = light.kind == LightKind::point || light.outer_cone > widest_picture;
+    const bool cube = shines_around(light) || light.outer_cone > widest_picture;
     map.kind = cube ? LightKind::point : LightKind::spot;
     map.position = light.position;
     float half = 1;
@@ -57,7 +57,7 @@ ShadowMap fitted_shadow_map(const View& view, const Snapshot& snapshot, const Li
     ShadowMap map;
     map.pcf = options.pcf, map.bias = options.bias;
     if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) return map;
-    if (light.kind != LightKind::sun) {
+    if (!is_distant(light)) {
         fit_tangents(light, options, map);
         return map;
     }

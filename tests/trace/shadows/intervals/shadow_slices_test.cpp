@@ -319,7 +319,7 @@ TEST(ShadowSlices, AgreeWithShadowRaysInTheExampleScenes) {
             ray.t_max = std::min(hits.t[0], static_cast<float>(scene_size)) * 0.999f;
             const LightSource& source = stage.scene.lights[i % stage.scene.lights.size()];
             const LightPoint light =
-                source.kind == LightKind::sun ? sun_from(-source.direction.at(0.5)) : lamp_at(source.position.at(0.5));
+                is_distant(source) ? sun_from(-source.direction.at(0.5)) : lamp_at(source.position.at(0.5));
             compare(stage, ray, light, 1024, 1e-5 * scene_size, sum);
         }
         EXPECT_EQ(sum.wrong, 0) << name << ", worst " << sum.worst << " of " << scene_size;
