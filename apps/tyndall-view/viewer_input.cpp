@@ -54,13 +54,13 @@ std::string word_of(const Action& action, size_t number) {
     return number < action.words.size() ? action.words[number] : "";
 }
 
-RenderJob sequence_of(const Viewer& viewer, const Action& action) {
-    return sequence_job(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2) == "png",
-                        viewer.options.isa);
+RenderRequest sequence_of(const Viewer& viewer, const Action& action) {
+    return sequence_request(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2) == "png",
+                            viewer.options.isa);
 }
 
-void copy_command(Viewer& viewer, const RenderJob& job) {
-    const std::string command = command_of(viewer.state, job);
+void copy_command(Viewer& viewer, const RenderRequest& request) {
+    const std::string command = command_of(viewer.state, request);
     ImGui::SetClipboardText(command.c_str());
     tell(viewer, "copied: " + command, false);
 }

@@ -8,9 +8,9 @@
 namespace tyndall {
 namespace {
 // The mode of a frame that --mode auto has rendered, for the same goal; null where there is none.
-const Mode* mode_before(const RenderJob& job) {
-    const std::string file = frame_name(job.output, job.frames[0]);
-    if (!job.resume || !std::filesystem::exists(file)) return nullptr;
+const Mode* mode_before(const RenderRequest& request) {
+    const std::string file = frame_name(request.output, request.frames[0]);
+    if (!request.resume || !std::filesystem::exists(file)) return nullptr;
     std::map<std::string, std::string> attributes;
     try {
         attributes = read_exr(file).attributes;
@@ -19,8 +19,8 @@ const Mode* mode_before(const RenderJob& job) {
     }
     const auto number = [&](const char* name) { return std::strtod(attributes[name].c_str(), nullptr); };
     if (attributes["tyndall:plan"].empty()) return nullptr;
-    if (std::abs(number("tyndall:targetError") - job.target_error) > 1e-9) return nullptr;
-    if (std::abs(number("tyndall:timeBudget") - job.time_budget) > 1e-9) return nullptr;
+    if (std::abs(number("tyndall:targetError") - request.target_error) > 1e-9) return nullptr;
+    if (std::abs(number("tyndall:timeBudget") - request.time_budget) > 1e-9) return nullptr;
     for (const Mode& mode : modes())
         if (mode.name == attributes["tyndall:mode"]) return &mode;
     return nullptr;
@@ -32,23 +32,25 @@ double usual_error(Quality quality) {
     return errors[static_cast<size_t>(quality)];
 }
 
-void choose_mode(const Scene& scene, RenderJob& job, const Snapshot& first, const Globals& globals) {
-    const Mode* before = mode_before(job);
+RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const Snapshot& first,
+                       const Globals& globals) {
+    const Mode* before = mode_before(request);
     Progress progress(globals.progress, "plan", 1, globals.json);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
-    const View view = view_of(scene, job, job.frames[0]);
-    const Goal goal{job.target_error, job.time_budget, job.quality};
+    const View view = view_of(scene, request, request.settings, request.frames[0]);
+    const Goal goal{request.target_error, request.time_budget, request.quality};
     const auto plan_with = [&](std::span<const Mode> candidates) {
-        return make_plan(candidates, view, first, job.settings, goal, control);
+        return make_plan(candidates, view, first, request.settings, goal, control);
     };
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
     if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was
     progress.finish();
-    job.wanted = std::make_shared<const Settings>(job.settings);
-    job.mode = plan.chosen.mode->name, job.settings = plan.settings, job.plan = plan.certificate();
-    job.choice = std::make_shared<const Choice>(plan.chosen.choice);
-    if (globals.quiet) return;
-    say("plan: " + printable(job.plan, 460));
+    RenderPlan result{plan.chosen.mode, plan.settings, plan.certificate(),
+                      std::make_shared<const Choice>(plan.chosen.choice),
+                      std::make_shared<const Settings>(request.settings)};
+    if (globals.quiet) return result;
+    say("plan: " + printable(result.certificate, 460));
     if (globals.verbose) say(plan_text(plan));
+    return result;
 }
 }

@@ -12,7 +12,7 @@ inline constexpr std::string_view automatic = "auto";
 // The error that is asked for when only a quality is.
 double usual_error(Quality quality);
 
-// Plans a job by its first frame and sets mode, settings and certificate. With resume and a first frame that was
+// The plan of a request by its first frame. With resume and a first frame that was
 // rendered to the same goal, that frame's mode is kept. Says what was chosen unless quiet.
-void choose_mode(const Scene& scene, RenderJob& job, const Snapshot& first, const Globals& globals);
+RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const Snapshot& first, const Globals& globals);
 }

@@ -45,17 +45,17 @@ std::vector<const Mode*> modes_option(const std::string& text) {
     return asked_modes(text);
 }
 
-RenderJob make_job(const Options& texts) {
-    RenderJob job;
-    job.scene_file = texts.scene;
-    job.quality = quality_named(texts.quality);
-    job.settings = settings_for(job.quality);
-    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
-    job.camera = texts.camera;
-    if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);
+RenderRequest make_request(const Options& texts) {
+    RenderRequest request;
+    request.scene_file = texts.scene;
+    request.quality = quality_named(texts.quality);
+    request.settings = settings_for(request.quality);
+    for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
+    request.camera = texts.camera;
+    if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
     if (!texts.frame.empty())
-        job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
-    return job;
+        request.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    return request;
 }
 
 void check_outputs(const Options& texts, OutputPlaces& places) {
@@ -76,19 +76,19 @@ void keep_inputs(const Options& texts, const Scene& scene) {
 
 int run_explain(const Options& texts, const Globals& globals) {
     const ivec2 pixel = pixel_option(texts.pixel);
-    RenderJob job = make_job(texts);
+    RenderRequest request = make_request(texts);
     ExplainOptions options;
     options.modes = modes_option(texts.modes);
-    if (job.resolution.x > 0) check_inside(pixel, job.resolution);
+    if (request.resolution.x > 0) check_inside(pixel, request.resolution);
     OutputPlaces places;
     check_outputs(texts, places);
 
     const Scene scene = load_scene(texts.scene);
     keep_inputs(texts, scene);
-    if (job.frames.empty()) job.frames = {scene.first_frame};
-    const int frame = job.frames[0];
-    find_camera(scene, job.camera);
-    const View view = view_of(scene, job, frame);
+    if (request.frames.empty()) request.frames = {scene.first_frame};
+    const int frame = request.frames[0];
+    find_camera(scene, request.camera);
+    const View view = view_of(scene, request, request.settings, frame);
     check_inside(pixel, view.size);
     if (!globals.quiet)
         for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
@@ -100,12 +100,12 @@ int run_explain(const Options& texts, const Globals& globals) {
         for (const std::string& note : snapshot.notes) say("note: " + printable(note, 460));
     options.cancel = &cancel_flag();
     options.progress = [&](double done) { progress.set(done); };
-    const RayStory story = explain_ray(view, snapshot, job.settings, pixel, options);
+    const RayStory story = explain_ray(view, snapshot, request.settings, pixel, options);
     stop_if_cancelled();
     progress.finish();
 
     const StoryTitle title{std::filesystem::path(texts.scene).filename().string(), view.camera.name,
-                           std::string(name_of(job.quality)), frame};
+                           std::string(name_of(request.quality)), frame};
     if (!texts.svg.empty()) write_file_atomically(texts.svg, explain_svg(story, title));
     if (!texts.csv.empty()) write_file_atomically(texts.csv, explain_csv(story));
     print_report(globals.json ? explain_json(story, title) : explain_text(story, title));

@@ -51,13 +51,13 @@ Json standing_json(const Standing& standing) {
     return json_object(std::move(members));
 }
 
-std::string plan_json(const Plan& plan, const RenderJob& job) {
+std::string plan_json(const Plan& plan, const RenderRequest& request) {
     std::vector<Json> terms, modes;
     for (const Term& term : plan.terms) terms.push_back(term_json(term));
     for (const Standing& standing : plan.standings) modes.push_back(standing_json(standing));
     return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
-                                    {"scene", json_of(std::string_view(job.scene_file.string()))},
-                                    {"frame", json_of(job.frames[0])},
+                                    {"scene", json_of(std::string_view(request.scene_file.string()))},
+                                    {"frame", json_of(request.frames[0])},
                                     {"target_error", json_of(plan.goal.error)},
                                     {"time_budget", json_of(plan.goal.seconds)},
                                     {"mode", json_of(plan.chosen.mode->name)},
@@ -70,14 +70,14 @@ std::string plan_json(const Plan& plan, const RenderJob& job) {
 }
 
 // How to render what was planned: all frames of the scene unless one was asked for.
-std::string command_of(const Plan& plan, const RenderJob& job, bool one_frame) {
+std::string command_of(const Plan& plan, const RenderRequest& request, bool one_frame) {
     const bool again = plan.settings.fluence.orders > 1;
-    std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o out.####.exr --mode " +
+    std::string text = "tyndall render " + quoted_for_shell(request.scene_file.string()) + " -o out.####.exr --mode " +
                        std::string(again ? automatic : plan.chosen.mode->name);
     if (plan.goal.quality != Quality::preview) text += " --quality " + std::string(name_of(plan.goal.quality));
-    if (one_frame) text += formatted(" --frames %d", job.frames[0]);
-    if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
-    if (job.resolution.x > 0) text += formatted(" --res %dx%d", job.resolution.x, job.resolution.y);
+    if (one_frame) text += formatted(" --frames %d", request.frames[0]);
+    if (!request.camera.empty()) text += " --camera " + quoted_for_shell(request.camera);
+    if (request.resolution.x > 0) text += formatted(" --res %dx%d", request.resolution.x, request.resolution.y);
     if (plan.goal.error > 0) text += formatted(" --target-error %g", plan.goal.error);
     if (plan.goal.seconds > 0) text += formatted(" --time-budget %g", plan.goal.seconds);
     const int orders = plan.settings.fluence.orders;
@@ -91,35 +91,35 @@ std::string command_of(const Plan& plan, const RenderJob& job, bool one_frame) {
 }
 
 int run_plan(const Options& texts, const Globals& globals) {
-    RenderJob job = make_job(texts.render, main_mode());
+    RenderRequest request = make_request(texts.render, main_mode());
     const LoadOptions options = load_options(texts.render);
-    const Scene scene = load_scene(job.scene_file, options);
-    job.frames = {scene.first_frame};
+    const Scene scene = load_scene(request.scene_file, options);
+    request.frames = {scene.first_frame};
     if (!texts.frame.empty())
-        job.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
-    find_camera(scene, job.camera);
+        request.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
-    const Snapshot snapshot = load_first_frame(scene, job).snapshot;
+    const Snapshot snapshot = load_first_frame(scene, request).snapshot;
 
     Progress progress(globals.progress, "plan", 1, true);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
-    const View view = view_of(scene, job, job.frames[0]);
-    const Plan plan = make_plan(modes(), view, snapshot, job.settings,
-                                {job.target_error, job.time_budget, job.quality, {}, {}}, control);
+    const View view = view_of(scene, request, request.settings, request.frames[0]);
+    const Plan plan = make_plan(modes(), view, snapshot, request.settings,
+                                {request.target_error, request.time_budget, request.quality, {}, {}}, control);
     progress.finish();
     if (globals.json) {
-        print_report(plan_json(plan, job));
+        print_report(plan_json(plan, request));
     } else {
         const std::string goal = plan.goal.error > 0 ? formatted("error at most %g of the mean", plan.goal.error)
                                                      : formatted("the best in %g s", plan.goal.seconds);
-        print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(job.scene_file.string(), 200).c_str(),
-                               job.frames[0], view.size.x, view.size.y, goal.c_str()) +
-                     plan_text(plan) + "\n" + command_of(plan, job, !texts.frame.empty()) + "\n");
+        print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(request.scene_file.string(), 200).c_str(),
+                               request.frames[0], view.size.x, view.size.y, goal.c_str()) +
+                     plan_text(plan) + "\n" + command_of(plan, request, !texts.frame.empty()) + "\n");
     }
     if (!globals.quiet)
         say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");
     if (plan.chosen.gets_there()) return 0;
-    fail(ExitCode::differs, job.scene_file.string(), "no mode gets there; the one named comes closest");
+    fail(ExitCode::differs, request.scene_file.string(), "no mode gets there; the one named comes closest");
 }
 }
 

@@ -22,17 +22,18 @@
 
 namespace tyndall {
 namespace {
-void choose_frames(const Scene& scene, RenderJob& job) {
-    if (job.frames.empty()) job.frames = frames_between(scene.first_frame, scene.last_frame);
-    check_pattern(job.output, ".exr", job.frames.size() > 1);
+void choose_frames(const Scene& scene, RenderRequest& request) {
+    if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
+    check_pattern(request.output, ".exr", request.frames.size() > 1);
 }
 
 // Where the mode fails on this scene, from the first frame, with the settings it begins with.
-Limitations limitations_of(const Scene& scene, const RenderJob& job, const Snapshot& snapshot) {
+Limitations limitations_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
+                           const Snapshot& snapshot) {
     View view;
-    view.camera = camera_at(scene, find_camera(scene, job.camera), snapshot.seconds);
-    view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
-    return find_mode(job.mode).limitations(view, snapshot, job.choice ? job.choice->candidate.settings : job.settings);
+    view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
+    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    return plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
 }
 
 // What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
@@ -45,84 +46,89 @@ void say_limitations(const Scene& scene, const Limitations& limitations, const G
         if (globals.verbose || group.worst.severity != Severity::info) say(line_of(group));
 }
 
-void say_rounding(const RenderJob& job, const Globals& globals) {
-    if (!globals.quiet && job.target_error > 0 && job.target_error < 1e-3 && !job.exr.full_float)
+void say_rounding(const RenderRequest& request, const Globals& globals) {
+    if (!globals.quiet && request.target_error > 0 && request.target_error < 1e-3 && !request.exr.full_float)
         say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
 }
 
 // Takes as many samples as measuring noise needs, and says so; half floats hide the last of it.
-void settle_noise(RenderJob& job, const Globals& globals) {
-    const bool first_round = job.target_error > 0 && job.time_budget == 0 && error_is_noise(find_mode(job.mode));
-    if (!(has_goal(job) ? first_round : measures_noise(job))) return say_rounding(job, globals);
-    int& samples = job.settings.pixel.samples;
+void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals& globals) {
+    const bool first_round = request.target_error > 0 && request.time_budget == 0 && error_is_noise(*plan.mode);
+    if (!(has_goal(request) ? first_round : measures_noise(request))) return say_rounding(request, globals);
+    int& samples = plan.settings.pixel.samples;
     const int asked = std::exchange(samples, batched_samples(samples));
     if (globals.quiet) return;
     if (samples != asked)
         say(formatted("note: %d camera rays per pixel instead of %d: noise is measured in %d equal batches", samples,
                       asked, noise_batches));
-    say_rounding(job, globals);
+    say_rounding(request, globals);
 }
 
 // Settings that the mode does not read.
-void say_idle_settings(const std::vector<std::string>& settings, const RenderJob& job, const Globals& globals) {
+void say_idle_settings(const std::vector<std::string>& settings, const Mode& mode, const Globals& globals) {
     if (globals.quiet) return;
     for (const std::string& setting : settings)
-        if (!reads(find_mode(job.mode), setting.substr(0, setting.find('='))))
-            say("note: " + printable(setting, 60) + " changes nothing: the mode is " + job.mode);
+        if (!reads(mode, setting.substr(0, setting.find('='))))
+            say("note: " + printable(setting, 60) + " changes nothing: the mode is " + std::string(mode.name));
 }
 
-void say_summary(const RenderReport& report, const RenderJob& job) {
+void say_summary(const RenderReport& report, const RenderRequest& request) {
     int kept = 0;
     for (const FrameReport& frame : report.frames) kept += frame.kept;
     const int rendered = static_cast<int>(report.frames.size()) - kept;
     std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(report.seconds);
     if (rendered > 0) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
     if (kept > 0) line += formatted(", %d kept", kept);
-    say(line + ", " + printable(job.output));
-    const std::string first = job.frames.empty() ? job.output : frame_name(job.output, job.frames[0]);
-    if (job.png)
+    say(line + ", " + printable(request.output));
+    const std::string first = request.frames.empty() ? request.output : frame_name(request.output, request.frames[0]);
+    if (request.png)
         say("look: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
     else
         say("look: add --png for pictures any program shows; the .exr opens in tev, Blender, Nuke and others");
 }
 
-// What a job needs before its frames, and what is known of it afterwards.
+// What was asked for, decided and made.
 struct Rendered {
-    RenderJob job;
+    RenderRequest request;
+    RenderPlan plan;
     RenderReport report;
 };
 
-void say_before(const Scene& scene, const Limitations& limitations, const RenderOptions& texts, const RenderJob& job,
+void say_before(const Scene& scene, const Limitations& limitations, const RenderOptions& texts, const Rendered& one,
                 const Globals& globals) {
-    say_idle_settings(texts.settings, job, globals);
-    if (job.history > 0 && !find_mode(job.mode).remembers && !globals.quiet)
-        say("note: --history changes nothing: " + job.mode + " has no memory");
+    say_idle_settings(texts.settings, *one.plan.mode, globals);
+    if (one.request.history > 0 && !one.plan.mode->remembers && !globals.quiet)
+        say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
     say_limitations(scene, limitations, globals);
 }
 
-// Renders a job's frames and reports on them; json is the statistics file's name, empty for none. The first frame of a
-// job before shares its fog and surfaces, and is replaced by this job's when that is all there is to render.
-Rendered render_job(const Scene& scene, RenderJob job, const RenderOptions& texts, const std::string& json,
-                    const std::string& label, Snapshot& shared, const Globals& globals) {
-    LoadedFrame first = load_first_frame(scene, job, &shared);
-    if (texts.mode == automatic) choose_mode(scene, job, first.snapshot, globals);
-    settle_noise(job, globals);
-    shared = job.frames.size() == 1 ? first.snapshot : Snapshot{};
+// Renders the frames asked for and reports on them; json is the statistics file's name, empty for none. The first frame
+// of a request before shares its fog and surfaces, and is replaced by this one's when that is all there is to render.
+Rendered render_frames(const Scene& scene, const RenderRequest& request, const RenderOptions& texts,
+                       const std::string& json, const std::string& label, Snapshot& shared, const Globals& globals) {
+    LoadedFrame first = load_first_frame(scene, request, &shared);
+    Rendered result{request,
+                    texts.mode == automatic ? chosen_plan(scene, request, first.snapshot, globals)
+                                            : plan_as_asked(request),
+                    {}};
+    settle_noise(request, result.plan, globals);
+    shared = request.frames.size() == 1 ? first.snapshot : Snapshot{};
     shared.kept = nullptr; // the time that a mode takes must not depend on the one before it
-    const Limitations limitations = limitations_of(scene, job, first.snapshot);
-    say_before(scene, limitations, texts, job, globals);
+    Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
+    say_before(scene, limitations, texts, result, globals);
 
-    Progress progress(globals.progress, label, static_cast<double>(job.frames.size()), globals.json);
-    RenderReport report = render_sequence(scene, job, progress, cancel_flag(), &first);
+    Progress progress(globals.progress, label, static_cast<double>(request.frames.size()), globals.json);
+    RenderReport& report = result.report;
+    report = render_sequence(scene, request, result.plan, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
-    job.limitations = limitations;
-    if (!json.empty()) write_file_atomically(json, stats_json(report, job));
+    report.limitations = std::move(limitations);
+    if (!json.empty()) write_file_atomically(json, stats_json(report, request, result.plan));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
-        say_summary(report, job);
+        say_summary(report, request);
     }
-    return {std::move(job), std::move(report)};
+    return result;
 }
 
 int outcome(const std::vector<Rendered>& all, const std::string& scene) {
@@ -132,7 +138,7 @@ int outcome(const std::vector<Rendered>& all, const std::string& scene) {
         if (non_finite == 0 && one.report.missed)
             fail(ExitCode::differs, scene,
                  formatted("all frames were written, but the error of %d of them may be larger than %g",
-                           one.report.missed, one.job.target_error));
+                           one.report.missed, one.request.target_error));
     if (non_finite == 0) return 0;
     fail(ExitCode::non_finite, scene,
          "all frames were written, but " + count_text(non_finite, "sample") +
@@ -148,7 +154,7 @@ std::string sheet_name(const RenderOptions& texts, int frame) {
 // One PNG per frame with the pictures of all modes and the time each took.
 void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& texts,
                   const Globals& globals) {
-    for (const int frame : all[0].job.frames) {
+    for (const int frame : all[0].request.frames) {
         std::vector<SheetPicture> pictures;
         for (const Rendered& one : all) {
             const auto found = std::ranges::find(one.report.frames, frame, &FrameReport::frame);
@@ -158,68 +164,68 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
             if (!found->kept)
                 remark = seconds_text(stats.prepare_seconds + stats.render_seconds) + ", fog " +
                          seconds_text(stats.fog_seconds);
-            pictures.push_back({color_of(read_exr(found->file)), one.job.mode, remark});
+            pictures.push_back({color_of(read_exr(found->file)), std::string(one.plan.mode->name), remark});
         }
-        const float exposure = all[0].job.exposure + scene.exposure.at(moment_of(scene, frame).seconds);
+        const float exposure = all[0].request.exposure + scene.exposure.at(moment_of(scene, frame).seconds);
         write_contact_sheet(sheet_name(texts, frame), pictures, exposure);
     }
-    if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].job.frames[0])));
+    if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].request.frames[0])));
 }
 
-// The jobs of all modes asked for, each with files of its own when there are several.
-std::vector<RenderJob> make_jobs(const RenderOptions& texts) {
-    std::vector<RenderJob> jobs;
+// The requests of all modes asked for, each with files of its own when there are several.
+std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
+    std::vector<RenderRequest> requests;
     // Until the scene is known, what is to be chosen is the main renderer.
     const std::vector<const Mode*> asked =
         asked_modes(texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
     for (const Mode* mode : asked) {
-        jobs.push_back(make_job(texts, *mode));
-        if (asked.size() > 1) jobs.back().output = with_word(texts.output, mode->name);
+        requests.push_back(make_request(texts, *mode));
+        if (asked.size() > 1) requests.back().output = with_word(texts.output, mode->name);
     }
-    return jobs;
+    return requests;
 }
 
-std::string stats_name(const RenderOptions& texts, const RenderJob& job, bool several) {
-    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, job.mode);
+std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
+    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
 }
 
 int run_render(const RenderOptions& texts, const Globals& globals) {
-    std::vector<RenderJob> jobs = make_jobs(texts);
-    const bool several = jobs.size() > 1;
+    std::vector<RenderRequest> requests = make_requests(texts);
+    const bool several = requests.size() > 1;
     const LoadOptions options = load_options(texts);
     OutputPlaces places;
-    for (RenderJob& job : jobs) {
-        job.light_units = options.light_units;
-        if (!job.frames.empty())
-            places.check(job.output, job.frames);
+    for (RenderRequest& request : requests) {
+        request.light_units = options.light_units;
+        if (!request.frames.empty())
+            places.check(request.output, request.frames);
         else
-            places.check(std::filesystem::path(frame_name(job.output, 1)));
-        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, job, several)));
+            places.check(std::filesystem::path(frame_name(request.output, 1)));
+        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, request, several)));
     }
 
-    const Scene scene = load_scene(jobs[0].scene_file, options);
+    const Scene scene = load_scene(requests[0].scene_file, options);
     stop_if_cancelled();
-    for (RenderJob& job : jobs) {
-        choose_frames(scene, job);
-        places.check(job.output, job.frames);
-        find_camera(scene, job.camera);
-        check_crop(job, job.resolution.x > 0 ? job.resolution : scene.resolution);
+    for (RenderRequest& request : requests) {
+        choose_frames(scene, request);
+        places.check(request.output, request.frames);
+        find_camera(scene, request.camera);
+        check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     }
     if (several)
-        for (const int frame : jobs[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
+        for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
 
     std::vector<Rendered> all;
     std::string reports;
     Snapshot shared;
-    for (const RenderJob& job : jobs) {
-        all.push_back(render_job(scene, job, texts, stats_name(texts, job, several), several ? job.mode : "render",
-                                 shared, globals));
-        reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().job);
+    for (const RenderRequest& request : requests) {
+        all.push_back(render_frames(scene, request, texts, stats_name(texts, request, several),
+                                    several ? request.mode : "render", shared, globals));
+        reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().request, all.back().plan);
         stop_if_cancelled();
     }
     if (several) write_sheets(scene, all, texts, globals);
     if (globals.json) print_report((several ? "[" + reports + "]" : reports) + "\n");
-    return outcome(all, jobs[0].scene_file.string());
+    return outcome(all, requests[0].scene_file.string());
 }
 }
 

@@ -10,14 +10,14 @@
 
 namespace tyndall {
 namespace {
-void read_crop(const std::string& text, RenderJob& job) {
+void read_crop(const std::string& text, RenderRequest& request) {
     const std::vector<std::string> edges = comma_list(text);
     if (edges.size() != 4)
         fail(ExitCode::usage, "--crop", "expected X0,Y0,X1,Y1 in pixels; got '" + printable(text, 40) + "'");
     int values[4];
     for (int i = 0; i < 4; ++i) values[i] = static_cast<int>(integer_option("--crop", edges[i], 0, largest_side));
-    job.crop_low = {values[0], values[1]}, job.crop_high = {values[2], values[3]};
-    if (job.crop_low.x >= job.crop_high.x || job.crop_low.y >= job.crop_high.y)
+    request.crop_low = {values[0], values[1]}, request.crop_high = {values[2], values[3]};
+    if (request.crop_low.x >= request.crop_high.x || request.crop_low.y >= request.crop_high.y)
         fail(ExitCode::usage, "--crop",
              "X1,Y1 have to lie right of and below X0,Y0; got '" + printable(text, 40) + "'");
 }
@@ -35,23 +35,23 @@ std::vector<std::string> parsed_layers(const std::string& text) {
 constexpr int noisy_factor = 16;
 
 // --orders, for modes that follow light further than once.
-void read_orders(const std::string& text, RenderJob& job) {
+void read_orders(const std::string& text, RenderRequest& request) {
     const int orders = text == "all" ? all_orders : static_cast<int>(integer_option("--orders", text, 1, all_orders));
-    if (find_mode(job.mode).accuracy == Accuracy::multiple_scattering)
-        job.settings.path.orders = orders;
-    else if (find_mode(job.mode).adds_fluence)
-        job.settings.fluence.orders = orders;
+    if (find_mode(request.mode).accuracy == Accuracy::multiple_scattering)
+        request.settings.path.orders = orders;
+    else if (find_mode(request.mode).adds_fluence)
+        request.settings.fluence.orders = orders;
     else if (orders > 1)
         fail(ExitCode::usage, "--orders",
-             job.mode + " scatters light once only; --mode march, froxel and path take more");
+             request.mode + " scatters light once only; --mode march, froxel and path take more");
 }
 
 // A goal decides how many samples there are, but that path begins with as many as asked for when time is no matter.
-void check_samples(const RenderJob& job, const Mode& mode) {
-    if (!has_goal(job) || (error_is_noise(mode) && job.time_budget == 0)) return;
-    if (job.settings.pixel.samples != settings_for(job.quality).pixel.samples)
+void check_samples(const RenderRequest& request, const Mode& mode) {
+    if (!has_goal(request) || (error_is_noise(mode) && request.time_budget == 0)) return;
+    if (request.settings.pixel.samples != settings_for(request.quality).pixel.samples)
         fail(ExitCode::usage, "--samples",
-             std::string(job.time_budget > 0 ? "--time-budget" : "--target-error") +
+             std::string(request.time_budget > 0 ? "--time-budget" : "--target-error") +
                  " decides how many rays a pixel takes");
 }
 
@@ -151,8 +151,8 @@ void add_render_options(const Command& command, RenderOptions& texts) {
     add_results(command, texts);
 }
 
-void check_crop(const RenderJob& job, ivec2 picture) {
-    if (job.crop_high.x > picture.x || job.crop_high.y > picture.y)
+void check_crop(const RenderRequest& request, ivec2 picture) {
+    if (request.crop_high.x > picture.x || request.crop_high.y > picture.y)
         fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
 }
 
@@ -172,54 +172,54 @@ std::vector<const Mode*> asked_modes(const std::string& text) {
     return result;
 }
 
-RenderJob make_job(const RenderOptions& texts, const Mode& mode) {
-    RenderJob job;
-    job.scene_file = texts.scene;
-    job.output = texts.output;
-    if (!texts.frames.empty()) job.frames = parse_frames(texts.frames);
-    check_pattern(texts.output, ".exr", job.frames.size() > 1);
-    job.mode = mode.name;
-    job.quality = quality_named(texts.quality);
-    job.settings = settings_for(job.quality);
+RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
+    RenderRequest request;
+    request.scene_file = texts.scene;
+    request.output = texts.output;
+    if (!texts.frames.empty()) request.frames = parse_frames(texts.frames);
+    check_pattern(texts.output, ".exr", request.frames.size() > 1);
+    request.mode = mode.name;
+    request.quality = quality_named(texts.quality);
+    request.settings = settings_for(request.quality);
     const bool goal = !texts.target_error.empty() || !texts.time_budget.empty();
-    if (error_is_noise(mode) && !goal) job.settings.pixel.samples *= noisy_factor;
+    if (error_is_noise(mode) && !goal) request.settings.pixel.samples *= noisy_factor;
     if (!texts.samples.empty())
-        job.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
-    if (!texts.orders.empty()) read_orders(texts.orders, job);
-    for (const std::string& assignment : texts.settings) apply_setting(job.settings, assignment);
+        request.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
+    if (!texts.orders.empty()) read_orders(texts.orders, request);
+    for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
     if (!texts.target_error.empty()) {
-        job.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
+        request.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
         check_target(mode);
     }
     if (!texts.time_budget.empty()) {
-        job.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
+        request.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
         check_target(mode, "--time-budget");
     }
-    if (texts.mode == automatic && !goal) job.target_error = usual_error(job.quality);
-    check_samples(job, mode);
-    if (!texts.history.empty() && has_goal(job))
+    if (texts.mode == automatic && !goal) request.target_error = usual_error(request.quality);
+    check_samples(request, mode);
+    if (!texts.history.empty() && has_goal(request))
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
-    if (has_goal(job) && mode.adds_fluence && job.settings.fluence.orders > 1 && texts.mode != automatic)
-        fail(ExitCode::usage, job.time_budget > 0 ? "--time-budget" : "--target-error",
-             job.mode + " measures its error for --orders 1 only; --mode path does for all");
-    if (!texts.history.empty()) job.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
-    job.camera = texts.camera;
-    if (!texts.resolution.empty()) job.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.crop.empty()) read_crop(texts.crop, job);
-    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(job, job.resolution);
-    if (!texts.seed.empty()) job.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    if (has_goal(request) && mode.adds_fluence && request.settings.fluence.orders > 1 && texts.mode != automatic)
+        fail(ExitCode::usage, request.time_budget > 0 ? "--time-budget" : "--target-error",
+             request.mode + " measures its error for --orders 1 only; --mode path does for all");
+    if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
+    request.camera = texts.camera;
+    if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
+    if (!texts.crop.empty()) read_crop(texts.crop, request);
+    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(request, request.resolution);
+    if (!texts.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    job.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
+    request.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
     if (!texts.exposure.empty() && !texts.png)
         fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
     if (!texts.exposure.empty())
-        job.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
-    if (!texts.aov.empty()) job.exr.layers = parsed_layers(texts.aov);
-    job.exr.full_float = texts.full_float;
-    job.png = texts.png, job.resume = texts.resume;
-    job.isa = chosen_isa(texts.isa);
-    return job;
+        request.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
+    if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
+    request.exr.full_float = texts.full_float;
+    request.png = texts.png, request.resume = texts.resume;
+    request.isa = chosen_isa(texts.isa);
+    return request;
 }
 
 LoadOptions load_options(const RenderOptions& texts) {

@@ -1,4 +1,4 @@
-// The command line of tyndall render, as text and as a job.
+// The command line of tyndall render, as text and as a request.
 #pragma once
 #include "common.h"
 #include "modes/settings.h"
@@ -20,7 +20,7 @@ void add_render_options(const Command& command, RenderOptions& texts);
 std::vector<const Mode*> asked_modes(const std::string& text);
 
 // Everything the command line alone decides; throws Error (usage) before any file is touched.
-RenderJob make_job(const RenderOptions& texts, const Mode& mode);
+RenderRequest make_request(const RenderOptions& texts, const Mode& mode);
 LoadOptions load_options(const RenderOptions& texts);
-void check_crop(const RenderJob& job, ivec2 picture);
+void check_crop(const RenderRequest& request, ivec2 picture);
 }

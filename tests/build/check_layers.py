@@ -6,7 +6,7 @@ import sys
 
 LAYERS = ["base", "volume", "scene", "trace", "integrate", "modes", "render", "measure", "viewer"]
 OWNERS = {  # header prefix -> where it may be included
-    "tbb/": ["src/base"], "nlohmann/": ["src/base"], "valijson/": ["src/base"], "openvdb/": ["src/volume/vdb"],
+    "tbb/": ["src/base"], "nlohmann/": ["src/base"], "openvdb/": ["src/volume/vdb"],
     "nanovdb/": ["tests"], "embree": ["src/trace/occlusion/embree.h"], "trace/occlusion/embree.h": ["src/trace/occlusion"],
     "trace/occlusion/scene.h": ["src/trace/occlusion"], "tiny_gltf": ["src/scene"],
     "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/image/exr"],

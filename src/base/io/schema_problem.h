@@ -12,8 +12,8 @@ struct SchemaProblem {
     std::string what;
 };
 
-// The first problem in document order, from the branch of a union that the author most likely meant. None when the
-// document conforms, or breaks only keywords not understood here (contains, dependencies, propertyNames, format).
+// The first problem in document order, from the branch of a union that the author most likely meant; none when the
+// document conforms. Draft 7 but for contains, dependencies, propertyNames and format.
 std::optional<SchemaProblem> schema_problem(const Json& document, const Json& schema);
 
 // What is wrong with a value itself, its type, range or size, leaving out what it contains; empty when nothing is.

@@ -109,7 +109,7 @@ References references_of(const ChartStage& stage) {
         {stage.scene, stage.snapshot, job.render, job.frame, job.directory / "reference", stage.cancel, {}}, {}};
     for (const SequenceFrame& frame : stage.sequence) {
         Shot shot{stage.scene, frame.snapshot, job.render, frame.frame, job.directory / "reference", stage.cancel, {}};
-        shot.job.resolution = stage.sequence_size;
+        shot.request.resolution = stage.sequence_size;
         result.sequence.push_back(shot);
     }
     return result;
@@ -165,7 +165,7 @@ std::vector<ChartedMode> charted_modes(const ChartStage& stage) {
     std::vector<ChartedMode> result;
     const ChartJob& job = stage.job;
     for (const Mode* mode : job.modes) {
-        const View view = view_of(stage.scene, job.render, job.frame);
+        const View view = view_of(stage.scene, job.render, job.render.settings, job.frame);
         const Settings settings = settings_of({mode, {"", job.render.settings}, 0});
         result.push_back({std::string(mode->name), std::string(mode->summary), mode->accuracy,
                           mode->limitations(view, fresh(stage.snapshot), settings)});

@@ -44,7 +44,7 @@ std::string point_name(const ChartPoint& point); // "march.3"
 bool is_look(const ChartPoint& point);           // a mode that promises no light; it has a gain
 
 struct ChartJob {
-    RenderJob render; // scene file, camera, picture size, settings that rungs do not decide
+    RenderRequest render; // scene file, camera, picture size, settings that rungs do not decide
     int frame = 1;
     std::vector<const Mode*> modes;
     ReferenceSamples reference{};

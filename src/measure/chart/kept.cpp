@@ -43,12 +43,14 @@ Json json_of_point(const ChartPoint& point) {
 
 std::string point_hash(const ChartStage& stage, const ChartRung& rung, const std::string& references,
                        FileHashes& files) {
-    RenderJob job = stage.job.render;
-    job.mode = rung.mode->name, job.settings = settings_of(rung);
+    RenderRequest request = stage.job.render;
+    const RenderPlan plan{rung.mode, settings_of(rung), {}, {}, {}};
     std::string text = references + " " + std::to_string(stage.job.runs) + " " + std::to_string(thread_count());
-    const auto add = [&](int frame) { text += frame_hash(stage.scene, job, view_of(stage.scene, job, frame), files); };
+    const auto add = [&](int frame) {
+        text += frame_hash(stage.scene, request, plan, view_of(stage.scene, request, plan.settings, frame), files);
+    };
     add(stage.job.frame), add(stage.next_frame);
-    job.resolution = stage.sequence_size;
+    request.resolution = stage.sequence_size;
     for (const SequenceFrame& frame : stage.sequence) add(frame.frame), text += std::to_string(frame.pattern);
     return content_hash(text);
 }

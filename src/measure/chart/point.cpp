@@ -37,9 +37,9 @@ Snapshot seen_by(const Mode& mode, const Snapshot& snapshot) {
 }
 
 View view_for(const ChartStage& stage, const Settings& settings, ivec2 size, int frame) {
-    RenderJob job = stage.job.render;
-    job.settings = settings, job.resolution = size;
-    return view_of(stage.scene, job, frame);
+    RenderRequest request = stage.job.render;
+    request.resolution = size;
+    return view_of(stage.scene, request, settings, frame);
 }
 
 // Of all threads of the process.

@@ -24,15 +24,15 @@ constexpr uint32_t use_exact = 0xe8acu;
 constexpr int exact_samples = 4; // of each pixel
 const ExrOptions exact_colors{{"inscatter"}, true};
 
-RenderJob half_job(const Shot& shot, ReferenceSamples samples, int half) {
-    RenderJob job = shot.job;
-    job.mode = main_mode().name, job.quality = Quality::reference;
-    job.settings = truth_of(job.settings);
-    if (samples.count > 0) job.settings.pixel.samples = std::max(samples.count / 2, 1);
-    if (samples.centers) job.settings.pixel.filter = PixelFilter::center;
-    job.seed = half_seeds[half];
-    job.exr = exact_colors;
-    return job;
+RenderRequest half_request(const Shot& shot, ReferenceSamples samples, int half) {
+    RenderRequest request = shot.request;
+    request.mode = main_mode().name, request.quality = Quality::reference;
+    request.settings = truth_of(request.settings);
+    if (samples.count > 0) request.settings.pixel.samples = std::max(samples.count / 2, 1);
+    if (samples.centers) request.settings.pixel.filter = PixelFilter::center;
+    request.seed = half_seeds[half];
+    request.exr = exact_colors;
+    return request;
 }
 
 Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
@@ -49,23 +49,23 @@ Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
 std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
     FrameOptions options;
     options.cancel = shot.cancel;
-    const View view = view_of(shot.scene, shot.job, shot.frame);
+    const View view = view_of(shot.scene, shot.request, shot.request.settings, shot.frame);
     const double start = steady_seconds();
-    Choice choice = choose(main_mode(), view, snapshot, shot.job.settings, goal, start, options);
+    Choice choice = choose(main_mode(), view, snapshot, shot.request.settings, goal, start, options);
     choice.measured.single = {infinity, infinity};
     choice.measured.prepared = nullptr; // points into the snapshot
     return std::make_shared<const Choice>(std::move(choice));
 }
 
 Goal goal_of(const Shot& shot, ReferenceSamples samples) {
-    return {std::sqrt(2.0) * samples.noise, samples.seconds, shot.job.quality, steady_seconds};
+    return {std::sqrt(2.0) * samples.noise, samples.seconds, shot.request.quality, steady_seconds};
 }
 
 // Half of a reference with noise in place of a count, on two levels (Heinrich 2001, multilevel Monte Carlo): many
 // samples that are quick, and the mean difference that exact ones make, from few, which differ little.
-Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, View view, const Goal& goal,
-                     const FrameOptions& options, FrameStats& stats) {
-    const Mode& mode = find_mode(job.mode);
+Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderRequest& request, View view,
+                     const Goal& goal, const FrameOptions& options, FrameStats& stats) {
+    const Mode& mode = find_mode(request.mode);
     const Settings& quick = goal.choice->candidate.settings;
     Layers result = render_to_target(mode, view, snapshot, quick, goal, options, stats);
 
@@ -74,7 +74,7 @@ Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob
     FrameOptions plain;
     plain.cancel = shot.cancel;
     FrameStats ignored;
-    const Layers exact = render_frame(mode, view, snapshot, job.settings, plain, ignored);
+    const Layers exact = render_frame(mode, view, snapshot, request.settings, plain, ignored);
     const Layers rough = render_frame(mode, view, snapshot, quick, plain, ignored);
     for (size_t i = 0; i < result.color.pixels.size(); ++i) {
         result.color.pixels[i] += exact.color.pixels[i] - rough.color.pixels[i];
@@ -83,10 +83,10 @@ Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderJob
     return result;
 }
 
-// A picture of the job, or the file an earlier run made of it. `goal` gets its choice when that is first needed.
-ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob& job, Goal* goal,
+// The picture asked for, or the file an earlier run made of it. `goal` gets its choice when that is first needed.
+ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderRequest& request, Goal* goal,
                      const std::string& name, std::string hash, const std::function<void(double)>& progress) {
-    const View view = view_of(shot.scene, job, shot.frame);
+    const View view = view_of(shot.scene, request, request.settings, shot.frame);
     const std::filesystem::path file = shot.directory / (name + ".exr");
     if (!shot.directory.empty()) {
         std::string why;
@@ -99,17 +99,18 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderJob
     FrameStats stats;
     const Snapshot own = fresh(snapshot);
     if (goal && !goal->choice) goal->choice = choice_for(shot, own, *goal);
-    Layers layers = goal ? half_by_noise(shot, own, job, view, *goal, options, stats)
-                         : render_frame(find_mode(job.mode), view, own, job.settings, options, stats);
+    Layers layers = goal ? half_by_noise(shot, own, request, view, *goal, options, stats)
+                         : render_frame(find_mode(request.mode), view, own, request.settings, options, stats);
     if (!shot.directory.empty()) {
-        Provenance provenance = provenance_of(shot.scene, job, view, hash, stats);
+        Provenance provenance = provenance_of(shot.scene, request, plan_as_asked(request), view, hash, stats);
         write_exr(file, layers, provenance, exact_colors);
     }
     return {std::move(layers.color), std::move(layers.inscatter)};
 }
 
-std::string half_hash(const Shot& shot, const RenderJob& job, ReferenceSamples samples, FileHashes& files) {
-    const std::string hash = frame_hash(shot.scene, job, view_of(shot.scene, job, shot.frame), files);
+std::string half_hash(const Shot& shot, const RenderRequest& request, ReferenceSamples samples, FileHashes& files) {
+    const std::string hash = frame_hash(shot.scene, request, plan_as_asked(request),
+                                        view_of(shot.scene, request, request.settings, shot.frame), files);
     return samples.count > 0 ? hash : content_hash(hash + formatted("%.9g %.9g", samples.noise, samples.seconds));
 }
 }
@@ -121,8 +122,8 @@ Snapshot fresh(const Snapshot& snapshot) {
 }
 
 std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashes& files) {
-    return content_hash(half_hash(shot, half_job(shot, samples, 0), samples, files) +
-                        half_hash(shot, half_job(shot, samples, 1), samples, files));
+    return content_hash(half_hash(shot, half_request(shot, samples, 0), samples, files) +
+                        half_hash(shot, half_request(shot, samples, 1), samples, files));
 }
 
 double reference_seconds(const Shot& shot, ReferenceSamples samples) {
@@ -138,8 +139,8 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
     Snapshot unlit = shot.snapshot;
     unlit.lights.clear();
     const bool chance = !samples.centers || std::ranges::any_of(shot.snapshot.lights, is_soft);
-    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.job.resolution.x) +
-                               "x" + std::to_string(shot.job.resolution.y) + "." + std::to_string(shot.frame);
+    const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.request.resolution.x) +
+                               "x" + std::to_string(shot.request.resolution.y) + "." + std::to_string(shot.frame);
     const bool by_noise = samples.count == 0;
     Goal goal = goal_of(shot, samples), unlit_goal = goal; // both halves are made alike
     Reference result;
@@ -151,11 +152,11 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
         const auto part = [&](double done) {
             if (shot.progress) shot.progress((static_cast<double>(half) + done) / (chance ? 2 : 1));
         };
-        const RenderJob job = half_job(shot, samples, static_cast<int>(half));
-        const std::string hash = half_hash(shot, job, samples, files), name = prefix + (half ? ".b" : ".a");
-        result.halves[half] = rendered(shot, shot.snapshot, job, by_noise ? &goal : nullptr, name, hash, part);
+        const RenderRequest request = half_request(shot, samples, static_cast<int>(half));
+        const std::string hash = half_hash(shot, request, samples, files), name = prefix + (half ? ".b" : ".a");
+        result.halves[half] = rendered(shot, shot.snapshot, request, by_noise ? &goal : nullptr, name, hash, part);
         if (samples.unlit)
-            result.unlit[half] = rendered(shot, unlit, job, by_noise ? &unlit_goal : nullptr, name + ".unlit",
+            result.unlit[half] = rendered(shot, unlit, request, by_noise ? &unlit_goal : nullptr, name + ".unlit",
                                           content_hash(hash + "unlit"), {});
     }
     return result;

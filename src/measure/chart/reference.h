@@ -27,7 +27,7 @@ struct Reference {
 struct Shot {
     const Scene& scene;
     const Snapshot& snapshot;
-    RenderJob job; // scene file, camera, picture size and settings, those of the reference not yet among them
+    RenderRequest request; // scene file, camera, picture size and settings, those of the reference not yet among them
     int frame = 0;
     std::filesystem::path directory; // files of references that are kept; empty = none are
     std::atomic<bool>* cancel = nullptr;

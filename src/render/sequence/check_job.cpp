@@ -15,11 +15,11 @@ namespace tyndall {
 namespace {
 constexpr int largest_side = 16384; // what read_exr takes back
 
-void check_picture(const Scene& scene, const RenderJob& job) {
-    const ivec2 size = job.resolution.x > 0 ? job.resolution : scene.resolution;
+void check_picture(const Scene& scene, const RenderRequest& request) {
+    const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     if (size.x < 1 || size.y < 1 || size.x > largest_side || size.y > largest_side)
         fail(ExitCode::usage, "resolution", "expected 1 to 16384 pixels on each side");
-    const ivec2 low = job.crop_low, high = job.crop_high;
+    const ivec2 low = request.crop_low, high = request.crop_high;
     if (low == high) return;
     if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
         fail(ExitCode::usage, "crop", "it has to lie inside the picture and hold a pixel");
@@ -33,19 +33,20 @@ std::filesystem::path plain_path(const std::filesystem::path& path) {
     return error ? path : plain;
 }
 
-void check_outputs(const Scene& scene, const RenderJob& job) {
-    if (job.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
-    if (std::filesystem::path(job.output).extension() != ".exr")
-        fail(ExitCode::usage, printable(job.output), "the output has to end in .exr");
-    if (job.frames.size() > 1 && !has_frame_token(job.output))
-        fail(ExitCode::usage, printable(job.output), "several frames need a place for the number, as in name.####.exr");
+void check_outputs(const Scene& scene, const RenderRequest& request) {
+    if (request.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
+    if (std::filesystem::path(request.output).extension() != ".exr")
+        fail(ExitCode::usage, printable(request.output), "the output has to end in .exr");
+    if (request.frames.size() > 1 && !has_frame_token(request.output))
+        fail(ExitCode::usage, printable(request.output),
+             "several frames need a place for the number, as in name.####.exr");
 
     std::set<std::filesystem::path> inputs, directories;
     for (const std::filesystem::path& input : scene.inputs) inputs.insert(plain_path(input));
-    for (const int frame : job.frames) {
-        const std::string exr = frame_name(job.output, frame);
+    for (const int frame : request.frames) {
+        const std::string exr = frame_name(request.output, frame);
         std::vector<std::filesystem::path> outputs{exr};
-        if (job.png) outputs.push_back(png_name(exr));
+        if (request.png) outputs.push_back(png_name(exr));
         for (const std::filesystem::path& output : outputs) {
             if (inputs.contains(plain_path(output)))
                 fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be written over");
@@ -57,15 +58,15 @@ void check_outputs(const Scene& scene, const RenderJob& job) {
 }
 }
 
-void check_job(const Scene& scene, const RenderJob& job, const Mode& mode) {
-    check_layer_names(job.exr);
-    check_picture(scene, job);
-    find_camera(scene, job.camera);
-    if (job.time_budget > 0) check_target(mode, "--time-budget");
-    if (job.target_error > 0) check_target(mode);
-    if (mode.surfaces == Surfaces::post && measures_noise(job))
+void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode) {
+    check_layer_names(request.exr);
+    check_picture(scene, request);
+    find_camera(scene, request.camera);
+    if (request.time_budget > 0) check_target(mode, "--time-budget");
+    if (request.target_error > 0) check_target(mode);
+    if (mode.surfaces == Surfaces::post && measures_noise(request))
         fail(ExitCode::usage, "--aov",
              std::string(mode.name) + " works on the finished picture: it has no variance and no halves");
-    check_outputs(scene, job);
+    check_outputs(scene, request);
 }
 }

@@ -1,4 +1,4 @@
-// What can be said about a job before any frame is loaded.
+// What can be said about a request before any frame is loaded.
 #pragma once
 #include "render/sequence/job.h"
 
@@ -12,5 +12,5 @@ inline std::filesystem::path png_name(const std::string& exr) {
 
 // Tests picture size, layers, names, directories and the target error, and removes leftovers of killed runs. Nothing
 // that was read may be written over. Throws Error (usage, unwritable).
-void check_job(const Scene& scene, const RenderJob& job, const Mode& mode);
+void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode);
 }

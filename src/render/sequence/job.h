@@ -1,6 +1,5 @@
-// Frames to be rendered to files: of what, how, and where to.
+// Frames to be rendered to files: what is asked for, and what is decided for it. What comes out is a RenderReport.
 #pragma once
-#include "modes/limitation.h"
 #include "modes/settings.h"
 #include "render/image/exr.h"
 #include "scene/load_options.h"
@@ -14,8 +13,10 @@
 
 namespace tyndall {
 struct Choice;
+struct Mode;
 
-struct RenderJob {
+// What is asked for: of what, how, and where to.
+struct RenderRequest {
     std::filesystem::path scene_file;
     std::string output; // pattern
     std::vector<int> frames;
@@ -35,19 +36,27 @@ struct RenderJob {
     double time_budget = 0;  // seconds for each frame, loading and writing apart; 0 = as many as it takes
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
-    Limitations limitations;                // of the mode, in the first frame
-    std::string unsaved;                    // edits that the scene's files do not have; for hash and header
-    std::string plan;                       // why this mode, when it was chosen for the scene; for the header
+    std::string unsaved; // edits that the scene's files do not have; for hash and header
+};
+
+// What is decided: by what the frames are rendered.
+struct RenderPlan {
+    const Mode* mode = nullptr;
+    Settings settings;
+    std::string certificate;                // why this mode, when it was chosen for the scene; for the header
     std::shared_ptr<const Choice> choice;   // of the first frame's candidate, when already made
     std::shared_ptr<const Settings> wanted; // by --mode auto: the settings with the terms its first frame does not need
 };
 
+// The mode and the settings asked for. Throws Error (usage) for a mode that is not in the table.
+RenderPlan plan_as_asked(const RenderRequest& request);
+
 // Whether an error or a time decides how many samples there are.
-bool has_goal(const RenderJob& job);
+bool has_goal(const RenderRequest& request);
 
-// Whether layers hold the noise of this job's pictures. Then each pixel takes noise_batches batches, and as many
+// Whether layers hold the noise of the pictures. Then each pixel takes noise_batches batches, and as many
 // samples as they divide.
-bool measures_noise(const RenderJob& job);
+bool measures_noise(const RenderRequest& request);
 
-bool wants_layer(const RenderJob& job, std::string_view layer);
+bool wants_layer(const RenderRequest& request, std::string_view layer);
 }

@@ -57,11 +57,11 @@ std::string scene_text(const Scene& scene, FileHashes& files) {
     return text;
 }
 
-std::string fog_text(const Scene& scene, const RenderJob& job, int frame, FileHashes& files) {
+std::string fog_text(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
     std::string text;
     for (const MediumSource& medium : scene.media) {
         if (medium.kind != MediumKind::vdb) continue;
-        const auto file = sequence_file(medium.sequence, frame, job.missing);
+        const auto file = sequence_file(medium.sequence, frame, request.missing);
         text += "fog=" + (file ? file_hash(*file, files) : std::string("none")) + "\n";
     }
     return text;
@@ -94,97 +94,110 @@ std::string joined_layers(const ExrOptions& options) {
 }
 
 // All that tyndall render is told but scene, output, frames and picture size.
-std::string option_text(const RenderJob& job) {
-    std::string text = " --seed " + std::to_string(job.seed) + " --aov " + joined_layers(job.exr);
-    if (job.exr.full_float) text += " --float";
-    if (job.target_error > 0) text += " --target-error " + number(job.target_error);
-    if (job.time_budget > 0) text += " --time-budget " + number(job.time_budget);
-    if (job.history > 0) text += " --history " + std::to_string(job.history);
-    if (!job.isa.empty()) text += " --isa " + job.isa;
-    if (!job.camera.empty()) text += " --camera " + quoted_for_shell(job.camera);
-    if (job.crop_low != job.crop_high)
-        text += " --crop " + pair_text(job.crop_low, ",") + "," + pair_text(job.crop_high, ",");
+std::string option_text(const RenderRequest& request, const Settings& settings) {
+    std::string text = " --seed " + std::to_string(request.seed) + " --aov " + joined_layers(request.exr);
+    if (request.exr.full_float) text += " --float";
+    if (request.target_error > 0) text += " --target-error " + number(request.target_error);
+    if (request.time_budget > 0) text += " --time-budget " + number(request.time_budget);
+    if (request.history > 0) text += " --history " + std::to_string(request.history);
+    if (!request.isa.empty()) text += " --isa " + request.isa;
+    if (!request.camera.empty()) text += " --camera " + quoted_for_shell(request.camera);
+    if (request.crop_low != request.crop_high)
+        text += " --crop " + pair_text(request.crop_low, ",") + "," + pair_text(request.crop_high, ",");
     constexpr const char* missing[] = {"error", "hold", "skip"};
-    if (job.missing != MissingFrame::error) text += std::string(" --missing ") + missing[static_cast<int>(job.missing)];
+    if (request.missing != MissingFrame::error)
+        text += std::string(" --missing ") + missing[static_cast<int>(request.missing)];
     constexpr const char* units[] = {"spec", "unitless", "raw"};
-    if (job.light_units != LightUnits::spec)
-        text += std::string(" --light-units ") + units[static_cast<int>(job.light_units)];
+    if (request.light_units != LightUnits::spec)
+        text += std::string(" --light-units ") + units[static_cast<int>(request.light_units)];
 
-    const Settings usual = settings_for(job.quality);
+    const Settings usual = settings_for(request.quality);
     // How many samples are usual depends on the mode: they are always said.
     for (const SettingRow& row : setting_rows())
-        if (row.get(job.settings) != row.get(usual) || (row.name == "pixel.samples" && !has_goal(job)))
-            text += " --set " + row.name + "=" + row.get(job.settings);
+        if (row.get(settings) != row.get(usual) || (row.name == "pixel.samples" && !has_goal(request)))
+            text += " --set " + row.name + "=" + row.get(settings);
     return text;
 }
 
-std::string mode_text(const RenderJob& job) {
-    return " --mode " + job.mode + " --quality " + std::string(name_of(job.quality));
+std::string mode_text(const std::string& mode, Quality quality) {
+    return " --mode " + mode + " --quality " + std::string(name_of(quality));
 }
 
-std::string command_text(const RenderJob& job, const View& view) {
-    return "tyndall render " + quoted_for_shell(job.scene_file.filename().string()) + " -o out.####.exr --frames " +
-           std::to_string(view.frame) + mode_text(job) + " --res " + pair_text(view.size, "x") + option_text(job);
+std::string command_text(const RenderRequest& request, const RenderPlan& plan, const View& view) {
+    return "tyndall render " + quoted_for_shell(request.scene_file.filename().string()) + " -o out.####.exr --frames " +
+           std::to_string(view.frame) + mode_text(std::string(plan.mode->name), request.quality) + " --res " +
+           pair_text(view.size, "x") + option_text(request, plan.settings);
 }
 }
 
-std::string command_line(const RenderJob& job) {
-    std::string text = "tyndall render " + quoted_for_shell(job.scene_file.string()) + " -o " +
-                       quoted_for_shell(job.output) + " --frames " + format_frames(job.frames) + mode_text(job);
-    if (job.resolution.x > 0) text += " --res " + pair_text(job.resolution, "x");
-    text += option_text(job);
-    if (job.png) text += " --png";
-    if (job.png && job.exposure != 0) text += " --exposure " + number(job.exposure);
+std::string command_line(const RenderRequest& request) {
+    std::string text = "tyndall render " + quoted_for_shell(request.scene_file.string()) + " -o " +
+                       quoted_for_shell(request.output) + " --frames " + format_frames(request.frames) +
+                       mode_text(request.mode, request.quality);
+    if (request.resolution.x > 0) text += " --res " + pair_text(request.resolution, "x");
+    text += option_text(request, request.settings);
+    if (request.png) text += " --png";
+    if (request.png && request.exposure != 0) text += " --exposure " + number(request.exposure);
     return text;
 }
 
-bool has_goal(const RenderJob& job) { return job.target_error > 0 || job.time_budget > 0; }
+RenderPlan plan_as_asked(const RenderRequest& request) {
+    return {&find_mode(request.mode), request.settings, {}, {}, {}};
+}
 
-bool measures_noise(const RenderJob& job) { return wants_layer(job, "variance") || wants_layer(job, "halves"); }
+bool has_goal(const RenderRequest& request) { return request.target_error > 0 || request.time_budget > 0; }
 
-bool wants_layer(const RenderJob& job, std::string_view layer) { return std::ranges::count(job.exr.layers, layer) > 0; }
+bool measures_noise(const RenderRequest& request) {
+    return wants_layer(request, "variance") || wants_layer(request, "halves");
+}
 
-View view_of(const Scene& scene, const RenderJob& job, int frame) {
+bool wants_layer(const RenderRequest& request, std::string_view layer) {
+    return std::ranges::count(request.exr.layers, layer) > 0;
+}
+
+View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame) {
     View view;
-    view.camera = camera_at(scene, find_camera(scene, job.camera), moment_of(scene, frame).seconds);
-    view.size = job.resolution.x > 0 ? job.resolution : scene.resolution;
-    view.crop_low = job.crop_low, view.crop_high = job.crop_high;
-    view.pixel_samples = job.settings.pixel.samples;
-    view.filter = job.settings.pixel.filter, view.filter_radius = job.settings.pixel.filter_radius;
-    view.lamp_samples = job.settings.pixel.lamp_samples, view.edge_samples = job.settings.pixel.edge_samples;
-    view.jitter = job.settings.pixel.jitter, view.per_light = wants_layer(job, "lights");
-    view.seed = job.seed, view.frame = frame;
-    if (measures_noise(job)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
+    view.camera = camera_at(scene, find_camera(scene, request.camera), moment_of(scene, frame).seconds);
+    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    view.crop_low = request.crop_low, view.crop_high = request.crop_high;
+    view.pixel_samples = settings.pixel.samples;
+    view.filter = settings.pixel.filter, view.filter_radius = settings.pixel.filter_radius;
+    view.lamp_samples = settings.pixel.lamp_samples, view.edge_samples = settings.pixel.edge_samples;
+    view.jitter = settings.pixel.jitter, view.per_light = wants_layer(request, "lights");
+    view.seed = request.seed, view.frame = frame;
+    if (measures_noise(request)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;
 }
 
-std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files) {
+std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
+                       FileHashes& files) {
     const double seconds = moment_of(scene, view.frame).seconds;
-    std::string text = "version=" TYNDALL_VERSION "\n" + command_text(job, view) + "\n" + settings_text(job.settings);
+    std::string text =
+        "version=" TYNDALL_VERSION "\n" + command_text(request, plan, view) + "\n" + settings_text(plan.settings);
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
-    text += job.exr.full_float ? "float\n" : "half\n";
-    text += scene_text(scene, files) + fog_text(scene, job, view.frame, files) + light_text(scene, seconds);
-    if (!job.unsaved.empty()) text += "edits=" + job.unsaved + "\n";
+    text += request.exr.full_float ? "float\n" : "half\n";
+    text += scene_text(scene, files) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
+    if (!request.unsaved.empty()) text += "edits=" + request.unsaved + "\n";
     return content_hash(text);
 }
 
-Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
-                         const FrameStats& stats) {
+Provenance provenance_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
+                         const std::string& hash, const FrameStats& stats) {
     Provenance result{view.camera, scene.frame_rate, view.frame, {}};
     auto& attributes = result.attributes;
     attributes["tyndall:version"] = TYNDALL_VERSION;
-    attributes["tyndall:scene"] = job.scene_file.filename().string();
+    attributes["tyndall:scene"] = request.scene_file.filename().string();
     attributes["tyndall:camera"] = view.camera.name;
-    attributes["tyndall:mode"] = job.mode;
-    attributes["tyndall:quality"] = name_of(job.quality);
-    attributes["tyndall:settings"] = settings_text(stats.integrator ? stats.integrator->settings : job.settings);
-    attributes["tyndall:seed"] = std::to_string(job.seed);
-    attributes["tyndall:isa"] = job.isa;
-    attributes["tyndall:command"] = command_text(job, view);
+    attributes["tyndall:mode"] = plan.mode->name;
+    attributes["tyndall:quality"] = name_of(request.quality);
+    attributes["tyndall:settings"] = settings_text(stats.integrator ? stats.integrator->settings : plan.settings);
+    attributes["tyndall:seed"] = std::to_string(request.seed);
+    attributes["tyndall:isa"] = request.isa;
+    attributes["tyndall:command"] = command_text(request, plan, view);
     attributes["tyndall:hash"] = hash;
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
-    if (is_stylised(job.settings.style) && honours_style(find_mode(job.mode))) attributes["stylised"] = "1";
+    if (is_stylised(plan.settings.style) && honours_style(*plan.mode)) attributes["stylised"] = "1";
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);
         attributes["tyndall:achievedError"] = number(stats.error()->error);
@@ -197,13 +210,13 @@ Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& v
         attributes["tyndall:integratorError"] = number(stats.integrator->error.error);
         attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
     }
-    if (job.target_error > 0) attributes["tyndall:targetError"] = number(job.target_error);
-    if (job.time_budget > 0) {
-        attributes["tyndall:timeBudget"] = number(job.time_budget);
+    if (request.target_error > 0) attributes["tyndall:targetError"] = number(request.target_error);
+    if (request.time_budget > 0) {
+        attributes["tyndall:timeBudget"] = number(request.time_budget);
         attributes["tyndall:timeUsed"] = number(stats.goal_seconds);
     }
-    if (!job.unsaved.empty()) attributes["tyndall:unsavedEdits"] = job.unsaved;
-    if (!job.plan.empty()) attributes["tyndall:plan"] = job.plan;
+    if (!request.unsaved.empty()) attributes["tyndall:unsavedEdits"] = request.unsaved;
+    if (!plan.certificate.empty()) attributes["tyndall:plan"] = plan.certificate;
     return result;
 }
 

@@ -9,7 +9,7 @@ namespace tyndall {
 struct Scene;
 struct View;
 
-View view_of(const Scene& scene, const RenderJob& job, int frame);
+View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame);
 
 // Content hashes of files already read, by path: a file counts as it was when first asked for.
 struct FileHashes {
@@ -19,15 +19,16 @@ struct FileHashes {
 // One hash over everything the pixels and header of a frame depend on: contents of the scene's files and of the frame's
 // fog, the lights as loaded, mode, settings, size, crop, camera, seed, layers, instruction set and program version.
 // Directories do not count. Throws Error (unreadable).
-std::string frame_hash(const Scene& scene, const RenderJob& job, const View& view, FileHashes& files);
+std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
+                       FileHashes& files);
 
-// The command that makes all of a job's frames, ready for a shell. What stands in no file is not in it: unsaved edits,
+// The command that makes all frames asked for, ready for a shell. What stands in no file is not in it: unsaved edits,
 // a camera moved by hand.
-std::string command_line(const RenderJob& job);
+std::string command_line(const RenderRequest& request);
 
 // How to make the frame again.
-Provenance provenance_of(const Scene& scene, const RenderJob& job, const View& view, const std::string& hash,
-                         const FrameStats& stats);
+Provenance provenance_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
+                         const std::string& hash, const FrameStats& stats);
 
 // Takes samples, noise and what was not finite back from the attributes of a picture.
 void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats);

@@ -1,4 +1,4 @@
-// Whether a frame on disk is the one a job would render.
+// Whether a frame on disk is the one that would be rendered.
 #pragma once
 #include "render/image/exr.h"
 

@@ -32,7 +32,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 // A frame ready to render, and after that ready to write.
 struct Work {
-    size_t index = 0; // in the job's frames
+    size_t index = 0; // in the request's frames
     FrameReport report;
     std::string hash;
     View view;
@@ -43,13 +43,13 @@ struct Work {
 // What the stages share.
 struct Pipeline {
     const Scene& scene;
-    const RenderJob& job;
-    const Mode& mode;
+    const RenderRequest& request;
+    const RenderPlan& plan;
     Progress& progress;
     std::atomic<bool>& cancel;
     std::vector<std::string> channels; // of every file
     FileHashes files;
-    LoadedFrame first; // of the job, until it is taken
+    LoadedFrame first; // of the sequence, until it is taken
     size_t next = 0;   // index of the first frame not yet looked at
     RenderReport report;
     std::mutex reporting;         // held to change the report
@@ -57,7 +57,7 @@ struct Pipeline {
 };
 
 float png_exposure(const Pipeline& pipeline, int frame) {
-    return pipeline.job.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
+    return pipeline.request.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
 }
 
 // The error again, with its frame before its place and the reason kept whole.
@@ -70,7 +70,7 @@ float png_exposure(const Pipeline& pipeline, int frame) {
 
 void say(const Pipeline& pipeline, const Work& work, const std::string& what) {
     pipeline.progress.line("frame " + std::to_string(work.report.frame) + " (" + std::to_string(work.index + 1) + "/" +
-                           std::to_string(pipeline.job.frames.size()) + ") " + what);
+                           std::to_string(pipeline.request.frames.size()) + ") " + what);
 }
 
 WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
@@ -88,7 +88,7 @@ bool keep(Pipeline& pipeline, Work& work) {
         if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
         return false;
     }
-    if (pipeline.job.png)
+    if (pipeline.request.png)
         write_png(png_name(work.report.file), color_of(*exr), png_exposure(pipeline, work.report.frame));
     work.report.kept = true;
     read_noise(exr->attributes, work.report.stats);
@@ -96,13 +96,14 @@ bool keep(Pipeline& pipeline, Work& work) {
     return true;
 }
 
-// The snapshot of a frame, sharing with the one before; of the job's first frame perhaps the one that is there.
+// The snapshot of a frame, sharing with the one before; of the first one perhaps the one that is there.
 LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     LoadedFrame first = std::exchange(pipeline.first, {});
     if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
     const auto start = Clock::now();
     if (!previous) previous = &first.snapshot;
-    Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.job.missing);
+    Snapshot snapshot =
+        make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.request.missing);
     return {std::move(snapshot), seconds_since(start)};
 }
 
@@ -120,16 +121,16 @@ void report_notes(Pipeline& pipeline, const Snapshot& snapshot) {
 
 // The next frame that has to be rendered; kept ones on the way are reported.
 std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
-    while (pipeline.next < pipeline.job.frames.size() && !pipeline.cancel) {
+    while (pipeline.next < pipeline.request.frames.size() && !pipeline.cancel) {
         const auto start = Clock::now();
         Work work;
         work.index = pipeline.next++;
-        const int frame = work.report.frame = pipeline.job.frames[work.index];
-        work.report.file = frame_name(pipeline.job.output, frame);
+        const int frame = work.report.frame = pipeline.request.frames[work.index];
+        work.report.file = frame_name(pipeline.request.output, frame);
         try {
-            work.view = view_of(pipeline.scene, pipeline.job, frame);
-            work.hash = frame_hash(pipeline.scene, pipeline.job, work.view, pipeline.files);
-            if (pipeline.job.resume && keep(pipeline, work)) {
+            work.view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, frame);
+            work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, pipeline.files);
+            if (pipeline.request.resume && keep(pipeline, work)) {
                 work.report.load_seconds = seconds_since(start);
                 report_frame(pipeline, work);
                 pipeline.progress.set(++pipeline.settled);
@@ -149,39 +150,40 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
 }
 
 // Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
-// the scene's first frame time stands still. Each shares with the last; the first with what the job's frame before
+// the scene's first frame time stands still. Each shares with the last; the first with what the sequence's frame before
 // kept.
 void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
     Snapshot previous = work.snapshot;
     previous.kept = work.snapshot.kept_before;
-    for (int back = pipeline.job.history; back > 0 && !pipeline.cancel; --back) {
+    for (int back = pipeline.request.history; back > 0 && !pipeline.cancel; --back) {
         const int earlier = std::max(frame - back, first);
         Snapshot snapshot =
-            make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.job.missing);
-        View view = view_of(pipeline.scene, pipeline.job, earlier);
+            make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.request.missing);
+        View view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, earlier);
         view.frame = frame - back;
-        pipeline.mode.prepare(view, snapshot, pipeline.job.settings, &history);
+        pipeline.plan.mode->prepare(view, snapshot, pipeline.plan.settings, &history);
         previous = std::move(snapshot);
     }
     work.snapshot.kept_before = previous.kept;
 }
 
 void render(Pipeline& pipeline, Work& work) {
-    const RenderJob& job = pipeline.job;
+    const RenderRequest& request = pipeline.request;
+    const RenderPlan& plan = pipeline.plan;
     const auto start = Clock::now();
-    FrameOptions options{wants_layer(job, "halves"), nullptr, &pipeline.cancel, {}, {}};
+    FrameOptions options{wants_layer(request, "halves"), nullptr, &pipeline.cancel, {}, {}};
     options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
     FrameStats& stats = work.report.stats;
     try {
         History history;
-        if (job.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        const Goal goal{job.target_error, job.time_budget, job.quality, {}, work.index == 0 ? job.choice : nullptr,
-                        job.wanted};
-        work.layers =
-            has_goal(job)
-                ? render_to_target(pipeline.mode, work.view, work.snapshot, job.settings, goal, options, stats)
-                : render_frame(pipeline.mode, work.view, work.snapshot, job.settings, options, stats);
+        if (request.history > 0) warm_up(pipeline, work, history), options.history = &history;
+        const Goal goal{
+            request.target_error, request.time_budget, request.quality, {}, work.index == 0 ? plan.choice : nullptr,
+            plan.wanted};
+        work.layers = has_goal(request)
+                          ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
+                          : render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
@@ -196,32 +198,34 @@ std::string short_text(const char* format, double value) {
 }
 
 // What is known of the error, its parts and what was asked for.
-std::string error_text(const FrameStats& stats, const RenderJob& job) {
+std::string error_text(const FrameStats& stats, const RenderRequest& request, const RenderPlan& plan) {
     if (!stats.noise) return {};
     std::string text = stats.integrator ? ", error " : ", noise ";
     text += short_text("%.3g", stats.error()->error) + short_text(", at most %.3g", stats.error()->bound);
-    if (job.target_error > 0) text += short_text(" (wanted %.3g)", job.target_error);
+    if (request.target_error > 0) text += short_text(" (wanted %.3g)", request.target_error);
     if (stats.integrator)
         text += short_text(": noise %.3g", stats.noise->error) +
                 short_text(", integrator %.3g", stats.integrator->error.error) + " (" + stats.integrator->candidate +
                 ")";
     text += short_text(stats.samples == 1 ? ", %.0f sample per pixel" : ", %.0f samples per pixel", stats.samples);
-    if (stats.integrator && job.settings.fluence.orders > 1)
+    if (stats.integrator && plan.settings.fluence.orders > 1)
         text += ", of light scattered once: what the grid for the rest adds to it is not measured";
-    if (job.time_budget > 0)
-        text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", job.time_budget);
+    if (request.time_budget > 0)
+        text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", request.time_budget);
     return text;
 }
 
 void write(Pipeline& pipeline, Work& work) {
-    const RenderJob& job = pipeline.job;
+    const RenderRequest& request = pipeline.request;
     const auto start = Clock::now();
     FrameReport& report = work.report;
     try {
-        const Provenance provenance = provenance_of(pipeline.scene, job, work.view, work.hash, report.stats);
-        write_exr(report.file, work.layers, provenance, job.exr);
-        if (job.png)
-            write_png(png_name(report.file), stored_color(work.layers, job.exr), png_exposure(pipeline, report.frame));
+        const Provenance provenance =
+            provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, report.stats);
+        write_exr(report.file, work.layers, provenance, request.exr);
+        if (request.png)
+            write_png(png_name(report.file), stored_color(work.layers, request.exr),
+                      png_exposure(pipeline, report.frame));
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);
     }
@@ -230,7 +234,7 @@ void write(Pipeline& pipeline, Work& work) {
 
     char seconds[32];
     std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
-    std::string text = std::string(seconds) + " -> " + report.file + error_text(report.stats, job);
+    std::string text = std::string(seconds) + " -> " + report.file + error_text(report.stats, request, pipeline.plan);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }
@@ -278,24 +282,24 @@ uint64_t peak_memory() {
 }
 }
 
-LoadedFrame load_first_frame(const Scene& scene, const RenderJob& job, const Snapshot* previous) {
+LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous) {
     const auto start = Clock::now();
     flush_denormals();
-    Snapshot snapshot = make_snapshot(scene, moment_of(scene, job.frames[0]), previous, job.missing);
+    Snapshot snapshot = make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing);
     return {std::move(snapshot), seconds_since(start)};
 }
 
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
-                             std::atomic<bool>& cancel, LoadedFrame* first) {
+RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
+                             Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first) {
     const auto start = Clock::now();
-    check_job(scene, job, mode);
+    check_job(scene, request, *plan.mode);
     flush_denormals();
 
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);
-    Pipeline pipeline{scene,  job,
-                      mode,   progress,
-                      cancel, channel_names(lights, job.exr),
+    Pipeline pipeline{scene,  request,
+                      plan,   progress,
+                      cancel, channel_names(lights, request.exr),
                       {},     first ? std::move(*first) : LoadedFrame{},
                       0,      {},
                       {}};
@@ -303,18 +307,14 @@ RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mod
 
     RenderReport& report = pipeline.report;
     std::ranges::sort(report.frames, {}, [&](const FrameReport& frame) {
-        return std::ranges::find(job.frames, frame.frame) - job.frames.begin();
+        return std::ranges::find(request.frames, frame.frame) - request.frames.begin();
     });
     for (const FrameReport& frame : report.frames)
-        report.missed += job.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > job.target_error;
-    report.cancelled = cancel && report.frames.size() < job.frames.size();
+        report.missed +=
+            request.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > request.target_error;
+    report.cancelled = cancel && report.frames.size() < request.frames.size();
     report.seconds = seconds_since(start);
     report.peak_memory_bytes = peak_memory();
     return std::move(report);
-}
-
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
-                             LoadedFrame* first) {
-    return render_sequence(scene, job, find_mode(job.mode), progress, cancel, first);
 }
 }

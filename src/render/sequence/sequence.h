@@ -1,6 +1,7 @@
 // Frames of a scene to files: resumable, atomic, with progress and statistics.
 #pragma once
 #include "base/io/progress.h"
+#include "modes/limitation.h"
 #include "render/frame/layers.h"
 #include "render/sequence/job.h"
 
@@ -10,7 +11,6 @@
 
 namespace tyndall {
 struct LoadedFrame;
-struct Mode;
 struct Scene;
 
 struct FrameReport {
@@ -22,7 +22,8 @@ struct FrameReport {
 };
 
 struct RenderReport {
-    std::vector<FrameReport> frames; // complete ones, in the order of the job
+    std::vector<FrameReport> frames; // complete ones, in the order of the request
+    Limitations limitations;         // of the mode in the first frame, where whoever asked looked for them
     std::vector<std::string> notes;
     int missed = 0;         // frames that are further off than the target error
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
@@ -30,19 +31,15 @@ struct RenderReport {
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
 
-// Renders the job's frames; while one renders, the next is loaded and the last is written. `first` (may be null)
+// Renders the frames asked for; while one renders, the next is loaded and the last is written. `first` (may be null)
 // holds the first frame, which is taken out of it and not loaded again. Output names are tested and
 // leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
 // beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
-// channels and size, and its `tyndall:hash` equals that of the job. Throws Error; one of a frame names it, and frames
+// channels and size, and its `tyndall:hash` equals the one wanted. Throws Error; one of a frame names it, and frames
 // finished before it are written.
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, Progress& progress, std::atomic<bool>& cancel,
-                             LoadedFrame* first = nullptr);
-
-// As above with a mode that need not be in the table.
-RenderReport render_sequence(const Scene& scene, const RenderJob& job, const Mode& mode, Progress& progress,
-                             std::atomic<bool>& cancel, LoadedFrame* first = nullptr);
+RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
+                             Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first = nullptr);
 
 // JSON of a report, with a schema version.
-std::string stats_json(const RenderReport& report, const RenderJob& job);
+std::string stats_json(const RenderReport& report, const RenderRequest& request, const RenderPlan& plan);
 }

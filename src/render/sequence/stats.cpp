@@ -1,5 +1,6 @@
-// The report of a job as JSON.
+// The report of a sequence as JSON.
 #include "base/io/json.h"
+#include "modes/mode.h"
 #include "render/sequence/sequence.h"
 
 namespace tyndall {
@@ -93,32 +94,32 @@ Json totals(const RenderReport& report) {
 }
 }
 
-std::string stats_json(const RenderReport& report, const RenderJob& job) {
+std::string stats_json(const RenderReport& report, const RenderRequest& request, const RenderPlan& plan) {
     std::vector<std::pair<std::string, Json>> settings;
-    for (const SettingRow& row : setting_rows()) settings.emplace_back(row.name, json_of(row.get(job.settings)));
+    for (const SettingRow& row : setting_rows()) settings.emplace_back(row.name, json_of(row.get(plan.settings)));
     Json frames;
     frames.kind = Json::Kind::array;
     for (const FrameReport& frame : report.frames) frames.items.push_back(json_of(frame));
     Json json = object({{"schema", json_of(std::string("tyndall-render-stats"))},
                         {"schema_version", json_of(1)},
                         {"version", json_of(std::string(TYNDALL_VERSION))},
-                        {"scene", json_of(job.scene_file.string())},
-                        {"output", json_of(job.output)},
-                        {"mode", json_of(job.mode)},
-                        {"quality", json_of(std::string(name_of(job.quality)))},
-                        {"isa", json_of(job.isa)},
-                        {"seed", json_of(static_cast<uint64_t>(job.seed))},
+                        {"scene", json_of(request.scene_file.string())},
+                        {"output", json_of(request.output)},
+                        {"mode", json_of(std::string(plan.mode->name))},
+                        {"quality", json_of(std::string(name_of(request.quality)))},
+                        {"isa", json_of(request.isa)},
+                        {"seed", json_of(static_cast<uint64_t>(request.seed))},
                         {"settings", object(std::move(settings))},
-                        {"limitations", json_of(job.limitations)},
+                        {"limitations", json_of(report.limitations)},
                         {"notes", json_of(report.notes)},
                         {"cancelled", json_of(report.cancelled)},
                         {"frames", std::move(frames)},
                         {"totals", totals(report)}});
-    if (job.target_error > 0) {
-        json.members.emplace_back("target_error", json_of(job.target_error));
+    if (request.target_error > 0) {
+        json.members.emplace_back("target_error", json_of(request.target_error));
         json.members.emplace_back("missed", json_of(report.missed));
     }
-    if (job.time_budget > 0) json.members.emplace_back("time_budget", json_of(job.time_budget));
+    if (request.time_budget > 0) json.members.emplace_back("time_budget", json_of(request.time_budget));
     return format_json(json);
 }
 }

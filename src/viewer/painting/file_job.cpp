@@ -36,15 +36,15 @@ std::string add_camera(Scene& scene, const Viewpoint& view) {
 std::string frames_done(int done, int of) { return formatted("%d of %s", done, count_text(of, "frame").c_str()); }
 
 JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>& cancel) {
-    const RenderJob& job = files.job;
-    const RenderReport report = render_sequence(*files.scene, job, progress, cancel);
-    const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(job.frames.size());
-    if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + job.output};
+    const RenderRequest& request = files.request;
+    const RenderReport report = render_sequence(*files.scene, request, plan_as_asked(request), progress, cancel);
+    const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(request.frames.size());
+    if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + request.output};
     progress.finish();
     const int kept = static_cast<int>(std::ranges::count_if(report.frames, &FrameReport::kept));
     std::string text = count_text(done - kept, "frame") + " rendered in " + seconds_text(report.seconds);
     if (kept > 0) text += formatted(", %d kept", kept);
-    text += ": " + job.output;
+    text += ": " + request.output;
     for (const std::string& note : report.notes) text += "; " + note;
     if (report.non_finite == 0) return {text};
     return {text + "; " + count_text(report.non_finite, "sample") + " were not finite numbers and were left out",
@@ -66,25 +66,27 @@ JobResult bake_fog(const BakeFiles& files, Progress& progress, std::atomic<bool>
 }
 }
 
-RenderJob sequence_job(const ViewState& state, const std::string& output, const std::string& range, bool png,
-                       const std::string& isa) {
+RenderRequest sequence_request(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                               const std::string& isa) {
     const Scene& scene = loaded_scene(state);
-    RenderJob job;
-    job.frames = frames_of(scene, range);
-    check_pattern(output, ".exr", job.frames.size() > 1, "render");
-    job.scene_file = scene.file, job.output = output;
-    job.mode = state.mode, job.quality = state.quality, job.settings = state.settings, job.camera = state.camera;
-    job.resolution = state.size, job.seed = state.seed, job.missing = state.missing;
-    job.exposure = state.shown.exposure, job.light_units = state.session->options.light_units, job.isa = isa;
-    job.png = png, job.resume = true;
-    job.unsaved = unsaved_text(*state.session);
-    return job;
+    RenderRequest request;
+    request.frames = frames_of(scene, range);
+    check_pattern(output, ".exr", request.frames.size() > 1, "render");
+    request.scene_file = scene.file, request.output = output;
+    request.mode = state.mode, request.quality = state.quality, request.settings = state.settings,
+    request.camera = state.camera;
+    request.resolution = state.size, request.seed = state.seed, request.missing = state.missing;
+    request.exposure = state.shown.exposure, request.light_units = state.session->options.light_units,
+    request.isa = isa;
+    request.png = png, request.resume = true;
+    request.unsaved = unsaved_text(*state.session);
+    return request;
 }
 
-RenderFiles render_files(const ViewState& state, RenderJob job) {
+RenderFiles render_files(const ViewState& state, RenderRequest request) {
     auto scene = std::make_shared<Scene>(loaded_scene(state));
-    if (state.free) job.camera = add_camera(*scene, state.view);
-    return {std::move(scene), std::move(job)};
+    if (state.free) request.camera = add_camera(*scene, state.view);
+    return {std::move(scene), std::move(request)};
 }
 
 std::vector<std::string> bakeable_media(const Scene& scene) {
@@ -111,26 +113,26 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
     return files;
 }
 
-std::string command_of(const ViewState& state, RenderJob job) {
+std::string command_of(const ViewState& state, RenderRequest request) {
     const Scene& scene = loaded_scene(state);
-    if (!job.unsaved.empty() || (!state.session->has_file && scene.file.extension() == ".vdb"))
+    if (!request.unsaved.empty() || (!state.session->has_file && scene.file.extension() == ".vdb"))
         fail(ExitCode::usage, "copy-command", "no scene file has what is shown: save the scene first");
     if (state.free)
         fail(ExitCode::usage, "copy-command",
              "no file has the camera moved by hand: copy it into the scene, or go back to one of the scene's (home)");
-    job.scene_file = std::filesystem::absolute(job.scene_file);
-    job.output = std::filesystem::absolute(job.output).string();
-    return command_line(job);
+    request.scene_file = std::filesystem::absolute(request.scene_file);
+    request.output = std::filesystem::absolute(request.output).string();
+    return command_line(request);
 }
 
 std::string name_of(const FileJob& job) {
-    if (const auto* files = std::get_if<RenderFiles>(&job)) return "render " + files->job.output;
+    if (const auto* files = std::get_if<RenderFiles>(&job)) return "render " + files->request.output;
     return "bake " + std::get<BakeFiles>(job).output;
 }
 
 int frame_count(const FileJob& job) {
     const auto* files = std::get_if<RenderFiles>(&job);
-    return static_cast<int>(files ? files->job.frames.size() : std::get<BakeFiles>(job).frames.size());
+    return static_cast<int>(files ? files->request.frames.size() : std::get<BakeFiles>(job).frames.size());
 }
 
 JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel) {
@@ -138,7 +140,7 @@ JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& can
     try {
         OutputPlaces places;
         if (files) {
-            places.check(files->job.output, files->job.frames, "render");
+            places.check(files->request.output, files->request.frames, "render");
             return render(*files, progress, cancel);
         }
         const BakeFiles& fog = std::get<BakeFiles>(job);

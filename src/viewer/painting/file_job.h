@@ -10,8 +10,8 @@
 
 namespace tyndall {
 struct RenderFiles {
-    std::shared_ptr<const Scene> scene; // the job's own, with the edits of the moment it was asked for
-    RenderJob job;
+    std::shared_ptr<const Scene> scene; // the request's own, with the edits of the moment it was asked for
+    RenderRequest request;
 };
 
 struct BakeFiles {
@@ -24,11 +24,11 @@ using FileJob = std::variant<RenderFiles, BakeFiles>;
 
 // The frames of a range, the scene's when it is empty, as the state shows them; those that are already there and right
 // are kept. Throws Error (usage: before the first scene, of range and pattern).
-RenderJob sequence_job(const ViewState& state, const std::string& output, const std::string& range, bool png,
-                       const std::string& isa);
+RenderRequest sequence_request(const ViewState& state, const std::string& output, const std::string& range, bool png,
+                               const std::string& isa);
 
 // With a scene of its own, and with the camera moved by hand as one of that.
-RenderFiles render_files(const ViewState& state, RenderJob job);
+RenderFiles render_files(const ViewState& state, RenderRequest request);
 
 // The fog of a medium that is grown from a recipe, with its edits; its optics, for the files' metadata, are those of
 // the first frame. Throws Error (usage).
@@ -39,7 +39,7 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
 std::vector<std::string> bakeable_media(const Scene& scene);
 
 // The command line that does the same. Throws Error (usage) when the scene's files do not have what is shown.
-std::string command_of(const ViewState& state, RenderJob job);
+std::string command_of(const ViewState& state, RenderRequest request);
 
 // How a job ended.
 struct JobResult {

@@ -11,17 +11,17 @@ const std::string& quick_mode(const Request& request) {
     return !find_mode(request.mode).interactive && !request.stand_in.empty() ? request.stand_in : request.mode;
 }
 
-RenderJob job_of(const Request& request) {
-    RenderJob job;
-    job.frames = {request.frame};
-    job.mode = request.mode, job.settings = request.settings;
-    job.resolution = request.size, job.seed = request.seed, job.missing = request.missing;
-    if (request.scene) job.scene_file = request.scene->file;
-    return job;
+RenderRequest render_request(const Request& request) {
+    RenderRequest result;
+    result.frames = {request.frame};
+    result.mode = request.mode, result.settings = request.settings;
+    result.resolution = request.size, result.seed = request.seed, result.missing = request.missing;
+    if (request.scene) result.scene_file = request.scene->file;
+    return result;
 }
 
 View view_of(const Request& request) {
-    View view = view_of(*request.scene, job_of(request), request.frame);
+    View view = view_of(*request.scene, render_request(request), request.settings, request.frame);
     view.camera = request.camera;
     return view;
 }

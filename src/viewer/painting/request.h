@@ -10,7 +10,7 @@
 
 namespace tyndall {
 struct EditableParts;
-struct RenderJob;
+struct RenderRequest;
 struct Scene;
 struct View;
 
@@ -52,7 +52,7 @@ struct Request {
 const std::string& quick_mode(const Request& request);
 
 // What tyndall render would be told to make the finished picture.
-RenderJob job_of(const Request& request);
+RenderRequest render_request(const Request& request);
 View view_of(const Request& request);
 
 // Puts the edits of the request into its scene: before anything is read from it.

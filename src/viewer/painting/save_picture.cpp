@@ -19,15 +19,15 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     if (kind != ".exr" && kind != ".png")
         fail(ExitCode::usage, job.file.string(), "expected a name ending in .exr or .png");
     const Request& request = job.request;
-    RenderJob render = job_of(request);
+    RenderRequest render = render_request(request);
     render.output = std::filesystem::path(job.file).replace_extension(".exr").string();
     render.quality = job.quality, render.isa = job.isa, render.light_units = job.light_units;
     render.unsaved = job.unsaved;
     render.png = kind == ".png";
-    const Mode& mode = find_mode(request.mode);
+    const RenderPlan plan = plan_as_asked(render);
     stage(request);
     const View view = view_of(request);
-    check_job(*request.scene, render, mode);
+    check_job(*request.scene, render, *plan.mode);
     render.camera = job.camera;
 
     const Snapshot snapshot =
@@ -35,11 +35,11 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     FrameStats stats;
     FrameOptions options;
     options.cancel = &cancel, options.progress = progress;
-    const Layers layers = render_frame(mode, view, snapshot, request.settings, options, stats);
+    const Layers layers = render_frame(*plan.mode, view, snapshot, plan.settings, options, stats);
     if (kind == ".png") return write_png(job.file, stored_color(layers, render.exr), request.shown.exposure);
     FileHashes files;
-    const std::string hash = frame_hash(*request.scene, render, view, files);
-    const Provenance provenance = provenance_of(*request.scene, render, view, hash, stats);
+    const std::string hash = frame_hash(*request.scene, render, plan, view, files);
+    const Provenance provenance = provenance_of(*request.scene, render, plan, view, hash, stats);
     write_exr(job.file, layers, provenance, render.exr);
 }
 }

@@ -13,7 +13,7 @@ const ivec2 picture(40, 24);
 struct SmallShot {
     Scene scene;
     Snapshot snapshot;
-    RenderJob job;
+    RenderRequest job;
 
     SmallShot(const std::string& file, const std::string& row)
         : scene(load_scene(std::string(TYNDALL_SOURCE_DIR) + "/" + file)) {

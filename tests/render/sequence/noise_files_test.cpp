@@ -21,8 +21,8 @@ Scene small_scene() {
     return scene;
 }
 
-RenderJob job_for(const Scratch& out, std::vector<int> frames = {1}) {
-    RenderJob job;
+RenderRequest job_for(const Scratch& out, std::vector<int> frames = {1}) {
+    RenderRequest job;
     job.scene_file = "scene.json";
     job.output = out.file("f.####.exr");
     job.frames = std::move(frames);
@@ -31,11 +31,11 @@ RenderJob job_for(const Scratch& out, std::vector<int> frames = {1}) {
     return job;
 }
 
-RenderReport run(const RenderJob& job, const Mode& mode = own_mode(prepare_random)) {
+RenderReport run(const RenderRequest& job, const Mode& mode = own_mode(prepare_random)) {
     static const Scene scene = small_scene();
     Progress progress(ProgressStyle::silent, "render", static_cast<double>(job.frames.size()));
     std::atomic<bool> cancel = false;
-    return render_sequence(scene, job, mode, progress, cancel);
+    return render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel);
 }
 
 double number_of(const ExrFile& exr, const std::string& attribute) { return std::stod(exr.attributes.at(attribute)); }
@@ -71,7 +71,7 @@ TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
 
 TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
     const Scratch out;
-    RenderJob job = job_for(out);
+    RenderRequest job = job_for(out);
     job.settings.pixel.samples = 3;
     run(job);
     EXPECT_EQ(read_exr(out.file("f.0001.exr")).attributes.count("tyndall:samples"), 0u);
@@ -106,7 +106,7 @@ TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
 
 TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
     const Scratch out;
-    RenderJob job = job_for(out, {1, 2});
+    RenderRequest job = job_for(out, {1, 2});
     job.resume = true, job.target_error = 0.05;
     const RenderReport first = run(job), second = run(job);
     for (int i = 0; i < 2; ++i) {
@@ -126,14 +126,15 @@ TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
 
 TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
     const Scratch out;
-    RenderJob job = job_for(out);
+    RenderRequest job = job_for(out);
     job.resolution = {2, 2};
     job.resume = true, job.target_error = 1e-4;
+    const Mode mode = own_mode(prepare_random);
     for (const bool kept : {false, true}) {
-        const RenderReport report = run(job);
+        const RenderReport report = run(job, mode);
         EXPECT_EQ(report.frames[0].kept, kept);
         EXPECT_EQ(report.missed, 1);
-        const Json json = parse_json(stats_json(report, job), "stats");
+        const Json json = parse_json(stats_json(report, job, {&mode, job.settings, {}, {}, {}}), "stats");
         EXPECT_EQ(json.number_or("target_error", 0), 1e-4);
         EXPECT_EQ(json.number_or("missed", 0), 1);
         const Json& frame = json.find("frames")->items[0];
@@ -145,7 +146,7 @@ TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
 
 TEST(NoiseFiles, TargetsNeedAModeWhoseErrorIsNoise) {
     const Scratch out;
-    RenderJob job = job_for(out);
+    RenderRequest job = job_for(out);
     job.target_error = 0.1;
     error_text(ExitCode::usage, [&] { run(job, mode_of(prepare_random)); });
     EXPECT_TRUE(out.names().empty());

@@ -33,8 +33,8 @@ Scene moving_scene(const Scratch& directory) {
     return scene;
 }
 
-RenderJob job_for(const Scene& scene, const std::string& output, std::vector<int> frames) {
-    RenderJob job;
+RenderRequest job_for(const Scene& scene, const std::string& output, std::vector<int> frames) {
+    RenderRequest job;
     job.scene_file = scene.file;
     job.output = output;
     job.frames = std::move(frames);
@@ -44,12 +44,12 @@ RenderJob job_for(const Scene& scene, const std::string& output, std::vector<int
     return job;
 }
 
-RenderReport run(const Scene& scene, const RenderJob& job) { return run(scene, job, mode_of(prepare_everything)); }
+RenderReport run(const Scene& scene, const RenderRequest& job) { return run(scene, job, mode_of(prepare_everything)); }
 
-RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode) {
+RenderReport run(const Scene& scene, const RenderRequest& job, const Mode& mode) {
     Progress progress(ProgressStyle::none, "render", static_cast<double>(job.frames.size()));
     std::atomic<bool> cancel = false;
-    return render_sequence(scene, job, mode, progress, cancel);
+    return render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel);
 }
 
 }

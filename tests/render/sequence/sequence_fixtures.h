@@ -11,9 +11,9 @@ namespace tyndall::test {
 // A plane, a moving camera and fog; the scene file is in `directory`.
 Scene moving_scene(const Scratch& directory);
 
-RenderJob job_for(const Scene& scene, const std::string& output, std::vector<int> frames);
+RenderRequest job_for(const Scene& scene, const std::string& output, std::vector<int> frames);
 
 // With the mode given, or with one whose light depends on everything.
-RenderReport run(const Scene& scene, const RenderJob& job);
-RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode);
+RenderReport run(const Scene& scene, const RenderRequest& job);
+RenderReport run(const Scene& scene, const RenderRequest& job, const Mode& mode);
 }

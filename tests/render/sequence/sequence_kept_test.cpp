@@ -61,8 +61,8 @@ Scene small_scene(const Scratch& directory, Moves moves) {
     return scene;
 }
 
-RenderJob job_for(const Scene& scene, const std::string& mode, const std::string& output, std::vector<int> frames) {
-    RenderJob job;
+RenderRequest job_for(const Scene& scene, const std::string& mode, const std::string& output, std::vector<int> frames) {
+    RenderRequest job;
     job.scene_file = scene.file, job.output = output, job.frames = std::move(frames), job.mode = mode;
     job.settings = settings_for(Quality::draft);
     job.settings.pixel.samples = 1;
@@ -70,10 +70,10 @@ RenderJob job_for(const Scene& scene, const std::string& mode, const std::string
     return job;
 }
 
-RenderReport run(const Scene& scene, const RenderJob& job, const Mode& mode, LoadedFrame first = {}) {
+RenderReport run(const Scene& scene, const RenderRequest& job, const Mode& mode, LoadedFrame first = {}) {
     Progress progress(ProgressStyle::none, "render", static_cast<double>(job.frames.size()));
     std::atomic<bool> cancel = false;
-    return render_sequence(scene, job, mode, progress, cancel, &first);
+    return render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel, &first);
 }
 
 // A thing that counts how often it was made and how many of it there are.
@@ -109,7 +109,7 @@ TEST_P(SequenceOfMode, FramesAreTheSameAloneAndInARow) {
         const Scratch in, row, alone;
         const Scene scene = small_scene(in, moves);
         const Mode& mode = find_mode(GetParam());
-        RenderJob job = job_for(scene, GetParam(), row.file("f.####.exr"), {1, 2, 3});
+        RenderRequest job = job_for(scene, GetParam(), row.file("f.####.exr"), {1, 2, 3});
         run(scene, job, mode);
         job.output = alone.file("f.####.exr");
         for (const int frame : {1, 2, 3}) {
@@ -132,7 +132,7 @@ TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
     for (const char* visibility : {"maps", "intervals"}) {
         const Scratch in, row, alone;
         const Scene scene = small_scene(in, Moves::light);
-        RenderJob job = job_for(scene, "march", row.file("f.####.exr"), {1, 2, 3});
+        RenderRequest job = job_for(scene, "march", row.file("f.####.exr"), {1, 2, 3});
         apply_setting(job.settings, std::string("march.visibility=") + visibility);
         run(scene, job, find_mode("march"));
         job.output = alone.file("f.####.exr"), job.frames = {3};
@@ -144,7 +144,7 @@ TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
 TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
     const Scratch in, row, alone;
     const Scene scene = small_scene(in, Moves::camera);
-    RenderJob job = job_for(scene, "froxel", row.file("f.####.exr"), {1, 2, 3, 4});
+    RenderRequest job = job_for(scene, "froxel", row.file("f.####.exr"), {1, 2, 3, 4});
     job.history = 2;
     run(scene, job, find_mode("froxel"));
     job.output = alone.file("f.####.exr"), job.frames = {4};
@@ -155,7 +155,7 @@ TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
 TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
     const Scratch in, out;
     const Scene scene = small_scene(in, Moves::camera);
-    RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
+    RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     each_frame_anew = false;
     for (const int history : {0, 3}) {
         Counted::reset(), prepared = 0;
@@ -170,7 +170,7 @@ TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
 TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
     const Scratch in, out;
     const Scene scene = small_scene(in, Moves::camera);
-    RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
+    RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     each_frame_anew = true;
     Counted::reset();
     run(scene, job, mode_of(prepare_counted));
@@ -182,7 +182,7 @@ TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
 TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
     const Scratch in, out;
     const Scene scene = small_scene(in, Moves::fog);
-    const RenderJob job = job_for(scene, "test", out.file("f.####.exr"), {1, 2});
+    const RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2});
     LoadedFrame first = load_first_frame(scene, job);
     EXPECT_EQ(first.snapshot.frame, 1);
     EXPECT_GT(first.seconds, 0);

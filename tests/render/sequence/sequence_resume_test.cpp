@@ -18,7 +18,7 @@ std::vector<bool> kept_of(const RenderReport& report) {
 TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     job.png = true;
     run(scene, job);
     const auto whole = out.contents();
@@ -42,7 +42,7 @@ TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
 TEST(Sequence, ResumeRendersAgainWhatIsStale) {
     const Scratch in, out;
     Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2});
     job.resume = true;
     run(scene, job);
     const auto expect_stale = [&](const char* what) {
@@ -84,7 +84,7 @@ TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
     fog.sequence.pattern = in.file("fog.####.vdb"), fog.sequence.files = {1, 2};
     scene.media.push_back(fog);
     scene.inputs.insert(scene.inputs.end(), {in.file("fog.0001.vdb"), in.file("fog.0002.vdb")});
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2});
     job.resume = true;
     run(scene, job);
     EXPECT_EQ(kept_of(run(scene, job)), (std::vector<bool>{true, true}));
@@ -98,7 +98,7 @@ TEST(Sequence, MovingTheWholeProjectKeepsItsFrames) {
     run(scene, job_for(scene, here.file("f.exr"), {1}));
     std::filesystem::copy_file(here.file("f.exr"), there.file("g.exr"));
     scene = moving_scene(there);
-    RenderJob job = job_for(scene, there.file("g.exr"), {1});
+    RenderRequest job = job_for(scene, there.file("g.exr"), {1});
     job.resume = true;
     EXPECT_EQ(kept_of(run(scene, job)), std::vector<bool>{true});
 }

@@ -44,7 +44,7 @@ ScatterFunction prepare_watching(const View& view, const Snapshot& snapshot, con
 TEST(Sequence, AnErrorNamesItsFrameAndKeepsTheOnesBefore) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
+    const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     const std::string text = error_text(ExitCode::refused, [&] { run(scene, job, mode_of(prepare_failing)); });
     EXPECT_EQ(text, "frame 3: fog: does not work");
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
@@ -58,7 +58,7 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
     for (const char* name : {"fog.0001.vdb", "fog.0002.vdb", "fog.0004.vdb"}) std::ofstream(in.file(name)) << name;
     fog.sequence.pattern = in.file("fog.####.vdb"), fog.sequence.files = {1, 2, 4};
     scene.media.push_back(fog);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     const std::string text = error_text(ExitCode::unreadable, [&] { run(scene, job); });
     EXPECT_EQ(text.substr(0, 8), "frame 3:");
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
@@ -69,7 +69,7 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
 TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
+    const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     rlimit limit{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
@@ -85,11 +85,12 @@ TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
 TEST(Sequence, CancellingKeepsWholeFramesOnly) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
+    const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     Progress progress(ProgressStyle::none, "render", 4);
     std::atomic<bool> cancel = false;
     cancel_from_mode = &cancel;
-    const RenderReport report = render_sequence(scene, job, mode_of(prepare_cancelling), progress, cancel);
+    const Mode mode = mode_of(prepare_cancelling);
+    const RenderReport report = render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel);
     EXPECT_TRUE(report.cancelled);
     EXPECT_EQ(report.frames.size(), 2u);
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
@@ -99,14 +100,15 @@ TEST(Sequence, CancellingKeepsWholeFramesOnly) {
 TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     run(scene, job);
     std::filesystem::remove(out.file("f.0001.exr"));
     job.resume = true;
     Progress progress(ProgressStyle::none, "render", 3);
     watched = &progress;
     std::atomic<bool> cancel = false;
-    const RenderReport report = render_sequence(scene, job, mode_of(prepare_watching), progress, cancel);
+    const Mode mode = mode_of(prepare_watching);
+    const RenderReport report = render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel);
     EXPECT_EQ(std::ranges::count_if(report.frames, &FrameReport::kept), 2);
     EXPECT_LT(share_while_rendering, 0.7) << "one is not done";
     EXPECT_EQ(progress.share(), 1);
@@ -115,22 +117,22 @@ TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
 TEST(Sequence, RefusesWrongJobsBeforeAnyWork) {
     const Scratch in, out;
     Scene scene = moving_scene(in);
-    const RenderJob good = job_for(scene, out.file("new/f.####.exr"), {1, 2});
+    const RenderRequest good = job_for(scene, out.file("new/f.####.exr"), {1, 2});
     const auto expect_usage = [&](auto change, const std::string& reason) {
-        RenderJob job = good;
+        RenderRequest job = good;
         change(job);
         const std::string text = error_text(ExitCode::usage, [&] { run(scene, job); });
         EXPECT_NE(text.find(reason), text.npos) << text;
         EXPECT_TRUE(out.names().empty()) << reason;
     };
-    expect_usage([](RenderJob& job) { job.frames.clear(); }, "nothing to render");
-    expect_usage([&](RenderJob& job) { job.output = out.file("f.exr"); }, "####");
-    expect_usage([&](RenderJob& job) { job.output = out.file("f.####.png"); }, ".exr");
-    expect_usage([](RenderJob& job) { job.exr.layers = {"depth"}; }, "depth");
-    expect_usage([](RenderJob& job) { job.resolution = {16385, 4}; }, "16384");
-    expect_usage([](RenderJob& job) { job.crop_low = {0, 0}, job.crop_high = {41, 30}; }, "crop");
-    expect_usage([](RenderJob& job) { job.crop_low = {5, 5}, job.crop_high = {4, 30}; }, "crop");
-    expect_usage([](RenderJob& job) { job.camera = "nobody"; }, "nobody");
+    expect_usage([](RenderRequest& job) { job.frames.clear(); }, "nothing to render");
+    expect_usage([&](RenderRequest& job) { job.output = out.file("f.exr"); }, "####");
+    expect_usage([&](RenderRequest& job) { job.output = out.file("f.####.png"); }, ".exr");
+    expect_usage([](RenderRequest& job) { job.exr.layers = {"depth"}; }, "depth");
+    expect_usage([](RenderRequest& job) { job.resolution = {16385, 4}; }, "16384");
+    expect_usage([](RenderRequest& job) { job.crop_low = {0, 0}, job.crop_high = {41, 30}; }, "crop");
+    expect_usage([](RenderRequest& job) { job.crop_low = {5, 5}, job.crop_high = {4, 30}; }, "crop");
+    expect_usage([](RenderRequest& job) { job.camera = "nobody"; }, "nobody");
 }
 
 TEST(Sequence, NeverWritesOverItsOwnScene) {
@@ -141,7 +143,7 @@ TEST(Sequence, NeverWritesOverItsOwnScene) {
     scene.inputs.push_back(in.path() / "." / "sky.exr");
     scene.inputs.push_back(in.file("wall.png"));
     error_text(ExitCode::usage, [&] { run(scene, job_for(scene, in.file("sky.exr"), {1})); });
-    RenderJob job = job_for(scene, in.file("wall.exr"), {1});
+    RenderRequest job = job_for(scene, in.file("wall.exr"), {1});
     job.png = true;
     error_text(ExitCode::usage, [&] { run(scene, job); });
     EXPECT_EQ(read_file(in.file("sky.exr")), "sky");

@@ -22,7 +22,7 @@ ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Sett
 TEST(Sequence, WritesEveryFrame) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 5, -3});
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 5, -3});
     job.png = true;
     const RenderReport report = run(scene, job);
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.-0003.exr", "f.-0003.png", "f.0001.exr", "f.0001.png",
@@ -41,7 +41,7 @@ TEST(Sequence, WritesEveryFrame) {
 TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
     const Scratch in, one, two;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
+    RenderRequest job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
     job.png = true;
     on_threads(1, [&] { return run(scene, job); });
     job.output = two.file("f.####.exr");
@@ -60,7 +60,7 @@ TEST(Sequence, FramesDoNotDependOnTheOthers) {
 TEST(Sequence, SaysHowItWasMade) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.exr"), {12});
+    RenderRequest job = job_for(scene, out.file("f.exr"), {12});
     job.settings.pixel.samples = 3;
     job.seed = 77;
     run(scene, job);
@@ -84,7 +84,7 @@ TEST(Sequence, SaysHowItWasMade) {
 TEST(Sequence, CountsSamplesThatAreNotFinite) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    const RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
     EXPECT_EQ(report.non_finite, 40u * 30);
     EXPECT_EQ(report.frames[1].stats.non_finite, 40u * 30);
@@ -96,9 +96,10 @@ TEST(Sequence, CountsSamplesThatAreNotFinite) {
 TEST(Sequence, ReportsItselfAsJson) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
-    RenderJob job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
-    const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
-    const Json json = parse_json(stats_json(report, job), "stats");
+    RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
+    const Mode mode = mode_of(prepare_not_finite);
+    const RenderReport report = run(scene, job, mode);
+    const Json json = parse_json(stats_json(report, job, {&mode, job.settings, {}, {}, {}}), "stats");
     EXPECT_EQ(json.string_or("schema", ""), "tyndall-render-stats");
     EXPECT_EQ(json.number_or("schema_version", 0), 1);
     EXPECT_EQ(json.string_or("mode", ""), "test");

@@ -49,8 +49,8 @@ struct FileJobs : testing::Test {
         EXPECT_EQ(progress.share() == 1, result.code == ExitCode::ok) << result.message;
         return result;
     }
-    RenderJob sequence(const char* range, bool png = false) const {
-        return sequence_job(state, path("out.####.exr"), range, png, "avx2");
+    RenderRequest sequence(const char* range, bool png = false) const {
+        return sequence_request(state, path("out.####.exr"), range, png, "avx2");
     }
     RenderFiles frames(const char* range, bool png = false) const { return render_files(state, sequence(range, png)); }
 };
@@ -65,7 +65,7 @@ std::vector<float> pixels(const std::filesystem::path& file) {
 TEST_F(FileJobs, FramesAreThoseOfTheEditedSceneAndKeptWhenRight) {
     edit_scene(state, "lights/sun/intensity", "7", 0);
     const RenderFiles files = frames("", true);
-    EXPECT_EQ(files.job.frames, (std::vector<int>{1, 2, 3}));
+    EXPECT_EQ(files.request.frames, (std::vector<int>{1, 2, 3}));
     edit_scene(state, "lights/sun/intensity", "1", 0); // later edits are no matter of the job
     const JobResult result = run(files);
     EXPECT_EQ(result.code, ExitCode::ok);
@@ -93,7 +93,7 @@ TEST_F(FileJobs, TheCameraMovedByHandCounts) {
     apply(state, parse_action("orbit 30 10"));
     const RenderFiles files = frames("1");
     const Camera wanted = camera_now(state);
-    const Camera made = camera_at(*files.scene, find_camera(*files.scene, files.job.camera), 0);
+    const Camera made = camera_at(*files.scene, find_camera(*files.scene, files.request.camera), 0);
     EXPECT_LT(glm::distance(made.position, wanted.position), 1e-6f);
     EXPECT_LT(glm::distance(made.forward, wanted.forward), 1e-6f);
     EXPECT_LT(glm::distance(made.up, wanted.up), 1e-6f);
@@ -115,17 +115,17 @@ TEST_F(FileJobs, FogIsThatOfTheMediumAsEdited) {
 TEST_F(FileJobs, MistakesSayWhatIsWrong) {
     const auto usage = [&](const auto& body) { return error_text(ExitCode::usage, body); };
     EXPECT_NE(usage([&] { frames("1-"); }).find("1-"), std::string::npos);
-    EXPECT_NE(usage([&] { sequence_job(state, "out.exr", "", false, ""); }).find("####"), std::string::npos);
+    EXPECT_NE(usage([&] { sequence_request(state, "out.exr", "", false, ""); }).find("####"), std::string::npos);
     EXPECT_NE(usage([&] { bake_files(state, "haze", "fog.####.vdb", ""); }).find("wisps"), std::string::npos);
     EXPECT_NE(usage([&] { bake_files(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
     std::ofstream(path("file")) << "in the way";
-    EXPECT_EQ(run(render_files(state, sequence_job(state, path("file/out.####.exr"), "", false, ""))).code,
+    EXPECT_EQ(run(render_files(state, sequence_request(state, path("file/out.####.exr"), "", false, ""))).code,
               ExitCode::unwritable);
     const std::string endless(300, 'a'); // longer than any file system's names
-    EXPECT_EQ(run(render_files(state, sequence_job(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
+    EXPECT_EQ(run(render_files(state, sequence_request(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
               ExitCode::unwritable);
     const ViewState empty;
-    usage([&] { sequence_job(empty, "out.####.exr", "1", false, ""); });
+    usage([&] { sequence_request(empty, "out.####.exr", "1", false, ""); });
 }
 
 TEST_F(FileJobs, TheCommandSaysWhatIsShown) {

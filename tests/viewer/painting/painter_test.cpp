@@ -197,11 +197,11 @@ TEST(SavePicture, FilesAreThoseOfRender) {
             save.file = directory.path() / name;
             save_picture(save, &painter.snapshot, never, {});
         }
-        RenderJob job;
+        RenderRequest job;
         job.scene_file = file, job.output = (directory.path() / "b.exr").string(), job.frames = {1};
         job.mode = mode, job.settings = settings_for(Quality::preview), job.isa = "avx2", job.png = true;
         Progress progress(ProgressStyle::silent, "render", 1);
-        render_sequence(*scene, job, progress, never);
+        render_sequence(*scene, job, plan_as_asked(job), progress, never);
         // The size is the scene's either way; only the command in the header spells it out.
         EXPECT_EQ(bytes_of(directory.path() / "a.exr"), bytes_of(directory.path() / "b.exr")) << mode;
         EXPECT_EQ(bytes_of(directory.path() / "a.png"), bytes_of(directory.path() / "b.png")) << mode;
