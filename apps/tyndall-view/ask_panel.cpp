@@ -53,7 +53,7 @@ void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory
 }
 }
 
-void draw_question(const ViewState& state, const Shelf& shelf, EditMemory& memory, const Act& act) {
+void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act) {
     if (state.asked && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(title, nullptr,
@@ -67,9 +67,9 @@ void draw_question(const ViewState& state, const Shelf& shelf, EditMemory& memor
     }
     const bool unsaved = has_unsaved_changes(*state.session), ends_job = state.job && state.asked->verb == Verb::close;
     // The job has ended meanwhile, and nobody has to be told why.
-    if (!unsaved && !ends_job && !shelf.news_is_error) act({Verb::answer, {"discard"}, {}, {}});
+    if (!unsaved && !ends_job && !resources.news_is_error) act({Verb::answer, {"discard"}, {}, {}});
     draw_losses(state, unsaved, ends_job, memory);
-    if (!unsaved && !shelf.news.empty()) ImGui::TextWrapped("%s", shelf.news.c_str());
+    if (!unsaved && !resources.news.empty()) ImGui::TextWrapped("%s", resources.news.c_str());
     if (state.message_is_error && !state.message.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, trouble);
         ImGui::TextWrapped("%s", state.message.c_str());

@@ -3,5 +3,5 @@
 #include "panels.h"
 
 namespace tyndall {
-void draw_question(const ViewState& state, const Shelf& shelf, EditMemory& memory, const Act& act);
+void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act);
 }

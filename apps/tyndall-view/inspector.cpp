@@ -10,15 +10,15 @@ float inspector_height(const ViewState& state, float whole) {
     return state.explain || state.volume_shown ? 0.45f * whole : 0;
 }
 
-void draw_inspector(ViewState& state, const Shelf& shelf, const Act& act) {
+void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act) {
     if (!ImGui::BeginTabBar("inspector")) return;
     bool ray = true, volume = true;
     if (state.explain && ImGui::BeginTabItem("Ray", &ray)) {
-        draw_ray(state, shelf.ray.get(), act);
+        draw_ray(state, resources.ray.get(), act);
         ImGui::EndTabItem();
     }
     if (state.volume_shown && ImGui::BeginTabItem("Volume", &volume)) {
-        draw_volume(state, shelf, act);
+        draw_volume(state, resources, act);
         ImGui::EndTabItem();
     }
     if (ImGui::TabItemButton("close", ImGuiTabItemFlags_Trailing)) ray = !state.explain, volume = !state.volume_shown;

@@ -5,5 +5,5 @@
 namespace tyndall {
 // Its height; 0 when nothing is looked into.
 float inspector_height(const ViewState& state, float whole);
-void draw_inspector(ViewState& state, const Shelf& shelf, const Act& act);
+void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act);
 }

@@ -12,8 +12,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int most_proposals = 1000;
-constexpr size_t most_lines = 9; // of the list, as far as it does not scroll
+constexpr int max_proposals = 1000;
+constexpr size_t max_lines = 9; // of the list, as far as it does not scroll
 
 void small_heading(const char* text) {
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
@@ -58,7 +58,7 @@ std::string without_number(const std::string& name) {
 std::string proposed_name(const SceneSession& session) {
     std::filesystem::path file = session.scene.file;
     const std::string stem = session.has_file ? without_number(file.stem().string()) : file.stem().string();
-    for (int number = session.has_file ? 2 : 1; number < most_proposals; ++number) {
+    for (int number = session.has_file ? 2 : 1; number < max_proposals; ++number) {
         file.replace_filename(stem + (number > 1 ? "_" + std::to_string(number) : "") + ".json");
         if (!is_taken(file)) break;
     }
@@ -175,9 +175,9 @@ void draw_lights(const ViewState& state, EditMemory& memory, const Act& act) {
     // A long list scrolls by itself.
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const size_t lines = state.scene->lights.size() + state.scene->media.size();
-    if (lines > most_lines) ImGui::BeginChild("list", {0, static_cast<float>(most_lines + 6) * line});
+    if (lines > max_lines) ImGui::BeginChild("list", {0, static_cast<float>(max_lines + 6) * line});
     draw_list(state, act);
-    if (lines > most_lines) ImGui::EndChild();
+    if (lines > max_lines) ImGui::EndChild();
     draw_selected(state, memory, act);
 }
 }

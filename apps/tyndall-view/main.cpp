@@ -69,7 +69,7 @@ ViewerOptions read_options(const Texts& texts) {
     if (!texts.exposure.empty())
         state.shown.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
     if (!texts.samples.empty())
-        state.most_samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 1 << 20));
+        state.max_samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 1 << 20));
     if (!texts.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     if (!texts.rate.empty()) state.wanted_rate = number_option("--fps", texts.rate, 1, 1000);
     constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
@@ -87,9 +87,9 @@ ViewerOptions read_options(const Texts& texts) {
 }
 
 int run(int argc, char** argv) {
-    const CommandLine program("tyndall view",
-                              "Looks at a scene's fog while it is lit: every technique, every setting, at once.",
-                              "tyndall-view " TYNDALL_VERSION, "Options");
+    const CommandLine program(
+        "tyndall view", "FroxelSamples at a scene's fog while it is lit: every technique, every setting, at once.",
+        "tyndall-view " TYNDALL_VERSION, "Options");
     Texts texts;
     add_options(program, texts);
     program.footer(footer());

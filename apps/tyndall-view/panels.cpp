@@ -31,7 +31,7 @@ void draw_help(const Act& act) {
 }
 }
 
-void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
@@ -45,7 +45,7 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, ImVec4(0.06f, 0.06f, 0.065f, 1));
     ImGui::Begin("picture", nullptr, fixed | ImGuiWindowFlags_NoScrollWithMouse);
-    draw_picture(state, shelf, memory.edits, act);
+    draw_picture(state, resources, memory.edits, act);
     ImGui::End();
     ImGui::PopStyleColor();
     ImGui::PopStyleVar();
@@ -54,7 +54,7 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         ImGui::SetNextWindowPos({0, whole.y - bar - strip});
         ImGui::SetNextWindowSize({whole.x - side, strip});
         ImGui::Begin("looked into", nullptr, fixed);
-        draw_inspector(state, shelf, act);
+        draw_inspector(state, resources, act);
         ImGui::End();
     }
     if (state.panels) {
@@ -71,10 +71,10 @@ void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, c
         if (state.lights_tab)
             draw_lights(state, memory.edits, act);
         else
-            draw_rendering(state, shelf, memory, act);
+            draw_rendering(state, resources, memory, act);
         ImGui::End();
     }
     if (state.help) draw_help(act);
-    draw_question(state, shelf, memory.edits, act);
+    draw_question(state, resources, memory.edits, act);
 }
 }

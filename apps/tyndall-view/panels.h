@@ -8,7 +8,7 @@
 
 namespace tyndall {
 // What the panels show besides the state.
-struct Shelf {
+struct PanelResources {
     std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
     std::vector<LimitationGroup> limitations;    // of the mode, as far as they are known
     std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
@@ -44,10 +44,10 @@ struct PanelMemory {
 
 using Act = std::function<void(const Action&)>; // does an action; errors become the state's message
 
-void draw_interface(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act);
+void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
 
 // The page "Rendering" of the side.
-void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act);
+void draw_rendering(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
 
 // Frames and playing.
 void draw_time(const ViewState& state, const Act& act);

@@ -185,54 +185,55 @@ std::string status_line(const ViewState& state, const ShownPicture& picture) {
 
 namespace {
 // What goes on beside the picture, one band below the other.
-void draw_messages(const ViewState& state, const Shelf& shelf, ImVec2 at, float width) {
+void draw_messages(const ViewState& state, const PanelResources& resources, ImVec2 at, float width) {
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const auto band = [&](const std::string& message, const ImVec4& color) {
         if (!message.empty()) at.y += draw_band(at, {{message, color}}, width) + 0.2f * ImGui::GetFontSize();
     };
-    if (shelf.saving >= 0) band(formatted("writing, %.0f %%", 100 * shelf.saving), accent);
+    if (resources.saving >= 0) band(formatted("writing, %.0f %%", 100 * resources.saving), accent);
     if (state.job && !state.panels)
         band(formatted("%s, %.0f %%", state.job->name.c_str(), 100 * state.job->share), accent);
     band(state.file_error, trouble);
     band(state.message, state.message_is_error ? trouble : text);
-    band(shelf.news, shelf.news_is_error ? trouble : text);
+    band(resources.news, resources.news_is_error ? trouble : text);
     if (state.scene) band(missing_text(*state.scene, state.frame, state.missing), trouble);
 }
 }
 
-void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const Act& act) {
+void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
-    if (!shelf.picture || space.x < 8 || space.y < 8) {
-        if (state.message.empty() && state.file_error.empty() && shelf.news.empty())
+    if (!resources.picture || space.x < 8 || space.y < 8) {
+        if (state.message.empty() && state.file_error.empty() && resources.news.empty())
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
-        const ivec2 wanted = shelf.picture->wanted;
-        const PicturePlace place = fitted(corner, space, {shelf.picture->across * wanted.x, wanted.y});
-        ImGui::GetWindowDrawList()->AddImage(shelf.texture, place.low, place.high);
-        if (shelf.picture->across > 1)
-            draw_names(place, state, *shelf.picture);
-        else if (!shelf.picture->beside.empty())
-            draw_wipe(place, state, *shelf.picture, act);
+        const ivec2 wanted = resources.picture->wanted;
+        const PicturePlace place = fitted(corner, space, {resources.picture->across * wanted.x, wanted.y});
+        ImGui::GetWindowDrawList()->AddImage(resources.texture, place.low, place.high);
+        if (resources.picture->across > 1)
+            draw_names(place, state, *resources.picture);
+        else if (!resources.picture->beside.empty())
+            draw_wipe(place, state, *resources.picture, act);
         ImGui::SetCursorScreenPos(corner);
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
-        if (!draw_handles(state, wanted, left_of(place, shelf.picture->across), edits, act)) move_camera(place, act);
-        ask_about_pixel(place, *shelf.picture, act);
-        mark_pixel(place, state, *shelf.picture);
+        if (!draw_handles(state, wanted, left_of(place, resources.picture->across), edits, act))
+            move_camera(place, act);
+        ask_about_pixel(place, *resources.picture, act);
+        mark_pixel(place, state, *resources.picture);
 
         // Always on the picture: what it is, how good it is, what is wrong with it.
         const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
-        std::vector<Words> words{{status_line(state, *shelf.picture), text_color}};
-        if (shelf.picture->mode == state.mode)
-            words.push_back({wrongs(shelf.limitations), severity_color(shelf.limitations)});
+        std::vector<Words> words{{status_line(state, *resources.picture), text_color}};
+        if (resources.picture->mode == state.mode)
+            words.push_back({wrongs(resources.limitations), severity_color(resources.limitations)});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
         draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
-        draw_errors(place, bottom - line - 0.5f * type, state, *shelf.picture);
+        draw_errors(place, bottom - line - 0.5f * type, state, *resources.picture);
     }
-    draw_messages(state, shelf, {corner.x + 0.5f * type, corner.y + 0.5f * type}, space.x - 2 * type);
+    draw_messages(state, resources, {corner.x + 0.5f * type, corner.y + 0.5f * type}, space.x - 2 * type);
 }
 }

@@ -3,5 +3,5 @@
 #include "panels.h"
 
 namespace tyndall {
-void draw_picture(ViewState& state, const Shelf& shelf, EditMemory& edits, const Act& act);
+void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act);
 }

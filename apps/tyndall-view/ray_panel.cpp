@@ -13,12 +13,12 @@ namespace tyndall {
 using namespace ray_drawing;
 
 namespace {
-constexpr size_t most_lights = 5; // that are drawn, the brightest first
+constexpr size_t max_lights = 5; // that are drawn, the brightest first
 
 // Told apart by colour-blind eyes too (Okabe and Ito 2008).
-constexpr ImU32 light_colors[most_lights] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
-                                             IM_COL32(0, 178, 134, 255), IM_COL32(213, 94, 0, 255),
-                                             IM_COL32(204, 121, 167, 255)};
+constexpr ImU32 light_colors[max_lights] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
+                                            IM_COL32(0, 178, 134, 255), IM_COL32(213, 94, 0, 255),
+                                            IM_COL32(204, 121, 167, 255)};
 constexpr ImU32 fog_color = IM_COL32(150, 150, 154, 255), eye_color = IM_COL32(232, 232, 236, 255);
 constexpr ImU32 dark_color = IM_COL32(62, 62, 66, 255);
 
@@ -144,7 +144,7 @@ void draw_pointer(const Plot& plot, const RayStory& story, std::span<const size_
 
 // The brightest of the lights that shine on some of the ray, or would without shadows.
 std::vector<size_t> reaching_lights(const RayStory& story) {
-    std::vector<size_t> lights = drawn_lights(story, most_lights);
+    std::vector<size_t> lights = drawn_lights(story, max_lights);
     std::erase_if(lights, [&](size_t l) {
         return std::ranges::all_of(story.lights[l].stretches,
                                    [](const LightStretch& stretch) { return stretch.state == Lighting::out_of_reach; });

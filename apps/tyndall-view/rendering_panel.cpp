@@ -118,10 +118,10 @@ void remark(const ImVec4& color, const std::string& where, const std::string& wh
     ImGui::PopTextWrapPos();
 }
 
-void draw_remarks(const ViewState& state, const Shelf& shelf) {
+void draw_remarks(const ViewState& state, const PanelResources& resources) {
     if (!ImGui::CollapsingHeader("what it gets wrong", ImGuiTreeNodeFlags_DefaultOpen)) return;
     bool none = true;
-    for (const LimitationGroup& group : shelf.limitations) {
+    for (const LimitationGroup& group : resources.limitations) {
         const Severity severity = group.worst.severity;
         const ImVec4 color = severity == Severity::wrong ? trouble : severity == Severity::degraded ? caution : quiet;
         remark(color, std::string(name_of(severity)) + "  " + where_of(group), sentence_of(group.worst));
@@ -129,18 +129,18 @@ void draw_remarks(const ViewState& state, const Shelf& shelf) {
     }
     if (state.scene)
         for (const std::string& warning : state.scene->warnings) remark(caution, "scene", warning), none = false;
-    if (shelf.picture) {
-        for (const std::string& note : shelf.picture->notes) remark(quiet, "note", note), none = false;
-        if (shelf.picture->non_finite)
-            remark(trouble, "not finite", std::to_string(shelf.picture->non_finite) + " samples were left out"),
+    if (resources.picture) {
+        for (const std::string& note : resources.picture->notes) remark(quiet, "note", note), none = false;
+        if (resources.picture->non_finite)
+            remark(trouble, "not finite", std::to_string(resources.picture->non_finite) + " samples were left out"),
                 none = false;
     }
     if (none) ImGui::TextDisabled("nothing known");
 }
 
-void draw_times(const Shelf& shelf) {
-    if (!shelf.picture || !ImGui::CollapsingHeader("time of the last picture")) return;
-    const StageTimes& times = shelf.picture->times;
+void draw_times(const PanelResources& resources) {
+    if (!resources.picture || !ImGui::CollapsingHeader("time of the last picture")) return;
+    const StageTimes& times = resources.picture->times;
     const auto row = [](const char* name, double seconds) {
         ImGui::TextUnformatted(name);
         const std::string text = formatted("%.1f ms", 1e3 * seconds);
@@ -154,15 +154,15 @@ void draw_times(const Shelf& shelf) {
 }
 }
 
-void draw_rendering(ViewState& state, const Shelf& shelf, PanelMemory& memory, const Act& act) {
+void draw_rendering(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
     draw_modes(state, act);
     draw_shown(state, act);
     draw_looking_into(state, act);
     draw_cameras(state, act);
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
-    draw_remarks(state, shelf);
+    draw_remarks(state, resources);
     draw_settings(state, memory, act);
-    draw_times(shelf);
+    draw_times(resources);
     draw_files(state, memory.files, act);
 }
 }

@@ -65,11 +65,12 @@ void take_pictures(Viewer& viewer) {
             announce(viewer, picture->error, true);
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
-            if (!picture->quick && picture->mode == viewer.state.mode) viewer.shelf.limitations = picture->limitations;
-            if (picture->ray) viewer.shelf.ray = picture->ray;
-            if (picture->volume && picture->volume != viewer.shelf.volume)
-                viewer.shelf.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();
-            viewer.shelf.picture = std::move(picture);
+            if (!picture->quick && picture->mode == viewer.state.mode)
+                viewer.resources.limitations = picture->limitations;
+            if (picture->ray) viewer.resources.ray = picture->ray;
+            if (picture->volume && picture->volume != viewer.resources.volume)
+                viewer.resources.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();
+            viewer.resources.picture = std::move(picture);
             viewer.new_picture = true;
         }
     }
@@ -81,13 +82,13 @@ void take_pictures(Viewer& viewer) {
         else
             announce(viewer, saved->error, true);
     }
-    viewer.shelf.saving = viewer.thread.saving();
+    viewer.resources.saving = viewer.thread.saving();
 }
 
 void take_job(Viewer& viewer) {
     const std::optional<JobResult> result = viewer.jobs.take_result();
     viewer.state.job = viewer.jobs.status();
-    if (viewer.now > viewer.news_until) viewer.shelf.news.clear();
+    if (viewer.now > viewer.news_until) viewer.resources.news.clear();
     if (!result) return;
     const bool failed = result->code != ExitCode::ok;
     if (failed && !viewer.script.finished()) fail(result->code, viewer.job_place, result->message);
@@ -150,15 +151,15 @@ void run_frame(Viewer& viewer) {
     move_scripted_mouse(viewer);
     viewer.window.begin_frame(viewer.scripted);
     read_input(viewer);
-    viewer.shelf.texture = viewer.window.picture(), viewer.shelf.volume_texture = viewer.window.picture(1);
-    draw_interface(viewer.state, viewer.shelf, viewer.memory, [&](const Action& action) { act(viewer, action); });
+    viewer.resources.texture = viewer.window.picture(), viewer.resources.volume_texture = viewer.window.picture(1);
+    draw_interface(viewer.state, viewer.resources, viewer.memory, [&](const Action& action) { act(viewer, action); });
     post_request(viewer);
     show_title(viewer);
     viewer.window.end_frame();
 
     const double drawn = seconds_now();
-    if (viewer.new_picture) viewer.window.set_picture(viewer.shelf.picture->codes);
-    if (viewer.new_volume) viewer.window.set_picture(viewer.shelf.volume->codes, 1);
+    if (viewer.new_picture) viewer.window.set_picture(viewer.resources.picture->codes);
+    if (viewer.new_volume) viewer.window.set_picture(viewer.resources.volume->codes, 1);
     viewer.new_picture = viewer.new_volume = false;
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
     const double done = seconds_now();

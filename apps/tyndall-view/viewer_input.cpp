@@ -25,7 +25,7 @@ void tell(Viewer& viewer, const std::string& message, bool is_error) {
 }
 
 void announce(Viewer& viewer, const std::string& news, bool is_error) {
-    viewer.shelf.news = news, viewer.shelf.news_is_error = is_error;
+    viewer.resources.news = news, viewer.resources.news_is_error = is_error;
     viewer.news_until = viewer.now + reading;
 }
 
@@ -125,7 +125,7 @@ ScriptFacts facts_of(const Viewer& viewer) {
     const bool asked = viewer.posted == viewer.state.revision && viewer.posted_shown == viewer.state.shown_revision;
     facts.idle = asked && !viewer.posted_moving && !viewer.new_picture && viewer.thread.idle() &&
                  viewer.picture_revision == viewer.state.revision;
-    const auto& picture = viewer.shelf.picture;
+    const auto& picture = viewer.resources.picture;
     if (picture && picture->revision == viewer.state.revision && picture->mode == viewer.state.mode && !picture->quick)
         facts.samples = picture->samples;
     facts.job = viewer.state.job.has_value();

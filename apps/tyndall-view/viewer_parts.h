@@ -24,7 +24,7 @@ struct Viewer {
     int loads_begun = 0;
     uint64_t motions_seen = 0, posted = 0, posted_shown = 0;
     bool posted_moving = false;
-    Shelf shelf;
+    PanelResources resources;
     uint64_t picture_revision = 0; // of the newest answer, with or without a picture
     bool new_picture = false, new_volume = false;
     PanelMemory memory;

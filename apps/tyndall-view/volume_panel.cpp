@@ -109,18 +109,18 @@ void draw_facts(const VolumePicture& shown) {
 }
 }
 
-void draw_volume(const ViewState& state, const Shelf& shelf, const Act& act) {
-    if (!shelf.volume || !state.scene) {
+void draw_volume(const ViewState& state, const PanelResources& resources, const Act& act) {
+    if (!resources.volume || !state.scene) {
         ImGui::TextDisabled("looking at the fog ...");
         return;
     }
-    const VolumePicture& shown = *shelf.volume;
+    const VolumePicture& shown = *resources.volume;
     const ImVec2 low = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const float type = ImGui::GetFontSize(), picture = 0.46f * space.x, scale = 8 * type;
     if (shown.codes.empty()) {
         ImGui::TextDisabled("%s", shown.remark.c_str());
     } else {
-        const float end = draw_density(shown, shelf.volume_texture, low, {low.x + picture - type, low.y + space.y});
+        const float end = draw_density(shown, resources.volume_texture, low, {low.x + picture - type, low.y + space.y});
         draw_scale({end + type, low.y}, {end + type + scale, low.y + space.y}, shown);
     }
     ImGui::SetCursorScreenPos({low.x + picture + scale + type, low.y});

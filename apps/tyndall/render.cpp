@@ -113,7 +113,7 @@ Rendered render_frames(const Scene& scene, const RenderRequest& request, const R
                     {}};
     settle_noise(request, result.plan, globals);
     shared = request.frames.size() == 1 ? first.snapshot : Snapshot{};
-    shared.kept = nullptr; // the time that a mode takes must not depend on the one before it
+    shared.cache = nullptr; // the time that a mode takes must not depend on the one before it
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
     say_before(scene, limitations, texts, result, globals);
 

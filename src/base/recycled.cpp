@@ -4,7 +4,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t least_kept = size_t{1} << 20, most_kept = size_t{1} << 26, most_blocks = 12;
+constexpr size_t min_kept = size_t{1} << 20, max_kept = size_t{1} << 26, max_blocks = 12;
 constexpr std::align_val_t alignment{64};
 
 struct Block {
@@ -14,7 +14,7 @@ struct Block {
 struct Store {
     std::mutex mutex;
     std::vector<Block> blocks; // the one given back last is at the end
-    Store() { blocks.reserve(most_blocks + 1); }
+    Store() { blocks.reserve(max_blocks + 1); }
 };
 Store& store() {
     static Store& blocks = *new Store; // outlives whatever still gives memory back as the program ends
@@ -37,11 +37,11 @@ void* take_memory(size_t bytes) {
 }
 
 void give_memory(void* memory, size_t bytes) noexcept {
-    if (bytes >= least_kept && bytes <= most_kept) {
+    if (bytes >= min_kept && bytes <= max_kept) {
         const std::lock_guard lock(store().mutex);
         std::vector<Block>& blocks = store().blocks;
         blocks.push_back({memory, bytes});
-        if (blocks.size() <= most_blocks) return;
+        if (blocks.size() <= max_blocks) return;
         memory = blocks.front().memory;
         blocks.erase(blocks.begin());
     }

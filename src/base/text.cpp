@@ -94,7 +94,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string unknown_name(std::string_view kind, std::string_view name, const std::vector<std::string>& known) {
-    constexpr size_t longest_list = 32, most_near = 3;
+    constexpr size_t longest_list = 32, max_near = 3;
     const std::string_view start = name.substr(0, 64);
     std::vector<std::string> near;
     size_t fewest = std::numeric_limits<size_t>::max();
@@ -104,7 +104,7 @@ std::string unknown_name(std::string_view kind, std::string_view name, const std
         if (edits < fewest) near.clear();
         fewest = edits, near.push_back(candidate);
     }
-    if (near.size() > most_near) near.resize(most_near);
+    if (near.size() > max_near) near.resize(max_near);
     std::string text = "no " + std::string(kind) + " '" + printable(name, 60) + "'";
     if (!near.empty()) return text + "; did you mean " + joined(near, " or ") + "?";
     if (known.empty()) return text + "; there is none";

@@ -35,11 +35,11 @@ std::vector<QuadratureNode> rule(int n) {
 
 std::span<const QuadratureNode> gauss_legendre(int count) {
     static const auto rules = [] {
-        std::array<std::vector<QuadratureNode>, most_gauss_nodes + 1> all;
-        for (int n = 1; n <= most_gauss_nodes; ++n) all[n] = rule(n);
+        std::array<std::vector<QuadratureNode>, max_gauss_nodes + 1> all;
+        for (int n = 1; n <= max_gauss_nodes; ++n) all[n] = rule(n);
         return all;
     }();
-    return rules[std::clamp(count, 1, most_gauss_nodes)];
+    return rules[std::clamp(count, 1, max_gauss_nodes)];
 }
 
 double integral(const std::function<double(double)>& f, double a, double b, int pieces) {

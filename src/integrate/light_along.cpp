@@ -87,7 +87,7 @@ EquiAngular<double> LightAlong::angles(double low, double high) const {
 
 double LightAlong::veil_voxels(double low, double high) const {
     double voxels = 0;
-    for (const Veil& veil : veils)
+    for (const ShadowedInterval& veil : veils)
         if (veil.stretch.low < high && veil.stretch.high > low) voxels = std::max(voxels, veil.voxels);
     if (voxels == 0) return 0;
     // Only movement across the light changes what stands before it.
@@ -95,7 +95,7 @@ double LightAlong::veil_voxels(double low, double high) const {
     return voxels * glm::length(glm::cross(direction, glm::normalize(dvec3(light->direction))));
 }
 
-ArrivingAt arriving_at(const LightAlong& along, double t) {
+LightSamplesAt arriving_at(const LightAlong& along, double t) {
     const Light& light = *along.light;
     if (!along.local()) return {-glm::normalize(dvec3(light.direction)), 1};
     const dvec3 towards = (dvec3(light.position) - along.origin) - t * along.direction;

@@ -20,11 +20,11 @@ struct LightAlong {
     std::vector<Interval<double>> lit;      // ascending; cut where the light's strength has a kink
     // Where grid fog may stand between ray and light, and its voxels per metre across the light: the ray has to be
     // followed as finely as their shadows are drawn.
-    struct Veil {
+    struct ShadowedInterval {
         Interval<double> stretch;
         double voxels = 0;
     };
-    std::vector<Veil> veils;
+    std::vector<ShadowedInterval> veils;
     std::vector<double> kinks; // memory that find_light() reuses
 
     bool local() const { return !is_distant(*light); }
@@ -34,11 +34,11 @@ struct LightAlong {
 };
 
 // Unshadowed light at a point of the ray, as arrival() of scene/light.h, in double.
-struct ArrivingAt {
+struct LightSamplesAt {
     dvec3 to_light;    // unit
     double amount = 0; // multiplies the light's intensity
 };
-ArrivingAt arriving_at(const LightAlong& along, double t);
+LightSamplesAt arriving_at(const LightAlong& along, double t);
 
 // Fills `along` for a ray: what its light reaches of 0..t_max, less what `slices` (may be null) shadow, behind
 // the grids among `media`.

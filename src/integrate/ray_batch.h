@@ -24,7 +24,8 @@ struct RayBatch {
     std::span<vec3> per_light{};           // empty, or rays × lights: the part of radiance from each light
     std::span<const float> jitter{};       // per ray in [0,1), stratified over the samples of a pixel; empty = ½
     std::span<const SamplePlace> places{}; // per ray: its pixel's low-discrepancy sequence; empty = none, take ids
-    std::span<const float> near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
+    std::span<const float>
+        clip_near{}; // for Surfaces::own, per ray: nearer surfaces are cut away (fog is not); empty = 0
     std::span<const vec2> positions{}; // of the rays in the picture, in pixels from the upper left; empty = unknown
     std::span<const bool> open{};      // per ray: no surface ends it, but the fog; empty = unknown
 };

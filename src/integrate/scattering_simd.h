@@ -40,7 +40,7 @@ HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, cons
                       const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < snapshot.media.size(); ++m)
-        sum = fused(splat(glow_per_extinction(snapshot.media[m].optics, snapshot.ambient)), extinction(m), sum);
+        sum = fused(splat(source_radiance(snapshot.media[m].optics, snapshot.ambient)), extinction(m), sum);
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 }

@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Shadow rays from points to a light's centre.
-HWY_INLINE void aim_at_center(const Vec3s& position, const Arriving& light_at, const Mask16& wanted,
+HWY_INLINE void aim_at_center(const Vec3s& position, const LightSamples& light_at, const Mask16& wanted,
                               Occluders::ShadowRays& rays) {
     store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
     store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
@@ -45,8 +45,8 @@ template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key
 // Share of a light that surfaces let through to the wanted points, by one packet of shadow rays, or by one for each of
 // `points` points of a soft light.
 template<class Key>
-Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position, const Arriving& light_at,
-                     const Mask16& wanted, int points, const Key& key) {
+Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position,
+                     const LightSamples& light_at, const Mask16& wanted, int points, const Key& key) {
     Occluders::ShadowRays rays;
     alignas(64) float share[16] = {};
     aim_at_center(position, light_at, wanted, rays);

@@ -43,7 +43,7 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
     return result;
 }
 
-std::vector<Medium> even_media(std::span<const Medium> media) {
+std::vector<Medium> homogeneous_media(std::span<const Medium> media) {
     std::vector<Medium> result;
     for (const Medium& medium : media) result.push_back(at_mean_density(medium));
     drop_clear(result);

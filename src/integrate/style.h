@@ -40,6 +40,6 @@ inline float eye_distance(const Camera& camera, vec3 point) {
     return camera.ortho_height > 0 ? glm::dot(offset, camera.forward) : glm::length(offset);
 }
 
-// Every grid as even fog of its mean density in its bounds: media left are homogeneous or height fog only.
-std::vector<Medium> even_media(std::span<const Medium> media);
+// Every grid as homogeneous fog of its mean density in its bounds: media left are homogeneous or height fog only.
+std::vector<Medium> homogeneous_media(std::span<const Medium> media);
 }

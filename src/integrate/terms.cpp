@@ -6,7 +6,7 @@
 
 namespace tyndall {
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
-    if (!terms.heterogeneity) snapshot.media = even_media(snapshot.media);
+    if (!terms.heterogeneity) snapshot.media = homogeneous_media(snapshot.media);
     for (Medium& medium : snapshot.media) {
         if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
         if (!terms.emission) medium.optics.emission = vec3(0);

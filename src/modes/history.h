@@ -7,10 +7,10 @@
 #include <vector>
 
 namespace tyndall {
-struct FroxelMemory; // of modes/froxel/memory.h
+struct FroxelHistory; // of modes/froxel/memory.h
 struct Scene;
 struct Snapshot;
-struct FogPicture; // of modes/fog_picture.h
+struct FogBuffer; // of modes/fog_buffer.h
 
 // Handed to prepare() frame after frame, empty before the first. A mode that keeps something calls follow() first.
 struct History {
@@ -19,8 +19,8 @@ struct History {
     Settings settings;
     const Scene* scene = nullptr;
     std::vector<vec3> lights; // of each: what it shone into the fog, where it was, which way it shone
-    std::shared_ptr<FroxelMemory> froxels;
-    std::shared_ptr<const FogPicture> picture;
+    std::shared_ptr<FroxelHistory> froxels;
+    std::shared_ptr<const FogBuffer> picture;
 };
 
 // Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another

@@ -48,7 +48,7 @@ ShadowMapOptions shadow_map_options(const ShadowMapSettings& settings) {
 ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings) {
     ShadowMaps maps;
     for (const Light& light : snapshot.lights)
-        maps.push_back(kept_shadow_map(view, snapshot, light, shadow_map_options(settings.of<ShadowMapSettings>())));
+        maps.push_back(cached_shadow_map(view, snapshot, light, shadow_map_options(settings.of<ShadowMapSettings>())));
     return maps;
 }
 

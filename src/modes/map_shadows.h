@@ -1,7 +1,7 @@
 // Shadow maps as a visibility of modes.
 #pragma once
 #include "modes/limitation.h"
-#include "trace/shadows/kept_shadows.h"
+#include "trace/shadows/cached_shadows.h"
 
 namespace tyndall {
 struct Settings;

@@ -17,7 +17,7 @@ struct View;
 enum class Quality;
 
 // What a technique promises of its images.
-enum class Accuracy { look, even_fog, single_scattering, multiple_scattering };
+enum class Accuracy { artistic, homogeneous, single_scattering, multiple_scattering };
 std::string_view name_of(Accuracy accuracy);
 
 // Who shades what lies behind the fog: the renderer; the mode, which then gets whole camera rays, follows them through

@@ -59,7 +59,7 @@ void mark_advanced(std::vector<SettingRow>& rows, std::initializer_list<std::str
 #define TYNDALL_FIELD(member)                                                                                          \
     [](Settings & settings) -> auto& { return settings.member; }
 inline const std::vector<std::string> switches{"off", "on"};
-inline const std::vector<std::string> picture_shares{"full", "half", "third", "quarter"};
+inline const std::vector<std::string> resolutions{"full", "half", "third", "quarter"};
 
 // The rows that techniques share.
 void append_pixel_rows(std::vector<SettingRow>& rows);

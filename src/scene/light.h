@@ -28,12 +28,12 @@ bool is_soft(const Light& light);
 Box light_bounds(const Light& light);
 
 // What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
-struct Arrival {
+struct LightSample {
     vec3 irradiance{0};
     vec3 to_light{0, 1, 0};    // unit
     float distance = infinity; // metres, infinite for the sun
 };
-Arrival arrival(const Light& light, vec3 point);
+LightSample arrival(const Light& light, vec3 point);
 
 // The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
 // or disc is seen under; its centre when the light is a point. Ends just before the light.

@@ -12,20 +12,20 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Irradiance of a light with nothing in the way.
-struct Arriving {
+struct LightSamples {
     Vec3s to_light; // unit
     Floats distance;
     Floats amount; // multiplies the light's intensity
 };
 
 // As arrival() of scene/light.h. `cone`: the light's cone_falloff().
-HWY_INLINE Arriving arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
+HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
     if (is_distant(light)) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - position;
     const float reach = std::max(light.radius, smallest_radius);
     const Floats squared = dot(offset, offset);
     const Floats distance = max(sqrt(squared), 1e-12f);
-    Arriving result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
+    LightSamples result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};
     if (!std::isinf(light.range)) {
         const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
         result.amount = result.amount * max(min(1.0f - fourth, 1.0f), 0.0f);

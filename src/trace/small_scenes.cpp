@@ -9,7 +9,7 @@
 namespace tyndall {
 Phase forward_phase(float g) { return {PhaseKind::henyey_greenstein, g}; }
 
-Medium even_medium(float extinction, Box box, Phase phase, vec3 albedo) {
+Medium homogeneous_medium(float extinction, Box box, Phase phase, vec3 albedo) {
     Medium medium;
     medium.name = "even";
     medium.optics = {vec3(extinction), albedo, phase, vec3(0)};
@@ -35,7 +35,7 @@ SparseVolume unit_volume(int voxels, const std::function<float(vec3)>& density) 
 }
 
 Medium medium_of(const SparseVolume& volume, float extinction) {
-    Medium medium = even_medium(extinction);
+    Medium medium = homogeneous_medium(extinction);
     medium.name = "grid", medium.kind = DensityKind::bricks;
     medium.bricks = make_bricks(volume);
     medium.world_bounds = medium.bounds = medium.bricks->bounds;

@@ -6,7 +6,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
@@ -100,8 +100,8 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
 
     snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);
     if (previous && snapshot.occluders->shares_with(*previous->occluders)) snapshot.occluders = previous->occluders;
-    snapshot.kept = std::make_shared<Kept>();
-    if (previous) snapshot.kept_before = previous->kept;
+    snapshot.cache = std::make_shared<FrameCache>();
+    if (previous) snapshot.cache_before = previous->cache;
     const uint64_t dropped = snapshot.occluders->dropped();
     if (dropped > 0 && !(previous && previous->occluders->dropped() == dropped))
         snapshot.notes.push_back(std::to_string(dropped) + " triangles without area or out of range left out");

@@ -11,7 +11,7 @@
 
 namespace tyndall {
 struct BrickPool;
-struct Kept;
+struct FrameCache;
 struct Light;
 struct Medium;
 class Occluders;
@@ -43,11 +43,11 @@ struct Snapshot {
     vec3 ambient{0};
     BackgroundNow background;
     std::shared_ptr<const Occluders> occluders;
-    Box bounds;                         // of meshes, local lights and bounded media
-    std::vector<std::string> notes;     // what was mended in the files of this frame; say once
-    std::vector<FogSource> fog_sources; // one per medium of the scene: what the next frame can use again
-    std::shared_ptr<Kept> kept;         // made for this frame so far; null in snapshots made by hand
-    std::shared_ptr<Kept> kept_before;  // for the frame before; null of the first
+    Box bounds;                               // of meshes, local lights and bounded media
+    std::vector<std::string> notes;           // what was mended in the files of this frame; say once
+    std::vector<FogSource> fog_sources;       // one per medium of the scene: what the next frame can use again
+    std::shared_ptr<FrameCache> cache;        // made for this frame so far; null in snapshots made by hand
+    std::shared_ptr<FrameCache> cache_before; // for the frame before; null of the first
 
     // Not inline: who only holds a snapshot needs neither lights nor media.
     Snapshot();

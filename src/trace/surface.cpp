@@ -22,7 +22,7 @@ bool gather_light(const Light& light, std::span<const SurfacePoint> points, Pack
     for (size_t i = 0; i < 16; ++i) {
         packet.active[i] = 0, packet.irradiance[i] = vec3(0);
         if (i >= points.size()) continue;
-        const Arrival arriving = arrival(light, points[i].position);
+        const LightSample arriving = arrival(light, points[i].position);
         const float cosine = dot(points[i].normal, arriving.to_light);
         const vec3 irradiance = arriving.irradiance * (std::max(cosine, 0.0f) * light.surface_scale);
         if (!(max_component(irradiance) > 0)) continue;

@@ -26,7 +26,7 @@ inline float grey_extinction(const Optics& optics) {
 }
 
 // What fog sends on of emission and even light from all around, per unit of its extinction, which is not 0.
-inline vec3 glow_per_extinction(const Optics& optics, vec3 ambient) {
+inline vec3 source_radiance(const Optics& optics, vec3 ambient) {
     return optics.albedo * ambient + optics.emission / optics.extinction;
 }
 

@@ -14,13 +14,14 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 template<int bits> HWY_INLINE Ints shift_right(const Ints& a) {
     Ints r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::ShiftRight<bits>(a.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::ShiftRight<bits>(a.part[i]);
     return r;
 }
 
 HWY_INLINE Mask16 positive(const Ints& a) {
     Mask16 r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::RebindMask(FloatTag(), hn::Gt(a.part[i], hn::Zero(IntTag())));
+    for (size_t i = 0; i < vectors_per_packet; ++i)
+        r.part[i] = hn::RebindMask(FloatTag(), hn::Gt(a.part[i], hn::Zero(IntTag())));
     return r;
 }
 

@@ -13,7 +13,7 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval<float> r
                          int& lookups);
 
 // An estimate, right on average, of the share of light that passes the stretch `range` of the ray (ratio tracking:
-// Novák et al. 2014). Not above 1; exact in even fog. Ends small values by Russian roulette.
+// Novák et al. 2014). Not above 1; exact in homogeneous fog. Ends small values by Russian roulette.
 float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
                           int& lookups);
 }

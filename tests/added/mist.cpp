@@ -1,5 +1,5 @@
 // A technique that only the tests have: fog of one brightness.
-#include "integrate/even_fog.h"
+#include "integrate/homogeneous_fog.h"
 #include "integrate/style.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"
@@ -19,7 +19,7 @@ Limitations limitations(const View&, const Snapshot&, const Settings&) {
 }
 
 ScatterFunction prepare(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
-    return [dimmed = dimming_only(even_media(snapshot.media)),
+    return [dimmed = dimming_only(homogeneous_media(snapshot.media)),
             brightness = settings.of<MistSettings>().brightness](const RayBatch& batch, std::span<Scatter> results) {
         dimmed(batch, results);
         for (Scatter& result : results) result.radiance = vec3(brightness * (1 - result.transmittance));
@@ -47,7 +47,7 @@ Mode mist_mode() {
     return {.name = "mist",
             .summary = "fog of one brightness",
             .use = "testing that the table is all there is to a technique",
-            .accuracy = Accuracy::even_fog,
+            .accuracy = Accuracy::homogeneous,
             .surfaces = Surfaces::shared,
             .limitations = limitations,
             .prepare = prepare,

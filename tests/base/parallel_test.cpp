@@ -119,7 +119,7 @@ TEST(Parallel, AnExceptionPassesThroughNestedLoops) {
 }
 
 // A waiting thread that took up another outer piece would come back to a lock it already holds. More threads than cores
-// and uneven inner pieces make them wait for each other.
+// and heterogeneous inner pieces make them wait for each other.
 TEST(Parallel, AnOuterBodyIsNeverEnteredTwiceOnOneStack) {
     set_thread_count(8);
     std::atomic<int64_t> total = 0;

@@ -15,7 +15,7 @@
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -176,7 +176,7 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     for (const std::string& assignment : parts_of(option("TYNDALL_SET", ""), ' ')) apply_setting(settings, assignment);
     const Movement movement = movement_of(option("TYNDALL_MOVE", ""));
     Snapshot still = make_snapshot(scene, moment_of(scene, 1));
-    still.kept = nullptr; // without a history every preparation begins with nothing
+    still.cache = nullptr; // without a history every preparation begins with nothing
     Snapshot snapshot = still;
     View view;
     view.size = size_of(option("TYNDALL_SIZE", "640x360"));
@@ -194,7 +194,7 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     const auto run = [&](Times& times) {
         movement.move(frame, still, snapshot), movement.move(frame, camera, view.camera);
         movement.move_fog(frame, still, snapshot);
-        if (keep) snapshot.kept_before = std::exchange(snapshot.kept, std::make_shared<Kept>());
+        if (keep) snapshot.cache_before = std::exchange(snapshot.cache, std::make_shared<FrameCache>());
         view.frame = frame++;
         if (movement.camera) times.trace.time([&] { picture = picture_rays(view, snapshot); });
         ScatterFunction function;

@@ -41,7 +41,7 @@ def main():
     total, cost = sum(live.values()), collections.Counter()
     for name, time in live.items():
         cost.update({header: time for header in set(used[name])})
-    shown = asked or [name for name, _ in cost.most_common() if name.startswith("src/") and name.endswith(".h")]
+    shown = asked or [name for name, _ in cost.max_common() if name.startswith("src/") and name.endswith(".h")]
     print(f"{len(live)} objects, {total:.0f} s of compiling")
     for header in shown:
         print(f"{100 * cost[header] / total:5.1f} %  {cost[header]:6.0f} s  {header}")

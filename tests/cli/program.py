@@ -45,7 +45,7 @@ def recipe(**changes):
 
 
 def scene(**changes):
-    """A camera, a sun and even fog: renders in a moment."""
+    """A camera, a sun and homogeneous fog: renders in a moment."""
     content = {
         "tyndall": 1,
         "frames": "1-3",
@@ -59,7 +59,7 @@ def scene(**changes):
     return content
 
 
-def lit_fog(**changes):
+def lit_scene(**changes):
     """A box of fog in the sun: light that varies, with an edge in some pixels."""
     box = {"low": [-1, 0, -1], "high": [1, 1, 1]}
     return scene(**{"frames": "1", "resolution": [32, 18],

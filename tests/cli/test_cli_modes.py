@@ -3,13 +3,13 @@ import json
 import pathlib
 import unittest
 
-from program import ProgramTest, lit_fog, png_size, run
+from program import ProgramTest, lit_scene, png_size, run
 
 
 class Modes(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.json", lit_fog())
+        self.scene = self.write("scene.json", lit_scene())
 
     def modes(self):
         return [mode["name"] for mode in json.loads(self.succeed("modes", "--json").stdout)["modes"]]

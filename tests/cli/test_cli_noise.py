@@ -2,13 +2,13 @@
 import json
 import unittest
 
-from program import ProgramTest, lit_fog, recipe, run, scene
+from program import ProgramTest, lit_scene, recipe, run, scene
 
 
 class Layers(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.json", lit_fog(resolution=[16, 9]))
+        self.scene = self.write("scene.json", lit_scene(resolution=[16, 9]))
         self.output = self.path("out.exr")
 
     def render(self, *more, **options):
@@ -82,7 +82,7 @@ class Layers(ProgramTest):
 class Target(ProgramTest):
     def setUp(self):
         super().setUp()
-        self.scene = self.write("scene.json", lit_fog(resolution=[16, 9]))
+        self.scene = self.write("scene.json", lit_scene(resolution=[16, 9]))
         self.output = self.path("out.exr")
 
     def render(self, *more):

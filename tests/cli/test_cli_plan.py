@@ -6,7 +6,7 @@ from program import ProgramTest, scene
 
 
 def hazy(**changes):
-    """A spot above the picture in a box of even fog: nothing casts shadows."""
+    """A spot above the picture in a box of homogeneous fog: nothing casts shadows."""
     box = {"low": [-2, -1, -2], "high": [2, 2, 2]}
     spot = {"name": "spot", "type": "spot", "position": [-1, 4, 0], "target": [0.5, 0, 0], "intensity": 100,
             "inner_cone": 8, "outer_cone": 15}

@@ -60,7 +60,7 @@ class CommandLine(ProgramTest):
     def test_unknown_names_get_those_like_them(self):
         for option, value, meant in [
                 ("--mode", "marhc", "march"), ("--set", "march.step_dpeth=1", "march.step_depth"),
-                ("--set", "light_resolution=8", "terms.light_resolution"), ("--set", "pixel.jitter=bleu", "blue"),
+                ("--set", "light_pionts=8", "terms.light_points"), ("--set", "pixel.jitter=bleu", "blue"),
                 ("--set", "terms.light=gird", "grid"), ("--quality", "fianl", "final"), ("--camera", "camrea", "camera"),
                 ("--aov", "transmitance", "transmittance"), ("--aov", "Z,validty", "validity"),
                 ("--light-units", "untiless", "unitless"), ("--missing", "hodl", "hold"), ("--isa", "avx52", "avx2 or avx512"),

@@ -18,7 +18,7 @@ using namespace test;
 // A slab lit by a sun from above, seen from the side: L = σ E / (4π) ∫ e^{-a σ t} e^{-b σ h} dt.
 struct Slab {
     static constexpr double sigma = 0.4, height = 2, length = 5;
-    Snapshot snapshot = snapshot_of({even_medium(sigma, Box{vec3(-50, -50, -50), vec3(50, height, 50)})},
+    Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, Box{vec3(-50, -50, -50), vec3(50, height, 50)})},
                                     {sun_light({0, -1, 0}, 7)}, vec3(0));
     Ray ray{vec3(0), vec3(1, 0, 0), length};
 
@@ -105,7 +105,7 @@ TEST(Style, FogWithoutDensityIsGone) {
 
 TEST(Style, EvenMediaKeepTheirMeanDensity) {
     const Medium grid = medium_of(unit_volume(8, [](vec3 p) { return p.x; }), 0.5f);
-    const std::vector<Medium> even = even_media(std::vector{grid, even_medium(0.2f)});
+    const std::vector<Medium> even = homogeneous_media(std::vector{grid, homogeneous_medium(0.2f)});
     ASSERT_EQ(even.size(), 2u);
     EXPECT_EQ(even[0].kind, DensityKind::homogeneous);
     EXPECT_FLOAT_EQ(grey_extinction(even[0].optics), 0.5f * grid.bricks->mean);

@@ -8,7 +8,7 @@ float wavy(vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y +
 
 Stage busy_stage() {
     std::vector<Medium> media{medium_of(unit_volume(24, wavy), 2),
-                              even_medium(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
+                              homogeneous_medium(0.5f, {vec3(-0.3f), vec3(1.2f, 0.7f, 1.1f)})};
     media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.5f}, media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     media[1].optics.phase = {PhaseKind::rayleigh, 0};
     const Light spot = spot_light({0.3f, 1.5f, 0.4f}, {0.1f, -1, 0.1f}, 2, 0.3f, 0.5f);

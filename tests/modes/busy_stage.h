@@ -5,7 +5,7 @@
 namespace tyndall::test {
 float wavy(vec3 p);
 
-// A grid and even fog over each other, a lamp and the sun, and things in their way.
+// A grid and homogeneous fog over each other, a lamp and the sun, and things in their way.
 Stage busy_stage();
 
 std::vector<Ray> busy_rays(int count);

@@ -45,7 +45,7 @@ TEST(Fluence, IsWhatThinFogScattersOnce) {
     // A sun of 1 lux in a cube of optical depth σ << 1: fluence at the middle is σ ∫ dV / (4π r²), flux 0; the grid
     // knows the mean over the eight cells about it.
     constexpr float sigma = 0.01f;
-    const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {sun_light({0, -1, 0})});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, unit_box)}, {sun_light({0, -1, 0})});
     const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 16, 2'000'000));
     const FluenceAt at = fluence_at(grid, vec3(0.5f));
     const double expected = sigma * mean_inverse_square();
@@ -61,7 +61,7 @@ TEST(Fluence, AboveALitFloorIsTwiceItsLightAndGoesUp) {
     scene.materials = {lambert(vec3(0.5f, 0.25f, 1))};
     add_mesh(scene, floor_of(0, 4, 0));
     const Box box{vec3(-0.5f, 0, -0.5f), vec3(0.5f, 0.25f, 0.5f)};
-    Snapshot snapshot = snapshot_of({even_medium(1e-5f, box)}, {sun_light({0, -1, 0}, 3)});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(1e-5f, box)}, {sun_light({0, -1, 0}, 3)});
     add_surfaces(scene, snapshot);
     const FluenceGrid grid = make_fluence(snapshot, grid_settings(2, 4, 400'000));
     const FluenceAt at = fluence_at(grid, vec3(0, 0.125f, 0));
@@ -111,7 +111,7 @@ TEST(Fluence, ScattersALobeIntoAWiderLobe) {
 TEST(Fluence, OfALampIsItsPowerInTheFog) {
     // Light that fog scatters once: 4π I σ ∫ dV / (4π r²) about a lamp in the middle of a thin cube.
     constexpr float sigma = 0.02f;
-    const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
     const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
     LightPathResult result;
     trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 4), rules, 0, 200'000, 200'000, result);
@@ -128,7 +128,7 @@ TEST(Fluence, OfALampFarFromTheFogIsWhatArrivesThere) {
     Light beyond = lamp;
     beyond.range = 20;
     for (const Light& light : {lamp, spot, beyond}) {
-        const Snapshot snapshot = snapshot_of({even_medium(sigma, unit_box)}, {light});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, unit_box)}, {light});
         const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
         LightPathResult result;
         trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 8), rules, 0, 200'000, 200'000, result);
@@ -146,7 +146,7 @@ TEST(Fluence, HasTheSameBitsAtAnyThreadCount) {
     Scene scene;
     scene.materials = {lambert(vec3(0.5f))};
     add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot = snapshot_of({even_medium(3, unit_box, forward_phase(0.6f))},
+    Snapshot snapshot = snapshot_of({homogeneous_medium(3, unit_box, forward_phase(0.6f))},
                                     {sun_light({1, -1, 0.5f}), point_light({2, 2, 2})});
     add_surfaces(scene, snapshot);
     const auto made = [&] { return make_fluence(snapshot, grid_settings(all_orders, 12, 40'000)); };
@@ -161,7 +161,8 @@ Settings with_orders(Settings settings, int orders) {
 }
 
 TEST(Fluence, ChangesNoBitOfSingleScattering) {
-    const Snapshot snapshot = snapshot_of({even_medium(2, unit_box, forward_phase(0.5f))}, {sun_light({1, -1, 0.5f})});
+    const Snapshot snapshot =
+        snapshot_of({homogeneous_medium(2, unit_box, forward_phase(0.5f))}, {sun_light({1, -1, 0.5f})});
     const std::vector<Ray> rays = lines_through(vec3(0.5f), 0.8f, 64);
     for (const Visibility visibility : {Visibility::rays, Visibility::intervals, Visibility::exact}) {
         Settings settings;
@@ -174,7 +175,7 @@ TEST(Fluence, ChangesNoBitOfSingleScattering) {
 
 // Everything that the cube sends out, by path, and by march with the grid, in all ways that march has.
 void expect_power_of_path(float g, int lines, double precision) {
-    Medium fog = even_medium(1.5f, unit_box, forward_phase(g));
+    Medium fog = homogeneous_medium(1.5f, unit_box, forward_phase(g));
     fog.optics.albedo = vec3(0.9f);
     Medium grid = medium_of(unit_volume(16, [](vec3) { return 1.0f; }), 1.5f);
     grid.optics = fog.optics;
@@ -226,7 +227,7 @@ TEST(Fluence, LooksTheSameInFroxels) {
 }
 
 TEST(Fluence, SaysWhatItLeavesOut) {
-    const Snapshot snapshot = snapshot_of({even_medium(4, unit_box)}, {sun_light({0, -1, 0})}, vec3(1));
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(4, unit_box)}, {sun_light({0, -1, 0})}, vec3(1));
     for (const char* name : {"march", "froxel"}) {
         const auto said = [&](int orders) {
             return find_mode(name).limitations(View{}, snapshot, with_orders(Settings{}, orders));

@@ -21,7 +21,7 @@ TEST(History, GoesOnWhileThePictureDoes) {
     view.frame = 17;
     EXPECT_EQ(next(), 2);
 
-    history.froxels = std::shared_ptr<FroxelMemory>(std::shared_ptr<int>(), nullptr);
+    history.froxels = std::shared_ptr<FroxelHistory>(std::shared_ptr<int>(), nullptr);
     const auto resets = [&](const auto& change) {
         next(), next();
         change();

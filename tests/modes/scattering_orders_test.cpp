@@ -31,12 +31,12 @@ TEST(ScatteringOrders, OfABallAsTheClosedFormSays) {
         EXPECT_NEAR(multiple_over_single(radius, 0.99), ratio, 6e-4 * (1 + ratio));
     EXPECT_NEAR(multiple_over_single(0.0299999, 0.99), multiple_over_single(0.0300001, 0.99), 1e-6);
     for (const float sigma : {0.1f, 1.0f, 4.0f}) {
-        const Medium cube = even_medium(sigma, {vec3(0), vec3(1)});
+        const Medium cube = homogeneous_medium(sigma, {vec3(0), vec3(1)});
         const double measured = measured_ratio(snapshot_of({cube}, {sun_light({0.2f, -1, 0.4f})}), 65536).ratio;
         EXPECT_NEAR(multiple_over_single(cube), measured, 0.12 * measured) << sigma;
     }
     EXPECT_EQ(multiple_over_single(1, 0), 0);
-    EXPECT_EQ(multiple_over_single(even_medium(1)), double(infinity));
+    EXPECT_EQ(multiple_over_single(homogeneous_medium(1)), double(infinity));
 }
 
 // Within a tenth of what light paths and path tracing find, give or take three standard errors.
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(ScatteringOrders, ScatteringOrdersOfBall, testing::Valu
 
 TEST(ScatteringOrders, ConfidenceCoversTheTruth) {
     // 95 % of intervals should: of 40, hardly ever less than 33.
-    const Snapshot snapshot = snapshot_of({even_medium(1, {vec3(0), vec3(1)})}, {sun_light({0, -1, 0})});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(1, {vec3(0), vec3(1)})}, {sun_light({0, -1, 0})});
     const double truth = measured_ratio(snapshot, 1 << 20, 99).ratio;
     int covered = 0;
     for (uint32_t seed = 0; seed < 40; ++seed) {
@@ -96,7 +96,7 @@ TEST(ScatteringOrders, ConfidenceCoversTheTruth) {
 
 TEST(ScatteringOrders, BoundIsAboveWhatIsMissing) {
     for (const float sigma : {0.1f, 0.5f, 2.0f}) {
-        Medium fog = even_medium(sigma, {vec3(0), vec3(1)});
+        Medium fog = homogeneous_medium(sigma, {vec3(0), vec3(1)});
         fog.optics.albedo = vec3(0.9f);
         const Snapshot snapshot = snapshot_of({fog}, {sun_light({0, -1, 0})});
         const double q = 0.9 * (1 - std::exp(-sigma * std::sqrt(3.0)));
@@ -104,8 +104,8 @@ TEST(ScatteringOrders, BoundIsAboveWhatIsMissing) {
         EXPECT_NEAR(truncation_bound(snapshot, 3), q * q * q / (1 - q), 1e-5 * q);
         EXPECT_GT(truncation_bound(snapshot, 1), measured_ratio(snapshot).high);
     }
-    EXPECT_EQ(truncation_bound(snapshot_of({even_medium(1)}, {}), 1), double(infinity));
-    EXPECT_EQ(measured_ratio(snapshot_of({even_medium(1)}, {})).ratio, 0);
+    EXPECT_EQ(truncation_bound(snapshot_of({homogeneous_medium(1)}, {}), 1), double(infinity));
+    EXPECT_EQ(measured_ratio(snapshot_of({homogeneous_medium(1)}, {})).ratio, 0);
 }
 }
 }

@@ -16,7 +16,7 @@ constexpr WithoutTerm terms[] = {
      [](Snapshot& snapshot) {
          for (Medium& medium : snapshot.media) medium.optics.phase.kind = PhaseKind::isotropic;
      }},
-    {"terms.heterogeneity", [](Snapshot& snapshot) { snapshot.media = even_media(snapshot.media); }},
+    {"terms.heterogeneity", [](Snapshot& snapshot) { snapshot.media = homogeneous_media(snapshot.media); }},
     {"terms.emission",
      [](Snapshot& snapshot) {
          for (Medium& medium : snapshot.media) medium.optics.emission = vec3(0);

@@ -2,7 +2,7 @@
 
 Radiance of a camera ray through fog of extinction s(x), from its entry to the first surface or the fog's end:
   integral of T(t) s albedo phase(cos) E_light(x) V(x) T_light(x) dt  +  T(end) color / pi * E_light cos V T_light
-with one random point in each of `STEPS` even steps. Visibility, distances in even fog and boxes are exact; in a grid
+with one random point in each of `STEPS` even steps. Visibility, distances in homogeneous fog and boxes are exact; in a grid
 both optical depths are sums over random points of even steps. Numpy, no code shared with any renderer."""
 import math
 

@@ -54,7 +54,7 @@ Snapshot snapshot_of(const Scene& scene, std::vector<Medium> media) {
 Limitations no_limitations(const View&, const Snapshot&, const Settings&) { return {}; }
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*)) {
-    return {"test", "a mode of the tests", "tests", Accuracy::look, Surfaces::shared, no_limitations, prepare};
+    return {"test", "a mode of the tests", "tests", Accuracy::artistic, Surfaces::shared, no_limitations, prepare};
 }
 
 ScatterFunction prepare_glow(const View&, const Snapshot& snapshot, const Settings&, History*) {

@@ -8,7 +8,7 @@ namespace {
 TEST(Light, PointFollowsTheInverseSquare) {
     const Light light = point_light({1, 2, 3}, 50);
     for (const float distance : {0.01f, 0.5f, 1.0f, 20.0f, 3000.0f}) {
-        const Arrival here = arrival(light, light.position + vec3(0, distance, 0));
+        const LightSample here = arrival(light, light.position + vec3(0, distance, 0));
         EXPECT_NEAR(here.irradiance.x, 50 / (distance * distance), 50 / (distance * distance) * 1e-3f);
         EXPECT_NEAR(here.distance, distance, distance * 1e-4f);
         EXPECT_NEAR(here.to_light.y, -1, 1e-6);

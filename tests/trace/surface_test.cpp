@@ -152,7 +152,7 @@ TEST(Surface, SoftLightsHavePenumbras) {
 
 TEST(Surface, LightIsDimmedByTheFogItCrosses) {
     Snapshot snapshot;
-    snapshot.media = {even_medium(0.5f, {vec3(-10, 0, -10), vec3(10, 3, 10)})};
+    snapshot.media = {homogeneous_medium(0.5f, {vec3(-10, 0, -10), vec3(10, 3, 10)})};
     snapshot.lights = {sun(pi / 2, vec3(pi))};
     expect_color(shade(snapshot, ground_point()).radiance, vec3(0.5f, 0.25f, 1) * std::exp(-1.5f), 1e-5f);
 }

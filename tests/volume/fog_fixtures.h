@@ -51,7 +51,7 @@ inline Medium placed(Medium medium, const mat4& local_to_world) {
 }
 
 inline Medium height_fog(float extinction, float base, float falloff, Box bounds = everywhere()) {
-    Medium medium = even_medium(extinction, bounds);
+    Medium medium = homogeneous_medium(extinction, bounds);
     medium.kind = DensityKind::height;
     medium.height_base = base, medium.height_falloff = falloff;
     return medium;

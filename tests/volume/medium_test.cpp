@@ -66,7 +66,7 @@ TEST(Densities, SameBitsOnEveryVectorInstructionSet) {
     const std::vector<std::string_view> isas = vector_isas();
     if (isas.size() < 2) GTEST_SKIP() << "needs a machine with AVX-512";
     const Medium bricks = medium_of(varied_volume()), height = height_fog(1, 2, 3);
-    const Medium box = placed(even_medium(1, {vec3(-1), vec3(1)}), glm::rotate(mat4(1), 0.5f, vec3(0, 1, 0)));
+    const Medium box = placed(homogeneous_medium(1, {vec3(-1), vec3(1)}), glm::rotate(mat4(1), 0.5f, vec3(0, 1, 0)));
     for (const Medium* medium : {&bricks, &height, &box})
         for (uint32_t packet = 0; packet < 500; ++packet) {
             const Points points = random_points(vec3(-20), vec3(30), packet);
@@ -98,7 +98,7 @@ TEST(Densities, PointsThatAreNowhere) {
             vec3 p(5);
             p[axis] = bad;
             points.set(axis, p);
-            for (const Medium& medium : {medium_of(constant_box(11, 1)), even_medium(1, {vec3(0), vec3(10)})})
+            for (const Medium& medium : {medium_of(constant_box(11, 1)), homogeneous_medium(1, {vec3(0), vec3(10)})})
                 EXPECT_EQ(densities_at(medium, points)[axis], 0) << bad;
         }
 }
@@ -110,7 +110,7 @@ TEST(Densities, EmptyBricks) {
 
 TEST(Densities, AnalyticMedia) {
     const Medium fog = height_fog(2, 1, 4, {vec3(-50, -3, -50), vec3(50)});
-    const Medium box = placed(even_medium(2, {vec3(-1), vec3(1)}), glm::scale(mat4(1), vec3(3, 4, 5)));
+    const Medium box = placed(homogeneous_medium(2, {vec3(-1), vec3(1)}), glm::scale(mat4(1), vec3(3, 4, 5)));
     for (uint32_t packet = 0; packet < 100; ++packet) {
         const Points points = random_points(vec3(-10), vec3(20), packet);
         const auto height = densities_at(fog, points), inside = densities_at(box, points);
@@ -124,14 +124,14 @@ TEST(Densities, AnalyticMedia) {
 }
 
 TEST(OpticalDepth, Homogeneous) {
-    EXPECT_NEAR(optical_depth(even_medium(0.1f), Ray{vec3(3), vec3(0, 1, 0), 50}), 5, 1e-6);
-    EXPECT_EQ(optical_depth(even_medium(0.1f), Ray{vec3(3), vec3(0, 1, 0)}), infinity);
-    EXPECT_EQ(optical_depth(even_medium(0), Ray{vec3(3), vec3(0, 1, 0)}), 0);
+    EXPECT_NEAR(optical_depth(homogeneous_medium(0.1f), Ray{vec3(3), vec3(0, 1, 0), 50}), 5, 1e-6);
+    EXPECT_EQ(optical_depth(homogeneous_medium(0.1f), Ray{vec3(3), vec3(0, 1, 0)}), infinity);
+    EXPECT_EQ(optical_depth(homogeneous_medium(0), Ray{vec3(3), vec3(0, 1, 0)}), 0);
 
     // A cube of 2 m seen along its diagonal, turned so that the diagonal is the z axis.
     const vec3 axis = glm::normalize(glm::cross(vec3(1), vec3(0, 0, 1)));
     const mat4 turned = glm::rotate(mat4(1), std::acos(1 / std::sqrt(3.0f)), axis);
-    const Medium cube = placed(even_medium(2, {vec3(-1), vec3(1)}), turned);
+    const Medium cube = placed(homogeneous_medium(2, {vec3(-1), vec3(1)}), turned);
     EXPECT_NEAR(optical_depth(cube, Ray{vec3(0, 0, 9), vec3(0, 0, -1)}), 4 * std::sqrt(3.0), 1e-5);
     EXPECT_NEAR(optical_depth(cube, Ray{vec3(0), vec3(0, 0, -1)}), 2 * std::sqrt(3.0), 1e-5);
     EXPECT_EQ(optical_depth(cube, Ray{vec3(0, 0, 9), vec3(0, 0, 1)}), 0);
@@ -180,7 +180,7 @@ TEST(OpticalDepth, HeightFogWithoutEnd) {
 const Box box64{vec3(-0.5f), vec3(63.5f)};
 
 TEST(OpticalDepth, ConstantBoxEqualsHomogeneousBox) {
-    const Medium bricks = medium_of(constant_box(64, 1), 0.05f), box = even_medium(0.05f, box64);
+    const Medium bricks = medium_of(constant_box(64, 1), 0.05f), box = homogeneous_medium(0.05f, box64);
     for (uint32_t i = 0; i < 1000; ++i) {
         // From face to face, away from the rounded edges.
         vec3 from = random_point(vec3(2), vec3(61), i, 0), to = random_point(vec3(2), vec3(61), i, 1);
@@ -207,7 +207,7 @@ TEST(OpticalDepth, SameUnderAnyAffineTransform) {
     for (const dmat4& matrix : matrices) {
         SparseVolume volume = constant_box(64, 1);
         volume.index_to_world = matrix;
-        const Medium bricks = medium_of(volume, 0.05f), box = placed(even_medium(0.05f, box64), mat4(matrix));
+        const Medium bricks = medium_of(volume, 0.05f), box = placed(homogeneous_medium(0.05f, box64), mat4(matrix));
         for (uint32_t i = 0; i < 200; ++i) {
             vec3 from = random_point(vec3(20), vec3(44), i, 0), to = random_point(vec3(20), vec3(44), i, 1);
             from[i % 3] = -20, to[i % 3] = 90;
@@ -247,7 +247,8 @@ TEST(OpticalDepth, TwoHalvesEqualOne) {
     const SparseVolume half =
         volume_of(ivec3(0), ivec3(31), [](int x, int y, int z) { return exact_noise(x, y, z) / 2; });
     const std::vector<Medium> two{medium_of(half), medium_of(half)}, one{medium_of(whole)};
-    const std::vector<Medium> mixed{medium_of(half), even_medium(0.25f), medium_of(half), even_medium(0.75f)};
+    const std::vector<Medium> mixed{medium_of(half), homogeneous_medium(0.25f), medium_of(half),
+                                    homogeneous_medium(0.75f)};
     for (uint32_t i = 0; i < 100; ++i) {
         const Ray ray = ray_between(random_point(vec3(-9), vec3(9), i, 0), random_point(vec3(9), vec3(40), i, 1));
         const double depth = optical_depth(one, ray);
@@ -295,8 +296,8 @@ TEST(OpticalDepth, SameFarFromTheOrigin) {
 }
 
 TEST(OpticalDepth, AxisParallelRaysAreNeverNaN) {
-    const Medium media[] = {medium_of(volume_of(ivec3(0), ivec3(23), exact_noise)), even_medium(1, {vec3(0), vec3(23)}),
-                            height_fog(1, 4, 3, {vec3(0), vec3(23)})};
+    const Medium media[] = {medium_of(volume_of(ivec3(0), ivec3(23), exact_noise)),
+                            homogeneous_medium(1, {vec3(0), vec3(23)}), height_fog(1, 4, 3, {vec3(0), vec3(23)})};
     for (uint32_t i = 0; i < 100000; ++i) {
         // Grid planes, brick faces, bounds and their neighbours are the places to go wrong.
         vec3 origin = glm::round(random_point(vec3(-2), vec3(26), i, 0));

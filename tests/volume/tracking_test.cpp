@@ -40,8 +40,8 @@ std::vector<Case> cases() {
     const Medium grid = medium_of(holey_volume(), 1.3f);
     const vec3 middle = grid.bricks->bounds.center();
     return {
-        {"even", even_medium(0.7f, {vec3(-1), vec3(1)}), {{-3, -0.9f, -0.8f}, slanted, 10}},
-        {"even, ray ends inside", even_medium(0.7f), {{-3, 0.2f, 0.1f}, slanted, 1.5f}},
+        {"even", homogeneous_medium(0.7f, {vec3(-1), vec3(1)}), {{-3, -0.9f, -0.8f}, slanted, 10}},
+        {"even, ray ends inside", homogeneous_medium(0.7f), {{-3, 0.2f, 0.1f}, slanted, 1.5f}},
         {"height, up", height_fog(0.4f, -1, 2), {{0, -3, 0}, slanted, 60}},
         {"height, down", height_fog(0.4f, -1, 2), {{0, 9, 0}, -slanted, 40}},
         {"height, level", height_fog(0.4f, -1, 2), {{0, 0.5f, 0}, {1, 0, 0}, 4}},
@@ -101,7 +101,7 @@ TEST(Tracking, StretchesOfARayMultiply) {
 TEST(Tracking, EndlessFogEndsEveryRay) {
     RandomStream random{3};
     int lookups = 0;
-    const Medium fog = even_medium(1e-3f);
+    const Medium fog = homogeneous_medium(1e-3f);
     const Ray ray{{0, 0, 0}, {1, 0, 0}};
     EXPECT_EQ(ratio_transmittance(fog, ray, {0, infinity}, random, lookups), 0);
     EXPECT_LT(collision_distance(fog, ray, {0, infinity}, 0.999f, random, lookups), 1e4f);

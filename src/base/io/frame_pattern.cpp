@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t most_digits = 12;
+constexpr size_t max_digits = 12;
 
 struct Token {
     size_t start = 0, length = 0;
@@ -66,7 +66,7 @@ std::optional<Token> find_token(std::string_view pattern) {
         if (pattern[at] == '$') token = dollar_token(pattern, at);
         at += token ? token->length : 1;
         if (!token) continue;
-        if (token->digits > most_digits) complain(pattern, token->start, "a frame number takes at most 12 digits");
+        if (token->digits > max_digits) complain(pattern, token->start, "a frame number takes at most 12 digits");
         if (found) complain(pattern, token->start, "a second place for the frame number");
         found = token;
     }

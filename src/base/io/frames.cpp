@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int64_t most_frames = 1000000;
+constexpr int64_t max_frames = 1000000;
 
 // Reads a frame range from left to right; every complaint names the column it stands at.
 class Reader {
@@ -83,7 +83,7 @@ std::vector<int> parse_frames(std::string_view text) {
         const size_t start = reader.column();
         const Range range = parse_item(reader);
         total += range.count();
-        if (total > most_frames) reader.complain(start, "more than " + std::to_string(most_frames) + " frames");
+        if (total > max_frames) reader.complain(start, "more than " + std::to_string(max_frames) + " frames");
         for (int64_t i = 0; i < range.count(); ++i) {
             const int frame = static_cast<int>(range.first + i * range.step);
             if (seen.insert(frame).second) frames.push_back(frame);

@@ -10,8 +10,8 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t most_levels = 64;
-constexpr size_t most_values = size_t{1} << 20;
+constexpr size_t max_levels = 64;
+constexpr size_t max_values = size_t{1} << 20;
 
 std::string position_text(std::string_view text, size_t position) {
     std::string_view before = text.substr(0, position ? std::min(position - 1, text.size()) : 0);
@@ -75,15 +75,15 @@ private:
     bool number(double value) { return add(Json::Kind::number).number = value, true; }
 
     bool open(Json::Kind kind) {
-        if (levels_.size() >= most_levels)
-            refuse(json_place(file_, next_pointer()), "nested deeper than " + std::to_string(most_levels) + " levels");
+        if (levels_.size() >= max_levels)
+            refuse(json_place(file_, next_pointer()), "nested deeper than " + std::to_string(max_levels) + " levels");
         levels_.push_back({&add(kind), {}});
         return true;
     }
 
     // The new value's place stays put while it is open: its parent only grows after it is complete.
     Json& add(Json::Kind kind) {
-        if (++count_ > most_values) refuse(file_, "more than " + std::to_string(most_values) + " values");
+        if (++count_ > max_values) refuse(file_, "more than " + std::to_string(max_values) + " values");
         Json* place = &root;
         if (!levels_.empty()) {
             Json& parent = *levels_.back().value;

@@ -110,9 +110,9 @@ void Temporary::fail_with(const char* step) const {
 }
 
 void Temporary::write(const char* bytes, size_t count) {
-    constexpr size_t most_at_once = size_t{1} << 30;
+    constexpr size_t max_at_once = size_t{1} << 30;
     while (count > 0) {
-        const ssize_t written = ::write(descriptor_, bytes, std::min(count, most_at_once));
+        const ssize_t written = ::write(descriptor_, bytes, std::min(count, max_at_once));
         if (written < 0 && errno == EINTR) continue;
         if (written == 0) errno = ENOSPC;
         if (written <= 0) fail_with("cannot write");

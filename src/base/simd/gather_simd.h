@@ -20,7 +20,7 @@ HWY_INLINE void gather_pairs(const float* base, const Ints& index, Floats& first
         const auto offset = hn::ShiftLeft<2>(hn::PromoteTo(PairTag(), half));
         return hn::BitCast(FloatTag(), hn::GatherOffset(PairTag(), reinterpret_cast<const int64_t*>(base), offset));
     };
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto low = gathered(hn::LowerHalf(hn::Half<IntTag>(), index.part[i]));
         const auto high = gathered(hn::UpperHalf(hn::Half<IntTag>(), index.part[i]));
         first.part[i] = hn::ConcatEven(FloatTag(), high, low);

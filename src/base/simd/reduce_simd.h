@@ -12,7 +12,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 HWY_INLINE float least(const Floats& a) {
     auto result = a.part[0];
-    for (size_t i = 1; i < parts; ++i) result = hn::Min(result, a.part[i]);
+    for (size_t i = 1; i < vectors_per_packet; ++i) result = hn::Min(result, a.part[i]);
     return hn::GetLane(hn::MinOfLanes(FloatTag(), result));
 }
 HWY_INLINE float most(const Floats& a) { return -least(-a); }

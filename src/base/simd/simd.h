@@ -29,27 +29,27 @@ namespace hn = hwy::HWY_NAMESPACE;
 using FloatTag = hn::ScalableTag<float>;
 using IntTag = hn::ScalableTag<int32_t>;
 inline constexpr size_t lane_step = HWY_LANES(float);
-inline constexpr size_t parts = 16 / lane_step;
+inline constexpr size_t vectors_per_packet = 16 / lane_step;
 
 struct Mask16 {
-    hn::Mask<FloatTag> part[parts];
+    hn::Mask<FloatTag> part[vectors_per_packet];
 };
 
 struct Floats {
-    hn::Vec<FloatTag> part[parts];
+    hn::Vec<FloatTag> part[vectors_per_packet];
 
     Floats() = default;
     HWY_INLINE Floats(float value) {
-        for (size_t i = 0; i < parts; ++i) part[i] = hn::Set(FloatTag(), value);
+        for (size_t i = 0; i < vectors_per_packet; ++i) part[i] = hn::Set(FloatTag(), value);
     }
 };
 
 struct Ints {
-    hn::Vec<IntTag> part[parts];
+    hn::Vec<IntTag> part[vectors_per_packet];
 
     Ints() = default;
     HWY_INLINE Ints(int32_t value) {
-        for (size_t i = 0; i < parts; ++i) part[i] = hn::Set(IntTag(), value);
+        for (size_t i = 0; i < vectors_per_packet; ++i) part[i] = hn::Set(IntTag(), value);
     }
 };
 
@@ -57,13 +57,13 @@ struct Ints {
 #define TYNDALL_SIMD_UNARY(Type, name, expression)                                                                     \
     HWY_INLINE Type name(const Type& a) {                                                                              \
         Type r;                                                                                                        \
-        for (size_t i = 0; i < parts; ++i) r.part[i] = expression;                                                     \
+        for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = expression;                                        \
         return r;                                                                                                      \
     }
 #define TYNDALL_SIMD_BINARY(Result, Type, name, expression)                                                            \
     HWY_INLINE Result name(const Type& a, const Type& b) {                                                             \
         Result r;                                                                                                      \
-        for (size_t i = 0; i < parts; ++i) r.part[i] = expression;                                                     \
+        for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = expression;                                        \
         return r;                                                                                                      \
     }
 TYNDALL_SIMD_BINARY(Floats, Floats, operator+, hn::Add(a.part[i], b.part[i]))
@@ -98,61 +98,61 @@ TYNDALL_SIMD_BINARY(Ints, Ints, max, hn::Max(a.part[i], b.part[i]))
 // a·b + c in one rounding (where the instruction set has it).
 HWY_INLINE Floats fused(const Floats& a, const Floats& b, const Floats& c) {
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::MulAdd(a.part[i], b.part[i], c.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::MulAdd(a.part[i], b.part[i], c.part[i]);
     return r;
 }
 
 // where ? a : b
 HWY_INLINE Floats select(const Mask16& where, const Floats& a, const Floats& b) {
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::IfThenElse(where.part[i], a.part[i], b.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::IfThenElse(where.part[i], a.part[i], b.part[i]);
     return r;
 }
 HWY_INLINE Floats zero_unless(const Mask16& where, const Floats& a) {
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::IfThenElseZero(where.part[i], a.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::IfThenElseZero(where.part[i], a.part[i]);
     return r;
 }
 HWY_INLINE bool any(const Mask16& a) {
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         if (!hn::AllFalse(FloatTag(), a.part[i])) return true;
     return false;
 }
 
 HWY_INLINE Floats load(const float* from) { // 16 floats, any alignment
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::LoadU(FloatTag(), from + i * lane_step);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::LoadU(FloatTag(), from + i * lane_step);
     return r;
 }
 HWY_INLINE void store(const Floats& a, float* to) {
-    for (size_t i = 0; i < parts; ++i) hn::StoreU(a.part[i], FloatTag(), to + i * lane_step);
+    for (size_t i = 0; i < vectors_per_packet; ++i) hn::StoreU(a.part[i], FloatTag(), to + i * lane_step);
 }
 HWY_INLINE Ints load(const int32_t* from) {
     Ints r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::LoadU(IntTag(), from + i * lane_step);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::LoadU(IntTag(), from + i * lane_step);
     return r;
 }
 HWY_INLINE void store(const Ints& a, int32_t* to) {
-    for (size_t i = 0; i < parts; ++i) hn::StoreU(a.part[i], IntTag(), to + i * lane_step);
+    for (size_t i = 0; i < vectors_per_packet; ++i) hn::StoreU(a.part[i], IntTag(), to + i * lane_step);
 }
 HWY_INLINE Floats to_floats(const Ints& a) {
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::ConvertTo(FloatTag(), a.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::ConvertTo(FloatTag(), a.part[i]);
     return r;
 }
 HWY_INLINE Ints truncate(const Floats& a) { // towards zero
     Ints r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::ConvertTo(IntTag(), a.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::ConvertTo(IntTag(), a.part[i]);
     return r;
 }
 HWY_INLINE Floats gather(const float* base, const Ints& index) {
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::GatherIndex(FloatTag(), base, index.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::GatherIndex(FloatTag(), base, index.part[i]);
     return r;
 }
 HWY_INLINE Ints gather(const int32_t* base, const Ints& index) {
     Ints r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::GatherIndex(IntTag(), base, index.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::GatherIndex(IntTag(), base, index.part[i]);
     return r;
 }
 
@@ -190,13 +190,13 @@ HWY_INLINE void split_half_pairs(hn::Vec<hn::ScalableTag<uint32_t>> pair, size_t
     second.part[i] = hn::PromoteTo(FloatTag(), hn::BitCast(HalfTag(), high));
 }
 HWY_INLINE void load_half_pairs(const uint32_t* from, Floats& first, Floats& second) {
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         split_half_pairs(hn::LoadU(hn::ScalableTag<uint32_t>(), from + i * lane_step), i, first, second);
 }
 
 // Two neighbouring half floats per lane: base[index] and base[index + 1]. Reads 4 bytes at each index.
 HWY_INLINE void gather_half_pairs(const uint16_t* base, const Ints& index, Floats& first, Floats& second) {
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto offset = hn::ShiftLeft<1>(index.part[i]);
         const auto pair = words_at(reinterpret_cast<const char*>(base), offset);
         split_half_pairs(hn::BitCast(hn::ScalableTag<uint32_t>(), pair), i, first, second);
@@ -216,7 +216,7 @@ HWY_INLINE Floats exp(const Floats& value) {
     p = fused(p, r, 5.0000001201e-1f);
     p = fused(p, r * r, r + 1.0f);
     Floats result;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(IntTag(), n.part[i]), hn::Set(IntTag(), 127)));
         result.part[i] = hn::Mul(p.part[i], hn::BitCast(FloatTag(), exponent));
     }

@@ -1,4 +1,4 @@
-#include "measure/chart/kept.h"
+#include "measure/chart/earlier_points.h"
 
 #include "base/error.h"
 #include "base/io/file.h"
@@ -191,7 +191,7 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
             control.progress(share_of_planning * static_cast<double>(&rung - rungs.data()) /
                              static_cast<double>(rungs.size()));
         Task task{rung, point_hash(stage, rung, references, files), {}, 0};
-        task.kept = kept_point(stage.job.directory, rung, task.hash);
+        task.kept = cached_point(stage.job.directory, rung, task.hash);
         const LeftOut* before = chart.left_out.empty() ? nullptr : &chart.left_out.back();
         const bool goes_on = before && before->mode == rung.mode->name;
         if (!task.kept) task.seconds = goes_on ? before->seconds : expected_seconds(stage, rung);

@@ -64,7 +64,7 @@ struct LeftOut {
 
 struct ChartedMode {
     std::string name, summary;
-    Accuracy accuracy = Accuracy::look;
+    Accuracy accuracy = Accuracy::artistic;
     Limitations limitations;
 };
 

@@ -44,13 +44,13 @@ double uncertainty(double square, double deviation, double mean) {
     return relative(std::sqrt(root * root + deviation) - root, mean);
 }
 
-double rel_mse(const Yardstick& yardstick, const Image<vec3>& color) {
-    const Image<vec3>&a = yardstick.halves[0].color, &b = yardstick.halves[1].color;
-    const double epsilon = rel_mse_epsilon * yardstick.mean * yardstick.mean;
+double rel_mse(const ReferenceMetrics& reference_metrics, const Image<vec3>& color) {
+    const Image<vec3>&a = reference_metrics.halves[0].color, &b = reference_metrics.halves[1].color;
+    const double epsilon = rel_mse_epsilon * reference_metrics.mean * reference_metrics.mean;
     double sum = 0;
     for (size_t i = 0; i < color.pixels.size(); ++i)
         for (int c = 0; c < 3; ++c) {
-            const double own = color.pixels[i][c], r = yardstick.shown_mean.color.pixels[i][c];
+            const double own = color.pixels[i][c], r = reference_metrics.shown_mean.color.pixels[i][c];
             sum += (own - a.pixels[i][c]) * (own - b.pixels[i][c]) / (r * r + epsilon);
         }
     return std::max(sum, 0.0) / (3 * static_cast<double>(color.pixels.size()));
@@ -61,8 +61,8 @@ double bias(const Image<vec3>& picture, const std::array<const Image<vec3>*, 2>&
 }
 }
 
-Yardstick make_yardstick(const Reference& reference, bool lights_only) {
-    Yardstick result;
+ReferenceMetrics make_yardstick(const Reference& reference, bool lights_only) {
+    ReferenceMetrics result;
     result.halves = reference.halves;
     result.shown_mean = mean_of(reference.halves);
     if (lights_only) {
@@ -78,39 +78,40 @@ Yardstick make_yardstick(const Reference& reference, bool lights_only) {
     return result;
 }
 
-Image<vec3> whole(const Yardstick& yardstick, const Image<vec3>& color) {
+Image<vec3> whole(const ReferenceMetrics& reference_metrics, const Image<vec3>& color) {
     Image<vec3> result = color;
-    for (size_t i = 0; i < yardstick.added.color.pixels.size(); ++i)
-        result.pixels[i] += yardstick.added.color.pixels[i];
+    for (size_t i = 0; i < reference_metrics.added.color.pixels.size(); ++i)
+        result.pixels[i] += reference_metrics.added.color.pixels[i];
     return result;
 }
 
-ChartErrors chart_errors(const Yardstick& yardstick, const ColorLayers& picture) {
-    const ColorLayers &a = yardstick.halves[0], &b = yardstick.halves[1];
+ChartErrors chart_errors(const ReferenceMetrics& reference_metrics, const ColorLayers& picture) {
+    const ColorLayers &a = reference_metrics.halves[0], &b = reference_metrics.halves[1];
     const double square = mean_square(picture.color, a.color, b.color);
     const double fog_square = mean_square(picture.inscatter, a.inscatter, b.inscatter);
     ChartErrors result;
-    result.rmse = root_share(square, yardstick.mean);
-    result.inscatter_rmse = root_share(fog_square, yardstick.inscatter_mean);
+    result.rmse = root_share(square, reference_metrics.mean);
+    result.inscatter_rmse = root_share(fog_square, reference_metrics.inscatter_mean);
     result.error = std::max(result.rmse, result.inscatter_rmse);
 
-    const double own = uncertainty(square, noise_of_square(picture.color, a.color, b.color), yardstick.mean);
+    const double own = uncertainty(square, noise_of_square(picture.color, a.color, b.color), reference_metrics.mean);
     const double fog_noise = noise_of_square(picture.inscatter, a.inscatter, b.inscatter);
-    result.inscatter_uncertainty = uncertainty(fog_square, fog_noise, yardstick.inscatter_mean);
+    result.inscatter_uncertainty = uncertainty(fog_square, fog_noise, reference_metrics.inscatter_mean);
     result.uncertainty = result.inscatter_rmse > result.rmse ? result.inscatter_uncertainty : own;
-    result.bias = bias(picture.color, {&a.color, &b.color}, yardstick.mean);
-    result.inscatter_bias = bias(picture.inscatter, {&a.inscatter, &b.inscatter}, yardstick.inscatter_mean);
-    result.rel_mse = rel_mse(yardstick, picture.color);
-    result.flip = flip_mean(flip_hdr(whole(yardstick, picture.color), yardstick.shown_mean.color,
-                                     yardstick.viewing.exposures, yardstick.viewing.pixels_per_degree));
+    result.bias = bias(picture.color, {&a.color, &b.color}, reference_metrics.mean);
+    result.inscatter_bias = bias(picture.inscatter, {&a.inscatter, &b.inscatter}, reference_metrics.inscatter_mean);
+    result.rel_mse = rel_mse(reference_metrics, picture.color);
+    result.flip = flip_mean(flip_hdr(whole(reference_metrics, picture.color), reference_metrics.shown_mean.color,
+                                     reference_metrics.viewing.exposures, reference_metrics.viewing.pixels_per_degree));
     return result;
 }
 
-double fitted_gain(const Yardstick& yardstick, const ColorLayers& picture) {
+double fitted_gain(const ReferenceMetrics& reference_metrics, const ColorLayers& picture) {
     double product = 0, square = 0;
     for (size_t i = 0; i < picture.inscatter.pixels.size(); ++i) {
         const dvec3 own = picture.inscatter.pixels[i];
-        const dvec3 a = yardstick.halves[0].inscatter.pixels[i], b = yardstick.halves[1].inscatter.pixels[i];
+        const dvec3 a = reference_metrics.halves[0].inscatter.pixels[i],
+                    b = reference_metrics.halves[1].inscatter.pixels[i];
         product += 0.5 * glm::dot(own, a + b), square += glm::dot(own, own);
     }
     return square > 0 ? product / square : 1;
@@ -126,7 +127,7 @@ ColorLayers with_gain(const ColorLayers& picture, double gain) {
     return result;
 }
 
-double chart_flicker(std::span<const Yardstick> frames, std::span<const ColorLayers> pictures) {
+double chart_flicker(std::span<const ReferenceMetrics> frames, std::span<const ColorLayers> pictures) {
     assert(frames.size() == pictures.size());
     double squares = 0, mean = 0;
     for (size_t t = 0; t < frames.size(); ++t) {

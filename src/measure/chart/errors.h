@@ -16,7 +16,7 @@ struct ChartErrors {
 };
 
 // The reference as one kind of mode is measured against it.
-struct Yardstick {
+struct ReferenceMetrics {
     std::array<ColorLayers, 2> halves;
     ColorLayers shown_mean; // the whole reference, to look at and to be a share of
     ColorLayers added;      // to a picture to make it whole; empty = nothing
@@ -25,18 +25,18 @@ struct Yardstick {
 };
 
 // `lights_only`: a picture without ambient light, emission and background is measured.
-Yardstick make_yardstick(const Reference& reference, bool lights_only);
+ReferenceMetrics make_yardstick(const Reference& reference, bool lights_only);
 
 // The picture with what it was measured without.
-Image<vec3> whole(const Yardstick& yardstick, const Image<vec3>& color);
+Image<vec3> whole(const ReferenceMetrics& reference_metrics, const Image<vec3>& color);
 
-ChartErrors chart_errors(const Yardstick& yardstick, const ColorLayers& picture);
+ChartErrors chart_errors(const ReferenceMetrics& reference_metrics, const ColorLayers& picture);
 
 // The factor on a picture's fog light that brings it closest to the reference's: <I, R> / <I, I>; 1 for black fog.
-double fitted_gain(const Yardstick& yardstick, const ColorLayers& picture);
+double fitted_gain(const ReferenceMetrics& reference_metrics, const ColorLayers& picture);
 ColorLayers with_gain(const ColorLayers& picture, double gain);
 
 // Changes from frame to frame that the reference lacks: root of their mean square / its mean. Without the noise of the
 // reference; NaN for fewer than two frames.
-double chart_flicker(std::span<const Yardstick> frames, std::span<const ColorLayers> pictures);
+double chart_flicker(std::span<const ReferenceMetrics> frames, std::span<const ColorLayers> pictures);
 }

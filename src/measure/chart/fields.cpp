@@ -34,8 +34,8 @@ const std::vector<ChartField>& chart_fields() {
          FIELD(fog_error)},
         {"fog_uncertainty", "standard deviation of that", FIELD(fog_uncertainty)},
         {"flicker", "changes between frames that the reference lacks / its mean, at pixel centres", FIELD(flicker)},
-        {"gain", "of a look: the factor on its fog light that fits best", FIELD(gain)},
-        {"fitted_error", "of a look: error after that", FIELD(fitted.error)},
+        {"gain", "of an artistic mode: the factor on its fog light that fits best", FIELD(gain)},
+        {"fitted_error", "of an artistic mode: error after that", FIELD(fitted.error)},
         {"fitted_rmse_rel", "rmse_rel after that", FIELD(fitted.rmse)},
         {"fitted_inscatter_rmse_rel", "inscatter_rmse_rel after that", FIELD(fitted.inscatter_rmse)},
         {"fitted_rel_mse", "rel_mse after that", FIELD(fitted.rel_mse)},
@@ -56,7 +56,7 @@ std::string point_name(const ChartPoint& point) {
     return point.mode + "." + std::to_string(static_cast<int>(point.rung));
 }
 
-bool is_look(const ChartPoint& point) { return find_mode(point.mode).accuracy == Accuracy::look; }
+bool is_look(const ChartPoint& point) { return find_mode(point.mode).accuracy == Accuracy::artistic; }
 
 PointFiles files_of(const ChartPoint& point) {
     const std::filesystem::path values = "points", pictures = "pictures";

@@ -18,7 +18,7 @@
 namespace tyndall {
 namespace {
 constexpr double shortest_measurement = 0.25; // seconds of runs, which quick pictures take more of
-constexpr int most_runs = 5;
+constexpr int max_runs = 5;
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -73,7 +73,7 @@ Layers timed_run(const ChartStage& stage, const Mode& mode, const Settings& sett
     non_finite = static_cast<double>(stats.non_finite);
 
     Snapshot next = seen_by(mode, stage.next);
-    next.kept_before = now.kept;
+    next.cache_before = now.cache;
     const View next_view = view_for(stage, settings, size, stage.next_frame);
     const auto start = Clock::now();
     const Prepared prepared = prepare_frame(mode, next_view, next, settings, nullptr);
@@ -104,12 +104,12 @@ void measure_centers(const ChartStage& stage, const Mode& mode, Settings setting
     FrameStats stats;
     Layers layers = render_frame(mode, view, seen_by(mode, stage.snapshot), settings, options, stats);
     const ColorLayers picture{std::move(layers.color), std::move(layers.inscatter)};
-    const Yardstick& yardstick = lights_only(mode) ? stage.centers_lights : stage.centers_all;
-    const ChartErrors errors = chart_errors(yardstick, picture);
+    const ReferenceMetrics& reference_metrics = lights_only(mode) ? stage.centers_lights : stage.centers_all;
+    const ChartErrors errors = chart_errors(reference_metrics, picture);
     point.fog_error = errors.inscatter_rmse, point.fog_uncertainty = errors.inscatter_uncertainty;
     if (is_look(point))
         point.fitted_fog_error =
-            chart_errors(yardstick, with_gain(picture, fitted_gain(yardstick, picture))).inscatter_rmse;
+            chart_errors(reference_metrics, with_gain(picture, fitted_gain(reference_metrics, picture))).inscatter_rmse;
 }
 
 double flicker(const ChartStage& stage, const Mode& mode, Settings settings) {
@@ -182,7 +182,7 @@ MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
     Times times;
     ColorLayers picture;
     const auto start = Clock::now();
-    for (int run = 0; run < stage.job.runs || (run < most_runs && seconds_since(start) < shortest_measurement); ++run) {
+    for (int run = 0; run < stage.job.runs || (run < max_runs && seconds_since(start) < shortest_measurement); ++run) {
         const auto part = [&](double done) { progress((std::min(run, stage.job.runs - 1) + done) / stage.job.runs); };
         Layers layers = timed_run(stage, mode, settings, part, times, point.non_finite);
         picture = {std::move(layers.color), std::move(layers.inscatter)};
@@ -191,14 +191,14 @@ MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
     measure_centers(stage, mode, settings, point);
     point.flicker = flicker(stage, mode, settings);
 
-    const Yardstick& yardstick = lights_only(mode) ? stage.lights : stage.all;
-    point.errors = chart_errors(yardstick, picture);
+    const ReferenceMetrics& reference_metrics = lights_only(mode) ? stage.lights : stage.all;
+    point.errors = chart_errors(reference_metrics, picture);
     if (is_look(point)) {
-        point.gain = fitted_gain(yardstick, picture);
-        point.fitted = chart_errors(yardstick, with_gain(picture, point.gain));
+        point.gain = fitted_gain(reference_metrics, picture);
+        point.fitted = chart_errors(reference_metrics, with_gain(picture, point.gain));
     }
-    result.picture = whole(yardstick, picture.color);
-    result.errors = error_map(result.picture, yardstick.shown_mean.color, yardstick.mean);
+    result.picture = whole(reference_metrics, picture.color);
+    result.errors = error_map(result.picture, reference_metrics.shown_mean.color, reference_metrics.mean);
     return result;
 }
 }

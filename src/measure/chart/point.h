@@ -20,9 +20,9 @@ struct ChartStage {
     std::vector<SequenceFrame> sequence;
     ivec2 sequence_size{0};
     // For modes that are measured by all light, and for those that are measured by that of the lights alone.
-    Yardstick all, lights;
-    Yardstick centers_all, centers_lights; // at pixel centres
-    std::vector<Yardstick> sequence_all, sequence_lights;
+    ReferenceMetrics all, lights;
+    ReferenceMetrics centers_all, centers_lights; // at pixel centres
+    std::vector<ReferenceMetrics> sequence_all, sequence_lights;
     std::atomic<bool>* cancel = nullptr;
 };
 

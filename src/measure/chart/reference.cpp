@@ -11,7 +11,7 @@
 #include "render/sequence/job.h"
 #include "render/sequence/resume.h"
 #include "scene/light.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 
@@ -117,7 +117,7 @@ std::string half_hash(const Shot& shot, const RenderRequest& request, ReferenceS
 
 Snapshot fresh(const Snapshot& snapshot) {
     Snapshot result = snapshot;
-    result.kept = std::make_shared<Kept>(), result.kept_before = nullptr;
+    result.cache = std::make_shared<FrameCache>(), result.cache_before = nullptr;
     return result;
 }
 

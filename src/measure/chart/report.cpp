@@ -2,7 +2,7 @@
 #include "measure/chart/report.h"
 
 #include "base/io/json.h"
-#include "measure/chart/kept.h"
+#include "measure/chart/earlier_points.h"
 #include "measure/report/json_values.h"
 #include "trace/snapshot.h"
 

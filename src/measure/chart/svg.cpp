@@ -253,7 +253,7 @@ std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what) {
     Drawing drawing;
     for (const ChartedMode& mode : chart.modes) {
         add_series(frame, mode.name, false, drawing);
-        if (mode.accuracy == Accuracy::look) add_series(frame, mode.name, true, drawing);
+        if (mode.accuracy == Accuracy::artistic) add_series(frame, mode.name, true, drawing);
     }
     return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + n(width) + " " + n(height) +
            "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + front(frame) +

@@ -72,7 +72,7 @@ void add_reference(const Prepared& prepared, const RayPart& part, RayStory& stor
 }
 
 // The surface the ray has come to.
-void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const Stretches& s,
+void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const PathPacket& s,
                  const SurfacePoint& point, double distance, RayStory& story) {
     const Path& path = s.path[0];
     const uint32_t points = static_cast<uint32_t>(scene.truth.terms.light_points);
@@ -100,11 +100,11 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
 // The ray from surface to surface, as trace_samples() goes.
 void follow(const RayScene& scene, RayStory& story) {
     const Prepared prepared = prepare_frame(main_mode(), scene.view, scene.snapshot, scene.truth, nullptr);
-    Stretches s;
+    PathPacket s;
     PixelSample sample;
     start_paths(scene.view, {&story.pixel, 1}, 0, s, {&sample, 1});
     story.origin = s.path[0].ray.origin, story.direction = s.path[0].ray.direction;
-    for (int layer = 0; layer < most_layers; ++layer) {
+    for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(scene.snapshot, layer, s);
         Path& path = s.path[0];
         const bool open = !s.hit(0);

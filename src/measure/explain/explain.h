@@ -78,7 +78,7 @@ struct RayStep {
 // What a mode says of the ray.
 struct Answer {
     std::string mode;
-    Accuracy accuracy = Accuracy::look;
+    Accuracy accuracy = Accuracy::artistic;
     vec3 inscatter{0}; // fog light
     vec3 color{0};     // with what lies behind the fog
     float transmittance = 1, validity = 1;

@@ -133,7 +133,7 @@ std::vector<LightAtStep> dimmed(const LightDepth& depth, const Ray& ray, std::sp
 
 // Light scattered towards the eye in the middle of a step, when all of the light is seen.
 vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& part, const Place& place) {
-    const ArrivingAt arriving = arriving_at(along, place.middle());
+    const LightSamplesAt arriving = arriving_at(along, place.middle());
     const double cosine = glm::dot(arriving.to_light, dvec3(part.ray.direction));
     dvec3 sum(0);
     for (size_t m = 0; m < place.densities.size(); ++m) {

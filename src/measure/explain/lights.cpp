@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 constexpr int blocker_places = 5;    // along a stretch
 constexpr size_t blocker_points = 8; // of a soft light
-constexpr int most_sheets = 8;       // BLEND surfaces before the blocker
+constexpr int max_sheets = 8;        // BLEND surfaces before the blocker
 constexpr double shortest = 1e-7;    // stretch, as a share of the ray: less is rounding
 
 // Where one more or one less point of the light is seen, or where its reach begins or ends.
@@ -71,7 +71,7 @@ Ray ray_to(const LightPoint& to, dvec3 from) {
 // The first surface that lets nothing through, or else the first one; -1 = none.
 int blocking_instance(const Occluders& occluders, Ray ray) {
     int first = -1;
-    for (int sheet = 0; sheet < most_sheets; ++sheet) {
+    for (int sheet = 0; sheet < max_sheets; ++sheet) {
         Hits hits;
         occluders.closest({&ray, 1}, 0, hits);
         if (hits.instance[0] < 0) return first;

@@ -10,13 +10,13 @@ namespace tyndall {
 using namespace ray_drawing;
 
 namespace {
-constexpr size_t most_lights = 7; // that are drawn, the brightest first
+constexpr size_t max_lights = 7; // that are drawn, the brightest first
 constexpr const char* fog_color = "#8c8c8c";
 constexpr const char* dark_color = "#4d4d4d";
 
 // Told apart by colour-blind eyes too (Okabe and Ito 2008).
-constexpr const char* light_colors[most_lights] = {"#E69F00", "#0072B2", "#009E73", "#D55E00",
-                                                   "#CC79A7", "#56B4E9", "#7a5c00"};
+constexpr const char* light_colors[max_lights] = {"#E69F00", "#0072B2", "#009E73", "#D55E00",
+                                                  "#CC79A7", "#56B4E9", "#7a5c00"};
 
 // One panel's way from values to the drawing.
 struct Panel {
@@ -183,7 +183,7 @@ void draw_surfaces(const RayStory& story, double top, double bottom, Interval<do
 
 std::string explain_svg(const RayStory& story, const StoryTitle& title) {
     const Interval<double> range = axis_of(story);
-    const std::vector<size_t> lights = drawn_lights(story, most_lights);
+    const std::vector<size_t> lights = drawn_lights(story, max_lights);
     Svg svg;
     svg.text(16, 26, title_line(story, title), Anchor::start, "font-size='15' font-weight='bold'");
     draw_fog(story, 78, range, svg);

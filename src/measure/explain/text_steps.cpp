@@ -8,8 +8,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int most_rows = 20;
-constexpr size_t most_light_columns = 4;
+constexpr int max_rows = 20;
+constexpr size_t max_light_columns = 4;
 
 // Steps put together over one stretch of the ray.
 struct Row {
@@ -46,9 +46,9 @@ Row row_of(const RayStory& story, double low, double high) {
 // Ends of rows at round distances.
 std::vector<double> row_ends(const RayStory& story) {
     const double low = story.steps.front().low, high = story.steps.back().high;
-    double length = std::pow(10.0, std::floor(std::log10((high - low) / most_rows)));
+    double length = std::pow(10.0, std::floor(std::log10((high - low) / max_rows)));
     for (const double factor : {2.0, 2.5, 2.0})
-        if ((high - low) / length > most_rows - 1) length *= factor;
+        if ((high - low) / length > max_rows - 1) length *= factor;
     std::vector<double> ends{low};
     for (double end = (std::floor(low / length) + 1) * length; end < high; end += length) ends.push_back(end);
     ends.push_back(high);
@@ -62,7 +62,7 @@ std::vector<size_t> main_lights(const RayStory& story) {
         if (luminance(story.lights[l].fog) > 0) all.push_back(l);
     std::ranges::stable_sort(
         all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
-    all.resize(std::min(all.size(), most_light_columns));
+    all.resize(std::min(all.size(), max_light_columns));
     return all;
 }
 }
@@ -70,7 +70,7 @@ std::vector<size_t> main_lights(const RayStory& story) {
 std::string steps_text(const RayStory& story) {
     if (story.steps.empty()) return {};
     const std::vector<size_t> lights = main_lights(story);
-    const bool both = 2 * lights.size() <= most_light_columns;
+    const bool both = 2 * lights.size() <= max_light_columns;
     std::string text = "Step by step (luminance, nits)\n";
     if (!lights.empty()) text += std::string(67, ' ');
     for (const size_t l : lights)

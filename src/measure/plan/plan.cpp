@@ -20,7 +20,7 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const FrameOptions options{false, nullptr, control.cancel, {}, {}};
     const Pilot pilot = make_pilot(*chosen.mode, centers, snapshot, nullptr, options, [] { return true; });
     const Measured measured = measure(pilot, *chosen.mode, snapshot, settings, options, steady_seconds);
-    const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * most_target_samples));
+    const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * max_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
     term.why = percent_text(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
@@ -46,7 +46,7 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     std::string text =
         goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
-        text = "too noisy: " + formatted("%.0f", 1.0 * most_target_samples) + " samples would not do";
+        text = "too noisy: " + formatted("%.0f", 1.0 * max_target_samples) + " samples would not do";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
@@ -62,7 +62,7 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
         Standing standing{&mode, {}, "artistic: no error bound"};
         if (mode.accuracy == Accuracy::multiple_scattering)
             standing.why = "takes no part: errors here are of light scattered once, it traces all (--mode path)";
-        else if (mode.accuracy != Accuracy::look)
+        else if (mode.accuracy != Accuracy::artistic)
             standing.why = "takes no part: it has no light scattered again, which is asked for";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))

@@ -170,7 +170,7 @@ void add_switches(Terms& terms) {
         };
     };
     const bool bricks = any_medium([](const Medium& medium) { return medium.kind == DensityKind::bricks; });
-    terms.add({"changing density", "", "even fog"}, bricks ? infinity : 0, &Terms::usual,
+    terms.add({"changing density", "", "homogeneous fog"}, bricks ? infinity : 0, &Terms::usual,
               without(&TermSettings::heterogeneity));
     terms.add({"direction of scattering", "", "isotropic"}, phase_bound(snapshot), &Terms::usual,
               without(&TermSettings::phase));

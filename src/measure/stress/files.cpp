@@ -96,7 +96,7 @@ StressScene nothing(double n) {
 }
 double anything(Trial& trial) {
     const Layers layers = trial.render();
-    double most = most_of(layers.inscatter);
+    double most = max_of(layers.inscatter);
     for (const float share : layers.transmittance.pixels) most = std::max(most, std::abs(1.0 - share));
     return most;
 }

@@ -26,7 +26,7 @@ const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 6}, vec3(0));
 
 StressScene cube(double extinction, float half = 1) {
-    return stress_scene({even_medium(static_cast<float>(extinction), {vec3(-half), vec3(half)})}, {noon}, front);
+    return stress_scene({homogeneous_medium(static_cast<float>(extinction), {vec3(-half), vec3(half)})}, {noon}, front);
 }
 StressScene cube_of(double extinction) { return cube(extinction); }
 
@@ -35,7 +35,7 @@ constexpr float wall_distance = 4;
 StressScene wall(double depth) {
     const float extinction = static_cast<float>(depth) / wall_distance;
     StressScene scene =
-        stress_scene({even_medium(extinction, {vec3(-9), vec3(9)})}, {noon},
+        stress_scene({homogeneous_medium(extinction, {vec3(-9), vec3(9)})}, {noon},
                      flat_camera({0, 0, wall_distance}, vec3(0), 2), {box_of({-8, -8, -0.1f}, {8, 8, 0}, -1)});
     return scene;
 }
@@ -54,7 +54,7 @@ double transmittance_off(Trial& trial) {
 StressScene slab(double depth) {
     const float extinction = static_cast<float>(depth) / 6;
     const Box box{vec3(-50, -50, -3), vec3(50, 50, 3)};
-    return stress_scene({even_medium(extinction, box, {PhaseKind::isotropic, 0})}, {sun_light({0, 0, -1}, 10)},
+    return stress_scene({homogeneous_medium(extinction, box, {PhaseKind::isotropic, 0})}, {sun_light({0, 0, -1}, 10)},
                         flat_camera({0, 0, 5}, vec3(0), 2));
 }
 
@@ -66,24 +66,24 @@ double slab_off(Trial& trial) {
 
 StressScene sheet(double thickness) {
     const float half = 0.5f * static_cast<float>(thickness);
-    return stress_scene({even_medium(0.05f / std::max(half, 1e-4f), {vec3(-2, -2, -half), vec3(2, 2, half)})}, {noon},
-                        camera_from({1, 1, 5}, vec3(0)));
+    return stress_scene({homogeneous_medium(0.05f / std::max(half, 1e-4f), {vec3(-2, -2, -half), vec3(2, 2, half)})},
+                        {noon}, camera_from({1, 1, 5}, vec3(0)));
 }
 
 // Rays that run in the face of the box, and beside it.
 StressScene in_the_face(double offset) {
     const float y = 1 + static_cast<float>(offset); // of the middle row
-    return stress_scene({even_medium(0.3f, {vec3(-1), vec3(1)})}, {noon}, flat_camera({0, y, 5}, {0, y, 0}, 2));
+    return stress_scene({homogeneous_medium(0.3f, {vec3(-1), vec3(1)})}, {noon}, flat_camera({0, y, 5}, {0, y, 0}, 2));
 }
 
 StressScene eye_in_fog(double extinction) {
-    return stress_scene({even_medium(static_cast<float>(extinction), {vec3(-3), vec3(3)})}, {noon},
+    return stress_scene({homogeneous_medium(static_cast<float>(extinction), {vec3(-3), vec3(3)})}, {noon},
                         camera_from({0.1f, 0.2f, 0.3f}, {0, 0, -1}));
 }
 
 StressScene endless(double extinction) {
-    return stress_scene({even_medium(static_cast<float>(extinction), everywhere())}, {point_light({1, 1.5f, 1}, 10)},
-                        front);
+    return stress_scene({homogeneous_medium(static_cast<float>(extinction), everywhere())},
+                        {point_light({1, 1.5f, 1}, 10)}, front);
 }
 
 // The camera's far plane cuts the fog, which lies 5 to 7 m away.
@@ -94,13 +94,13 @@ StressScene cut_off(double far) {
 }
 
 StressScene layer(double falloff) {
-    Medium fog = even_medium(0.3f, {vec3(-5, -1, -5), vec3(5, 3, 5)});
+    Medium fog = homogeneous_medium(0.3f, {vec3(-5, -1, -5), vec3(5, 3, 5)});
     fog.kind = DensityKind::height, fog.height_falloff = static_cast<float>(falloff);
     return stress_scene({fog}, {noon}, camera_from({0, 0.6f, 4}, {0, 0.1f, 0}));
 }
 
 StressScene glowing(double depth) {
-    Medium fog = even_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0));
+    Medium fog = homogeneous_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0));
     fog.optics.emission = vec3(3);
     return stress_scene({fog}, {}, flat_camera({0, 0, 5}, vec3(0), 2));
 }
@@ -111,8 +111,8 @@ double glow_off(Trial& trial) {
 }
 
 StressScene copies(int count) {
-    std::vector<Medium> media(static_cast<size_t>(count),
-                              even_medium(0.6f / static_cast<float>(count), {vec3(-1), vec3(1)}, forward_phase(0.4f)));
+    std::vector<Medium> media(static_cast<size_t>(count), homogeneous_medium(0.6f / static_cast<float>(count),
+                                                                             {vec3(-1), vec3(1)}, forward_phase(0.4f)));
     for (Medium& medium : media) medium.name += std::to_string(&medium - media.data());
     return stress_scene(media, {noon}, front);
 }
@@ -124,15 +124,16 @@ double copies_off(Trial& trial) {
 
 // Two clouds, one in the other, of other colour and phase.
 StressScene nested(double share) {
-    Medium inner = even_medium(2, {vec3(-0.6f), vec3(0.6f)}, forward_phase(0.7f), vec3(0.9f, 0.4f, 0.2f));
+    Medium inner = homogeneous_medium(2, {vec3(-0.6f), vec3(0.6f)}, forward_phase(0.7f), vec3(0.9f, 0.4f, 0.2f));
     inner.world_bounds.low += vec3(static_cast<float>(share)), inner.bounds = inner.world_bounds;
     inner.world_bounds.high += vec3(static_cast<float>(share)), inner.bounds = inner.world_bounds;
-    return stress_scene({even_medium(0.2f, {vec3(-1.5f), vec3(1.5f)}), inner}, {noon}, front);
+    return stress_scene({homogeneous_medium(0.2f, {vec3(-1.5f), vec3(1.5f)}), inner}, {noon}, front);
 }
 
 StressScene white(double albedo) {
     const Box box{vec3(-1), vec3(1)};
-    return stress_scene({even_medium(0.8f, box, forward_phase(0.3f), vec3(static_cast<float>(albedo)))}, {noon}, front);
+    return stress_scene({homogeneous_medium(0.8f, box, forward_phase(0.3f), vec3(static_cast<float>(albedo)))}, {noon},
+                        front);
 }
 
 StressScene bright_behind(double depth) {
@@ -158,7 +159,8 @@ double pattern_left(Trial& trial) {
 
 StressScene jittered(double steps) {
     Light slit = spot_light({0, 2, 0}, {0, -1, 0}, 10, 0.25f, 0.26f);
-    StressScene scene = stress_scene({even_medium(0.3f, {vec3(-2), vec3(2)})}, {slit}, camera_from({0, 0, 5}, vec3(0)));
+    StressScene scene =
+        stress_scene({homogeneous_medium(0.3f, {vec3(-2), vec3(2)})}, {slit}, camera_from({0, 0, 5}, vec3(0)));
     scene.settings.of<ShadowMapSettings>().steps = static_cast<int>(steps);
     scene.view.jitter = Jitter::spatiotemporal;
     return scene;

@@ -9,7 +9,7 @@
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
 
-#include "modes/fog_picture.h"
+#include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "scene/light.h"
 #include "volume/medium.h"
@@ -26,7 +26,9 @@ const std::vector<Excuse> blurred{
 const std::vector<Excuse> unseen{
     {&limitation::coarse_shafts}, {&limitation::sun_without_shadows}, {&limitation::no_shadows}};
 
-Medium dust(float extinction = 0.3f) { return even_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f)); }
+Medium dust(float extinction = 0.3f) {
+    return homogeneous_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f));
+}
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
 
 std::vector<Mesh> roof() {
@@ -169,7 +171,7 @@ double with_history(Trial& trial) {
 
 StressScene deep(double depth) {
     const float d = static_cast<float>(depth);
-    return stress_scene({even_medium(1 / d, {vec3(-2 * d, -3, -d), vec3(2 * d, 3, 0)})}, {slanting},
+    return stress_scene({homogeneous_medium(1 / d, {vec3(-2 * d, -3, -d), vec3(2 * d, 3, 0)})}, {slanting},
                         camera_from({0, 0, 1}, {0, 0, -1}));
 }
 

@@ -1,4 +1,4 @@
-// Local lights in even fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
+// Local lights in homogeneous fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
 #include "measure/stress/trial.h"
 #include "modes/cone/settings.h"
 #include "modes/froxel/limitations.h"
@@ -20,7 +20,7 @@ const std::vector<Excuse> glow{{&limitation::few_steps_for_glow, 2},
 // Froxels spread what a lamp sends through them, so that only their mean is light.
 constexpr float degree = pi / 180;
 
-Medium haze(float extinction = 0.2f) { return even_medium(extinction, {vec3(-6), vec3(6)}); }
+Medium haze(float extinction = 0.2f) { return homogeneous_medium(extinction, {vec3(-6), vec3(6)}); }
 
 StressScene spot_scene(Light light, Camera camera) { return stress_scene({haze()}, {light}, camera); }
 
@@ -79,7 +79,7 @@ StressScene behind_apex(double half_angle) {
     return spot_scene(lamp(0.5f * a, a), flat_camera({0, 4.2f, 5}, {0, 4.2f, 0}, 2));
 }
 
-double light_there(Trial& trial) { return most_of(trial.render().inscatter); }
+double light_there(Trial& trial) { return max_of(trial.render().inscatter); }
 
 StressScene wide(double half_angle) {
     const float a = static_cast<float>(half_angle) * degree;
@@ -135,7 +135,7 @@ StressScene lamp_in_thick_fog(double extinction) {
 }
 
 std::vector<StressCase> stress_lamps() {
-    constexpr std::string_view group = "lamps in even fog";
+    constexpr std::string_view group = "lamps in homogeneous fog";
     return {
         StressCase("eye-in-cone", group, "the eye enters a spot's cone", "eye to axis", "m", {4, 2, 1, 0.5, 0},
                    Claim::physical, glow, eye_in_cone),

@@ -1,9 +1,9 @@
 // The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
 #include "measure/stress/trial.h"
 #include "modes/billboard/limitations.h"
-#include "modes/picture_share.h"
 #include "modes/radial_blur/limitations.h"
 #include "modes/radial_blur/settings.h"
+#include "modes/resolution.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
@@ -21,8 +21,8 @@ const std::vector<Excuse> faded{{&limitation::card_edge_on}, {&limitation::camer
 StressScene blur_scene(Light light, Camera camera, std::vector<Mesh> meshes = {},
                        std::vector<Material> materials = {}) {
     StressScene scene =
-        stress_scene({even_medium(0.05f, cube)}, {light}, camera, std::move(meshes), std::move(materials));
-    scene.settings.of<RadialBlurSettings>().picture = PictureShare::full;
+        stress_scene({homogeneous_medium(0.05f, cube)}, {light}, camera, std::move(meshes), std::move(materials));
+    scene.settings.of<RadialBlurSettings>().resolution = Resolution::full;
     return scene;
 }
 const Camera ahead = camera_from({0, 0, 6}, vec3(0));
@@ -33,7 +33,7 @@ StressScene sun_aside(double degrees) {
     return blur_scene(sun_light({-std::sin(a), 0, std::cos(a)}, 10), ahead,
                       {box_of({-1, -1, -1}, {-0.4f, 1, 1}, -1), box_of({0.4f, -1, -1}, {1, 1, 1}, -1)});
 }
-double light_added(Trial& trial) { return most_of(trial.render().inscatter); }
+double light_added(Trial& trial) { return max_of(trial.render().inscatter); }
 
 // How much brighter than a little further in.
 double grows_outside(Trial& trial) {
@@ -115,7 +115,7 @@ StressScene wall_with_holes(int n, Camera camera) {
         meshes.push_back(box_of({-0.05f, 1.5f, -1.5f + at}, {0, 4.5f, -1.5f + at + bar}, -1));
     }
     const Box fog{vec3(0, 0, -4), vec3(6, 6, 4)};
-    return stress_scene({even_medium(0.1f, fog)}, {sun_light({1, -1, 0}, 10)}, camera, meshes);
+    return stress_scene({homogeneous_medium(0.1f, fog)}, {sun_light({1, -1, 0}, 10)}, camera, meshes);
 }
 
 Camera around_beam(double degrees) {
@@ -138,7 +138,7 @@ StressScene into_beam(double distance) {
     return wall_with_holes(1, camera_from({1.5f, 1.5f, d}, {1.5f, 1.4f, -4}));
 }
 double much_brighter(Trial& trial) {
-    return most_of(trial.render().inscatter) / most_of(trial.render(into_beam(4)).inscatter);
+    return max_of(trial.render().inscatter) / max_of(trial.render(into_beam(4)).inscatter);
 }
 
 // A table top comes up into the beam: cards fade out before it instead of being cut.

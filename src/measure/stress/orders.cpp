@@ -19,7 +19,7 @@ const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 4}, vec3(0));
 
 Medium white_box(double depth) {
-    return even_medium(static_cast<float>(depth) / 2, {vec3(-1), vec3(1)}, forward_phase(0.3f));
+    return homogeneous_medium(static_cast<float>(depth) / 2, {vec3(-1), vec3(1)}, forward_phase(0.3f));
 }
 StressScene white(double depth) { return stress_scene({white_box(depth)}, {noon}, front); }
 
@@ -90,7 +90,7 @@ StressScene under_floor(float thickness, float angle) {
     const Mesh floor = turned(box_of({-4, -thickness, -4}, {4, 0, 4}, 0), angle);
     Material grey;
     grey.base_color = vec3(0.5f);
-    return with_grid(stress_scene({even_medium(0.5f, {vec3(-1), vec3(1)})}, {sun_light({0, -1, 0}, 10)},
+    return with_grid(stress_scene({homogeneous_medium(0.5f, {vec3(-1), vec3(1)})}, {sun_light({0, -1, 0}, 10)},
                                   look_at((thickness + 0.05f) * down, 2.0f * down, vec3(0, 0, 1), 0.7f), {floor},
                                   {grey}));
 }

@@ -37,7 +37,7 @@ StressScene room_at(vec3 place, float size) {
     Camera camera = camera_from(place + size * vec3(0, 0.2f, 5), place);
     camera.near *= size;
     return stress_scene(
-        {even_medium(0.2f / size, fog, forward_phase(0.3f))}, {sun_light({0.5f, -1, 0.1f}, 10), spot}, camera,
+        {homogeneous_medium(0.2f / size, fog, forward_phase(0.3f))}, {sun_light({0.5f, -1, 0.1f}, 10), spot}, camera,
         {box({-9, 2, -9}, {-0.5f, 2.1f, 9}), box({0.5f, 2, -9}, {9, 2.1f, 9}), box({-9, -2.1f, -9}, {9, -2, 9})});
 }
 StressScene room(double) { return room_at(vec3(0), 1); }
@@ -85,7 +85,7 @@ StressScene dark(double) {
 }
 double not_black(Trial& trial) {
     const Layers layers = trial.render();
-    return std::max(most_of(layers.color), most_of(layers.inscatter));
+    return std::max(max_of(layers.color), max_of(layers.inscatter));
 }
 
 StressScene flat_view(double fov) {

@@ -14,13 +14,13 @@ const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 
 // The middle of the picture looks by 3 degrees past the sun.
 StressScene towards_sun(double g) {
-    const Medium fog = even_medium(0.4f, unit, forward_phase(static_cast<float>(g)));
+    const Medium fog = homogeneous_medium(0.4f, unit, forward_phase(static_cast<float>(g)));
     return stress_scene({fog}, {sun_light({0.05f, 0, 1}, 10)}, camera_from({0, 0, 4}, vec3(0)));
 }
 
 // A thin sheet, so that light and fog are the same seen along the sun's way and against it.
 StressScene narrow(double g, float z) {
-    const Medium fog = even_medium(0.01f, unit, forward_phase(static_cast<float>(g)));
+    const Medium fog = homogeneous_medium(0.01f, unit, forward_phase(static_cast<float>(g)));
     StressScene scene = stress_scene({fog}, {sun_light({0, 0, 1}, 10)}, camera_from({0, 0, z}, vec3(0), 1e-3f));
     scene.view.size = {8, 8};
     return scene;
@@ -40,13 +40,13 @@ StressScene kinds(double kind) {
                                 {PhaseKind::schlick, 0.5f},
                                 {PhaseKind::schlick, -0.5f},
                                 {PhaseKind::henyey_greenstein, 1e-4f}};
-    return stress_scene({even_medium(0.4f, unit, phases[static_cast<int>(kind)])}, {noon},
+    return stress_scene({homogeneous_medium(0.4f, unit, phases[static_cast<int>(kind)])}, {noon},
                         camera_from({0, 0, 4}, vec3(0)));
 }
 
 StressScene in_even_light(double depth) {
     const Medium fog =
-        even_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0.8f));
+        homogeneous_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0.8f));
     StressScene scene = stress_scene({fog}, {}, flat_camera({0, 0, 5}, vec3(0), 2));
     scene.snapshot.ambient = vec3(2);
     return scene;
@@ -58,7 +58,7 @@ double even_light_off(Trial& trial) {
 }
 
 StressScene dim_or_bright(double) {
-    return stress_scene({even_medium(0.4f, unit, forward_phase(0.3f))}, {noon}, camera_from({0, 0, 4}, vec3(0)));
+    return stress_scene({homogeneous_medium(0.4f, unit, forward_phase(0.3f))}, {noon}, camera_from({0, 0, 4}, vec3(0)));
 }
 
 // Light is linear: the picture of a sun of other strength, divided by it.
@@ -75,7 +75,7 @@ double not_linear(Trial& trial) {
 StressScene two_colours(double) {
     Light blue = spot_light({0, 1.5f, 0}, {0.2f, -1, 0}, 5, 0.4f, 0.6f);
     blue.intensity = vec3(0.2f, 0.5f, 5), blue.radius = 0.05f;
-    return stress_scene({even_medium(0.4f, unit, forward_phase(0.5f), vec3(0.9f, 0.6f, 0.3f))}, {noon, blue},
+    return stress_scene({homogeneous_medium(0.4f, unit, forward_phase(0.5f), vec3(0.9f, 0.6f, 0.3f))}, {noon, blue},
                         camera_from({0, 0, 4}, vec3(0)));
 }
 

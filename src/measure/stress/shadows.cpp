@@ -28,7 +28,9 @@ const StressMeasure fine{-1, to_truth, nullptr, 1e-3, "march shadow-volume"};
 // Half shadows as wide as the gap: up to half of its light lies elsewhere.
 const std::vector<Excuse> hard{{&limitation::hard_shadows, 0.5}, as_froxels};
 
-Medium dust(float extinction = 0.15f) { return even_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f)); }
+Medium dust(float extinction = 0.15f) {
+    return homogeneous_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f));
+}
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
 const Camera aside = camera_from({0, 0, 7}, vec3(0));
 
@@ -123,7 +125,7 @@ StressScene eye_in_shadow(double depth) {
 
 StressScene long_shadow(double size) {
     const float s = static_cast<float>(size);
-    return stress_scene({even_medium(0.5f / s, {vec3(-3 * s), vec3(3 * s)})}, {slanting},
+    return stress_scene({homogeneous_medium(0.5f / s, {vec3(-3 * s), vec3(3 * s)})}, {slanting},
                         camera_from({0, 0, 6 * s}, vec3(0)), {box_of(vec3(-s, 0.8f * s, -s), vec3(s), -1)});
 }
 
@@ -139,7 +141,7 @@ std::vector<Mesh> room(float wall) {
     return meshes;
 }
 StressScene dark_room(double wall) {
-    return stress_scene({even_medium(0.15f, {vec3(-6), vec3(6)})}, {sun_light({0.4f, -1, -0.7f}, 1e5f)},
+    return stress_scene({homogeneous_medium(0.15f, {vec3(-6), vec3(6)})}, {sun_light({0.4f, -1, -0.7f}, 1e5f)},
                         camera_from({0.3f, 0.1f, 1.7f}, {0, 0, -2}), room(static_cast<float>(wall)));
 }
 
@@ -158,10 +160,10 @@ StressScene tessellated(double squares) {
             mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
             mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
         }
-    return stress_scene({even_medium(0.15f, {vec3(-3, -3, -3), vec3(3, 1.9f, 3)})}, {slanting}, aside, {mesh});
+    return stress_scene({homogeneous_medium(0.15f, {vec3(-3, -3, -3), vec3(3, 1.9f, 3)})}, {slanting}, aside, {mesh});
 }
 
-double brightest(Trial& trial) { return most_of(trial.render().inscatter); }
+double brightest(Trial& trial) { return max_of(trial.render().inscatter); }
 
 StressScene soft(double angle) {
     Light sun = slanting;

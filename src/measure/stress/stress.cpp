@@ -29,7 +29,7 @@ std::vector<std::string_view> pieces(std::string_view text, char separator) {
 // Relative RMSE that counts as holding what a mode promises at preview.
 double promised(const Mode& mode) {
     switch (mode.accuracy) {
-    case Accuracy::even_fog:
+    case Accuracy::homogeneous:
     case Accuracy::multiple_scattering:
         return 0.03;
     default:
@@ -85,7 +85,7 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
 
 bool takes_part(const StressCase& stress, const Mode& mode) {
     if (!stress.modes.claims) return stress.modes.name == mode.name;
-    const bool physical = mode.accuracy != Accuracy::look;
+    const bool physical = mode.accuracy != Accuracy::artistic;
     const std::pair<Claim, bool> made[] = {{Claim::along_rays, mode.surfaces != Surfaces::post},
                                            {Claim::physical, physical},
                                            {Claim::noise_free, physical && !error_is_noise(mode)},

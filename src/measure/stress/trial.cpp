@@ -16,7 +16,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int most_samples = 1024; // per pixel, of a mode whose error is noise
+constexpr int max_samples = 1024; // per pixel, of a mode whose error is noise
 
 uint64_t negative_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(
@@ -83,9 +83,9 @@ double bias_to_truth(Trial& trial) {
             most = std::max(most, std::max(bias.squared, 0.0) + bias.doubt);
         }
         if (doubt <= allowed || least > allowed) return std::sqrt(least);
-        if (trial.noisy_samples >= most_samples) return std::sqrt(most);
+        if (trial.noisy_samples >= max_samples) return std::sqrt(most);
         // The doubt about the product of two errors that are noise falls with the samples.
-        while (2 * trial.noisy_samples < most_samples && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
+        while (2 * trial.noisy_samples < max_samples && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
     }
 }
 
@@ -104,7 +104,7 @@ double bias_of_mean(Trial& trial) {
         const double doubt = 2 * std::sqrt(variance / (pictures - 1));
         const double least = std::abs(mean) - doubt;
         if (doubt <= 0.5 * trial.allowed || least > trial.allowed) return std::max(0.0, least);
-        if (trial.noisy_samples >= most_samples) return std::abs(mean) + doubt;
+        if (trial.noisy_samples >= max_samples) return std::abs(mean) + doubt;
     }
 }
 }
@@ -148,7 +148,7 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-double most_of(const Image<vec3>& image) {
+double max_of(const Image<vec3>& image) {
     float most = 0;
     for (const vec3 value : image.pixels) most = std::max(most, max_component(glm::abs(value)));
     return most;

@@ -57,7 +57,7 @@ double error_of_mean(Trial& trial); // of the fog light; where noise is the only
 double leak(Trial& trial);          // the fog's mean light, by that of the same fog without surfaces
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
-double most_of(const Image<vec3>& image);
+double max_of(const Image<vec3>& image);
 
 // --- scenes ------------------------------------------------------------------------------------------------------
 constexpr ivec2 stress_size{49, 27}; // odd: the middle ray looks where the camera does

@@ -39,12 +39,12 @@ void check_phase(Checks& checks) {
 void check_transmittance(Checks& checks) {
     for (const float depth : {0.1f, 1.0f, 5.0f, 20.0f}) {
         const Scatter result =
-            reference_light(snapshot_of({even_medium(depth, unit_box)}, {}), {{0.5f, 0.5f, 3}, {0, 0, -1}, 9});
+            reference_light(snapshot_of({homogeneous_medium(depth, unit_box)}, {}), {{0.5f, 0.5f, 3}, {0, 0, -1}, 9});
         const double expected = std::exp(-static_cast<double>(depth));
         checks.add("Beer-Lambert, depth " + std::to_string(depth).substr(0, 4), result.transmittance, expected,
                    2e-5 * expected, "rounding");
     }
-    Medium height = even_medium(0.1f, everywhere());
+    Medium height = homogeneous_medium(0.1f, everywhere());
     height.kind = DensityKind::height, height.height_falloff = 10;
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
     checks.add("optical depth of height fog", optical_depth(height, ray), 1.729329434, 1e-6, "rounding");
@@ -68,7 +68,7 @@ void check_transmittance(Checks& checks) {
 }
 
 void check_emission(Checks& checks) {
-    Medium fire = even_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}, forward_phase(0), vec3(0));
+    Medium fire = homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}, forward_phase(0), vec3(0));
     fire.optics.emission = vec3(1);
     const Snapshot snapshot = snapshot_of({fire}, {});
     const Ray ray{{0, 0, 5}, {0, 0, -1}, 20};
@@ -89,7 +89,7 @@ void check_slab(Checks& checks) {
                 {"reflects, albedo .9, depth 2, seen at 60°", 0.9f, 2, 0.5f, false, 0.149628187},
                 {"transmits, albedo .9, depth 2, seen at 60°", 0.9f, 2, 0.5f, true, 0.052658840}};
     for (const auto& row : rows) {
-        const Snapshot snapshot = snapshot_of({even_medium(row.depth, slab, forward_phase(0), vec3(row.albedo))},
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(row.depth, slab, forward_phase(0), vec3(row.albedo))},
                                               {sun_light({0, -1, 0}, pi)});
         const vec3 direction(0, row.below ? row.mu : -row.mu, std::sqrt(1 - row.mu * row.mu));
         const Ray ray{vec3(0, row.below ? -2 : 3, 0), glm::normalize(direction), 100};
@@ -108,8 +108,8 @@ void check_airlight(Checks& checks) {
     } rows[] = {
         {1, 1, 1, 0.01745864}, {0.1f, 1, 5, 0.01151431}, {0.5f, 0.1f, 2, 0.40195407}, {2, 0.5f, 0.5f, 0.06983456}};
     for (const auto& row : rows) {
-        const Snapshot snapshot =
-            snapshot_of({even_medium(row.extinction, everywhere())}, {point_light({0, row.height, -row.before}, 1)});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(row.extinction, everywhere())},
+                                              {point_light({0, row.height, -row.before}, 1)});
         const std::string name = "airlight, extinction " + std::to_string(row.extinction).substr(0, 3);
         const Ray ray{{0, 0, 0}, {0, 0, -1}, row.before + 60 / row.extinction};
         checks.add(name + ", march", reference_light(snapshot, ray).radiance.x, row.value, 1e-4 * row.value, "1e-4");

@@ -38,11 +38,11 @@ void check_grids(Checks& checks) {
     checks.add("optical depth of a grid of one value", optical_depth(full, across), 1.5, 1e-6, "rounding");
 
     // Inside, light meets the same fog as in an even medium.
-    const Medium even = even_medium(1.5f, {vec3(0), vec3(1)});
+    const Medium even = homogeneous_medium(1.5f, {vec3(0), vec3(1)});
     const Ray inside{{0.5f, 0.5f, 0.9f}, {0, 0, -1}, 0.8f};
     const Light sun = sun_light({0.2f, -1, 0.1f}, 1);
     const double expected = reference_light(snapshot_of({even}, {sun}), inside).radiance.x;
-    checks.add("light in a grid of one value, and in even fog",
+    checks.add("light in a grid of one value, and in homogeneous fog",
                reference_light(snapshot_of({full}, {sun}), inside).radiance.x, expected, 1e-4 * expected, "1e-4");
 
     // Three times as fine, voxel centres and the cubes between them stay where they are.

@@ -20,7 +20,8 @@ void add(Checks& checks, const std::string& name, const RayEstimate& light, doub
 void check_furnace(Checks& checks) {
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const float g : {-0.5f, 0.0f, 0.8f}) {
-        Snapshot snapshot = snapshot_of({noise_medium(6, forward_phase(g)), even_medium(0.5f, unit_box)}, {}, vec3(1));
+        Snapshot snapshot =
+            snapshot_of({noise_medium(6, forward_phase(g)), homogeneous_medium(0.5f, unit_box)}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         add(checks, "rough fog in even surroundings, g " + std::to_string(g).substr(0, g < 0 ? 4 : 3),
             path_light(snapshot, ray, 4096), 1);
@@ -57,7 +58,7 @@ void check_slabs(Checks& checks) {
     floor.meshes = {floor_of(-2, 1e5f, 0)}, floor.instances = {{-1, 0}};
     for (const auto& row : rows) {
         Snapshot snapshot =
-            snapshot_of({even_medium(row.depth, slab, forward_phase(row.g), vec3(row.albedo))}, {}, vec3(1));
+            snapshot_of({homogeneous_medium(row.depth, slab, forward_phase(row.g), vec3(row.albedo))}, {}, vec3(1));
         add_surfaces(floor, snapshot);
         if (row.reflected > 0)
             add(checks, std::string(row.source) + ", reflected",
@@ -81,7 +82,7 @@ void check_radiance(Checks& checks) {
         const float sine = static_cast<float>(std::sqrt(1 - row.mu0 * row.mu0));
         const Light sun =
             sun_light({sine, -static_cast<float>(row.mu0), 0}, static_cast<float>(static_cast<double>(pi) / row.mu0));
-        const Snapshot snapshot = snapshot_of({even_medium(2, slab, forward_phase(0), vec3(0.8f))}, {sun});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(2, slab, forward_phase(0), vec3(0.8f))}, {sun});
         const vec3 down = glm::normalize(vec3(0, -0.5f, std::sqrt(0.75f)));
         add(checks, std::string("slab lit by the ") + row.name + ", from above",
             path_light(snapshot, {vec3(0, 3, 0), down}, 3072), row.above);

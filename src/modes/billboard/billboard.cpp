@@ -20,7 +20,7 @@ Mode billboard_mode() {
     return {.name = "billboard",
             .summary = "textured beam cards where light leaks into the scene: artistic, not light transport",
             .use = "beams as an effect, placed and tinted by hand; no setting makes them converge",
-            .accuracy = Accuracy::look,
+            .accuracy = Accuracy::artistic,
             .surfaces = Surfaces::shared,
             .limitations = billboard_limitations,
             .prepare = prepare_billboard,

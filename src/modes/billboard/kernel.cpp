@@ -29,7 +29,7 @@ Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
     return {rays.origin, rays.direction, rays.t_max, max(load(before), 0.0f)};
 }
 
-// Radiance per unit of the light's intensity, by an even beam in even fog: J (1 - e^-σc).
+// Radiance per unit of the light's intensity, by an even beam in homogeneous fog: J (1 - e^-σc).
 Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const Light& light = billboards.snapshot.lights[quad.light];
     const bool sun = is_distant(light);
@@ -61,7 +61,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     return scattered * (arriving * exp(-depth) * length * mean_transmittance(extinction * length));
 }
 
-// Light of a sun in the open, per unit of its intensity: single scattering of even fog without shadows, in three
+// Light of a sun in the open, per unit of its intensity: single scattering of homogeneous fog without shadows, in three
 // pieces of the way through fog, the nearest the shortest.
 Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet& packet) {
     const StyleSettings& style = billboards.style;

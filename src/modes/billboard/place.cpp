@@ -4,7 +4,7 @@
 
 #include "base/random.h"
 #include "scene/scene.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
@@ -143,8 +143,8 @@ PlacedCards placed(const Snapshot& snapshot, const BillboardSettings& settings) 
 }
 
 // All that cards depend on: the surfaces, where lights and fog are, and how to search.
-KeptKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
-    KeptKey key;
+CacheKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
+    CacheKey key;
     key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.lights.size());
     for (const Light& light : snapshot.lights) {
         key.add(light).add(light.name.size());
@@ -157,7 +157,7 @@ KeptKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
 
 std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
                                   std::vector<float>* open) {
-    const auto found = kept(snapshot, card_key(snapshot, settings), [&] { return placed(snapshot, settings); });
+    const auto found = cached(snapshot, card_key(snapshot, settings), [&] { return placed(snapshot, settings); });
     if (open) *open = found->open;
     return found->cards;
 }

@@ -100,7 +100,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
         veil *= settings.of<BillboardSettings>().veil * settings.of<BillboardSettings>().brightness;
     billboards.settings = settings.of<BillboardSettings>(), billboards.style = settings.style;
     billboards.snapshot = stylised(snapshot, settings.style);
-    billboards.snapshot.media = even_media(billboards.snapshot.media);
+    billboards.snapshot.media = homogeneous_media(billboards.snapshot.media);
     billboards.camera = view.camera;
     billboards.seconds = static_cast<float>(snapshot.seconds);
     const float height = view.camera.ortho_height > 0 ? 0 : 2 * std::tan(0.5f * view.camera.vertical_fov);

@@ -45,7 +45,7 @@ HWY_INLINE uint32_t within_reach(const CardGroup& group, const Spread& spread) {
         seen = seen & (dot(planes, splat(spread.center)) + dot(widths, splat(spread.half)) >= 0.0f);
     }
     uint32_t bits = 0;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         uint8_t part[8] = {};
         hn::StoreMaskBits(FloatTag(), seen.part[i], part);
         bits |= static_cast<uint32_t>(part[0] | part[1] << 8) << (i * lane_step);

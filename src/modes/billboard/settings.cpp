@@ -37,7 +37,7 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
            TYNDALL_FIELD(of<BillboardSettings>().far_fade));
     number("soft_depth", "m", 0, 1e6, "distance before a surface over which a card fades out",
            TYNDALL_FIELD(of<BillboardSettings>().soft_depth));
-    rows.push_back(choice_row("billboard.fog", switches, "even fog dims the cards and what is behind them",
+    rows.push_back(choice_row("billboard.fog", switches, "homogeneous fog dims the cards and what is behind them",
                               TYNDALL_FIELD(of<BillboardSettings>().fog)));
     mark_advanced(rows, {"veil", "gaps", "streaks", "stripes", "soft", "scroll", "sway", "specks", "near_fade",
                          "far_fade", "soft_depth"});

@@ -22,7 +22,7 @@ struct BillboardSettings {
     float near_fade = 0.6f;  // metres from the eye within which a card fades in
     float far_fade = 1e6f;   // metres from the eye at which it has faded out
     float soft_depth = 0.4f; // metres before a surface over which a card fades out
-    bool fog = true;         // even fog dims cards and what is behind
+    bool fog = true;         // homogeneous fog dims cards and what is behind
 };
 
 // For its row of the table.

@@ -1,11 +1,11 @@
-// Analytic volume lights: what of even fog each light reaches, in closed form and without shadows.
+// Analytic volume lights: what of homogeneous fog each light reaches, in closed form and without shadows.
 #include "modes/cone/cone.h"
 #include "modes/cone/limitations.h"
 #include "modes/cone/settings.h"
-#include "modes/picture_share.h"
+#include "modes/resolution.h"
 
 #include "integrate/style.h"
-#include "modes/fog_picture.h"
+#include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "trace/occlusion/occluders.h"
@@ -122,9 +122,9 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
     cone.casts = snapshot.occluders && !snapshot.occluders->empty();
     for (const Medium& medium : seen.media)
         if (medium.kind == DensityKind::bricks) cone.grids.push_back(medium.bricks->bounds);
-    seen.media = even_media(seen.media);
+    seen.media = homogeneous_media(seen.media);
     cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
-    for (const Medium& medium : seen.media) cone.glow.push_back(glow_per_extinction(medium.optics, seen.ambient));
+    for (const Medium& medium : seen.media) cone.glow.push_back(source_radiance(medium.optics, seen.ambient));
     for (const Light& light : seen.lights) cone.lights.push_back(cone_light(light, seen, cone));
     return cone;
 }
@@ -135,15 +135,15 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
         cone_packet(*cone, batch, results);
     };
     if (history) follow(*history, view, snapshot, settings);
-    if (settings.of<ConeSettings>().picture == PictureShare::full && !history) return scatter;
-    return from_fog_picture(view, snapshot, {settings.of<ConeSettings>().picture}, std::move(scatter), history);
+    if (settings.of<ConeSettings>().resolution == Resolution::full && !history) return scatter;
+    return from_fog_buffer(view, snapshot, {settings.of<ConeSettings>().resolution}, std::move(scatter), history);
 }
 
 Mode cone_mode() {
     return {.name = "cone",
             .summary = "closed forms for the light of spots, points and suns in homogeneous fog, without shadows",
             .use = "spots and lamps that nothing obstructs, in homogeneous fog: exact and the fastest",
-            .accuracy = Accuracy::even_fog,
+            .accuracy = Accuracy::homogeneous,
             .surfaces = Surfaces::shared,
             .limitations = cone_limitations,
             .prepare = prepare_cone,

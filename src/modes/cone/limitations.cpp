@@ -19,7 +19,7 @@ bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light)
         ray.t_max = std::min(ray.t_max, hits.t[0]);
         for (int i = 0; i < points; ++i) {
             const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
-            const Arrival at = arrival(light, point);
+            const LightSample at = arrival(light, point);
             if (max_component(at.irradiance) <= 0) continue;
             if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
         }

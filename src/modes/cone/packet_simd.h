@@ -1,5 +1,5 @@
-// Sixteen rays in even fog: how far it reaches, how deep it is, and where it has kinks (see base/simd/simd.h for how
-// such files are compiled).
+// Sixteen rays in homogeneous fog: how far it reaches, how deep it is, and where it has kinks (see base/simd/simd.h for
+// how such files are compiled).
 #if defined(TYNDALL_MODES_CONE_PACKET_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_CONE_PACKET_SIMD_H
 #undef TYNDALL_MODES_CONE_PACKET_SIMD_H
@@ -188,7 +188,7 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
     const float change_at_most = std::min(most(amount), 60.0f);
     const float wanted = 7 + (nodes - 2) * (2 * share * lobe + change_at_most * 0.16f);
-    return std::clamp(static_cast<int>(wanted), 2, most_gauss_nodes);
+    return std::clamp(static_cast<int>(wanted), 2, max_gauss_nodes);
 }
 }
 }

@@ -27,10 +27,10 @@ void append_cone_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<ConeSettings>().noise_size)));
     rows.push_back(number_row("cone.noise_speed", "m/s", -1000, 1000, "how fast the noise rises",
                               TYNDALL_FIELD(of<ConeSettings>().noise_speed)));
-    rows.push_back(choice_row("cone.picture", picture_shares,
+    rows.push_back(choice_row("cone.resolution", resolutions,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
-                              TYNDALL_FIELD(of<ConeSettings>().picture)));
+                              TYNDALL_FIELD(of<ConeSettings>().resolution)));
     mark_advanced(rows, {"near_radius", "attenuation", "edge", "inner", "noise", "noise_size", "noise_speed"});
 }
 
@@ -41,8 +41,8 @@ void set_cone_quality(Settings& settings, Quality quality) {
 }
 
 std::vector<Rung> cone_rungs() {
-    return {{"", "pixel.samples=1 cone.nodes=4 cone.picture=third"},
-            {"", "pixel.samples=1 cone.nodes=4 cone.picture=half"},
+    return {{"", "pixel.samples=1 cone.nodes=4 cone.resolution=third"},
+            {"", "pixel.samples=1 cone.nodes=4 cone.resolution=half"},
             {"", "pixel.samples=1 cone.nodes=6"},
             {"", "pixel.samples=4 cone.nodes=8"},
             {"", "pixel.samples=16 cone.nodes=12"},

@@ -1,6 +1,6 @@
 // Settings of the analytic light cones.
 #pragma once
-#include "modes/picture_share.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 
 namespace tyndall {
@@ -18,7 +18,7 @@ struct ConeSettings {
     float noise = 0;          // modulates the light, 0..1
     float noise_size = 0.6f;  // metres
     float noise_speed = 0.2f; // metres per second, upwards
-    PictureShare picture = PictureShare::full;
+    Resolution resolution = Resolution::full;
 };
 
 // For its row of the table.

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "modes/froxel/blend.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/memory.h"
+#include "modes/froxel/froxel_history.h"
 
 #include "base/parallel.h"
 #include "modes/froxel/integrate_simd.h"
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr ivec2 block_size{16, 8}; // tiles
-constexpr float most_blur = 0.1f;  // froxels²: what moves is seen a third of a froxel wider
+constexpr float max_blur = 0.1f;   // froxels²: what moves is seen a third of a froxel wider
 
 // Least and most among the froxels of a tile and their neighbours in depth; least > most where there are none. Of light
 // only new froxels count that hold fog. One froxel more at either end.
@@ -43,12 +43,12 @@ struct Blend {
     }
     // Whether all that is seen of a tile is what it was.
     bool stands(size_t tile) const {
-        return pass.still && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
+        return pass.statics && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
     }
     // Of what is remembered. A history of weight w that is blurred by v in every frame is blurred by v w/(1 - w).
     float weight_of(size_t tile) const {
         const float blur = pass.blur.empty() ? 0 : pass.blur[tile];
-        return std::min(pass.weight, most_blur / (most_blur + blur));
+        return std::min(pass.weight, max_blur / (max_blur + blur));
     }
     // Values of the froxels that a tile sees.
     size_t seen(size_t tile) const { return 4 * size_t{slices[tile]}; }
@@ -137,11 +137,11 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
             if (i < column.reach) low = min(low, load(column.low + i)), high = max(high, load(column.high + i));
         const Floats was = load_some(light + i, here), is = load_some(now + i, here);
         Floats kept = select(low <= high, max(low, min(was, high)), was);
-        if (blend.pass.still) kept = select(is_extinction, was, kept); // nothing to be held to
+        if (blend.pass.statics) kept = select(is_extinction, was, kept); // nothing to be held to
         Floats mixed = is + (kept - is) * weight;
         if (blend.pass.stale) {
             const Mask16 stale = stale_lanes(blend.stale_at(tile, i), here);
-            mixed = select(blend.pass.still ? stale : stale & !is_extinction, kept, mixed);
+            mixed = select(blend.pass.statics ? stale : stale & !is_extinction, kept, mixed);
         }
         mixed = select(extinctions(was) > 0.0f, mixed, is);
         store_some(mixed, here, light + i);

@@ -18,7 +18,7 @@ struct Packet {
     Lanes where;
     size_t index = 0;                        // among the grid's packets
     std::vector<FirstRays> first;            // per sample
-    std::vector<FroxelLit> exact;            // likewise
+    std::vector<LightInjection> exact;       // likewise
     std::vector<std::array<float, 16>> here; // extinction of each medium, of the sample under way
 };
 
@@ -43,7 +43,7 @@ Floats find_extinctions(const Fill& fill, Packet& packet, const FroxelLanes& lan
 // Puts red, green, blue and extinction of the lanes side by side into their froxels.
 void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, const Floats& extinction) {
     alignas(64) float rgbs[64];
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], extinction.part[i], FloatTag(),
                               rgbs + 4 * i * lane_step);
     for (size_t i = 0; i < 16; ++i)
@@ -60,7 +60,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     Floats total = 0.0f;
     for (int sample = 0; sample < fill.samples(); ++sample) {
         const size_t s = static_cast<size_t>(sample);
-        const Looks looks = look(fill, packet.where, packet.first[s], slice, sample);
+        const FroxelSamples looks = look(fill, packet.where, packet.first[s], slice, sample);
         const FroxelLanes whole = froxel_lanes(fill.grid, looks);
         const Floats here = find_extinctions(fill, packet, whole, slice, sample);
         total = total + here;
@@ -136,7 +136,7 @@ void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
             packet.first.push_back(first_rays(fill, packet.where, sample));
         bool wanted[16], any_wanted = false;
         for (int i = 0; i < 16; ++i) any_wanted |= wanted[i] = is_wanted(fill, packet.where, i);
-        if (fill.pass.still && !any_wanted && !fill.pass.noted) continue;
+        if (fill.pass.statics && !any_wanted && !fill.pass.noted) continue;
         if (fill.exact()) find_all_lit(fill, wanted, packet);
         for (int slice = 0; slice < packet.where.last; ++slice) fill_slice(fill, packet, slice);
         const size_t behind = static_cast<size_t>(fill.grid.slices() - packet.where.last);

@@ -44,7 +44,7 @@ struct FillPass {
     int only = -1;                  // 0..: this light alone; the number of lights: all other light alone
     int frame = 0;                  // of the history: 0 looks at the centres, later ones elsewhere in the froxels
     const uint8_t* stale = nullptr; // per froxel, 1 = its light is remembered: find its extinction only
-    bool still = false;             // stale froxels need no extinction either; tiles all stale may be left as they are
+    bool statics = false;           // stale froxels need no extinction either; tiles all stale may be left as they are
     const float* known = nullptr;   // extinctions as an earlier pass of this frame's looks has noted them
     float* noted = nullptr;         // where to note them, extinction_count() floats
 };

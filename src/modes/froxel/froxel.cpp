@@ -2,18 +2,18 @@
 // again for every camera ray.
 #include "base/simd/simd.h"
 #include "integrate/style.h"
+#include "modes/froxel/froxel_history.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/limitations.h"
 #include "modes/froxel/lookup.h"
-#include "modes/froxel/memory.h"
 #include "modes/froxel/settings.h"
-#include "modes/froxel/still.h"
+#include "modes/froxel/statics.h"
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
-#include "trace/shadows/kept_shadows.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/bricks/bricks.h"
@@ -51,7 +51,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
-    scene.fluence = kept_fluence(scene.snapshot, settings.fluence, view.seed);
+    scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
     if (scene.settings.visibility != FroxelVisibility::intervals || !snapshot.occluders) return;
     if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
 }
@@ -66,7 +66,7 @@ Camera tile_camera(const FroxelGrid& grid) {
 }
 
 // What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
-void set_shadows(FroxelFrame& frame, FroxelStill& still) {
+void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     FroxelScene& scene = frame.scene;
     const Occluders* occluders = scene.snapshot.occluders.get();
     if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
@@ -79,43 +79,43 @@ void set_shadows(FroxelFrame& frame, FroxelStill& still) {
             scene.slices = occluders->shadow_slices();
             continue;
         }
-        const std::shared_ptr<const ShadowVolumes> volumes = kept_shadow_volumes(scene.snapshot, light);
-        scene.views.back() =
-            std::make_unique<const ShadowView>(view_from(*volumes, tile_camera(still.grid), still.grid.size, margin));
+        const std::shared_ptr<const ShadowVolumes> volumes = cached_shadow_volumes(scene.snapshot, light);
+        scene.views.back() = std::make_unique<const ShadowView>(
+            view_from(*volumes, tile_camera(statics.grid), statics.grid.size, margin));
     }
 }
 
 // What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.
-Recollection remembered(std::shared_ptr<FroxelMemory> memory, const FroxelStill& still) {
-    if (!still.same_froxels) return recall(*memory, still.grid, still.tiles);
+Reprojection remembered(std::shared_ptr<FroxelHistory> memory, const FroxelStatics& statics) {
+    if (!statics.same_froxels) return reproject(*memory, statics.grid, statics.tiles);
     return {memory.use_count() == 1 ? std::move(memory->light) : memory->light, {}};
 }
 
 // This frame's light with what the history knows of it; the history then knows this frame.
-FroxelSums sums_with_history(FroxelFrame& frame, FroxelStill& still, std::shared_ptr<FroxelMemory>& memory) {
+FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::shared_ptr<FroxelHistory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
     const float view_depth = frame.picture.view_depth;
     FroxelLight light;
     FroxelSums sums;
     if (frame.frame == 0 || !memory) {
-        light = fill_still_froxels(frame.scene, still, {});
-        sums = integrate_froxels(still.grid, still.tiles, light, view_depth);
-        clean(still.grid, still.tiles, light);
+        light = fill_still_froxels(frame.scene, statics, {});
+        sums = integrate_froxels(statics.grid, statics.tiles, light, view_depth);
+        clean(statics.grid, statics.tiles, light);
     } else {
-        Recollection past = remembered(std::exchange(memory, nullptr), still);
+        Reprojection past = remembered(std::exchange(memory, nullptr), statics);
         light = std::move(past.light);
         const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
-        const bool settled = still.settled();
-        if (settings.amortise) stale = stale_froxels(still.grid, light, lights, frame.frame, settled);
+        const bool settled = statics.settled();
+        if (settings.amortise) stale = stale_froxels(statics.grid, light, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-        const FroxelLight now = fill_still_froxels(frame.scene, still, {-1, frame.frame, skipped, settled});
+        const FroxelLight now = fill_still_froxels(frame.scene, statics, {-1, frame.frame, skipped, settled});
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
         const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled, past.blur};
-        sums = blend_history(still.grid, still.tiles, now, pass, light);
+        sums = blend_history(statics.grid, statics.tiles, now, pass, light);
         frame.has_history = true;
     }
-    memory = std::make_shared<FroxelMemory>(FroxelMemory{still.grid, std::move(light), std::move(still)});
+    memory = std::make_shared<FroxelHistory>(FroxelHistory{statics.grid, std::move(light), std::move(statics)});
     return sums;
 }
 
@@ -150,20 +150,20 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     if (settings.of<FroxelSettings>().history == 0) frame->frame = 0;
     set_scene(view, snapshot, settings, frame->scene);
 
-    const FroxelMemory* memory = history ? history->froxels.get() : nullptr;
-    FroxelStill still =
-        look_at_scene(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->still : nullptr);
-    if (still.grid.faces.empty()) { // no fog in view
+    const FroxelHistory* memory = history ? history->froxels.get() : nullptr;
+    FroxelStatics statics =
+        look_at_scene(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->statics : nullptr);
+    if (statics.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
         return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
     }
-    set_shadows(*frame, still);
+    set_shadows(*frame, statics);
 
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.of<FroxelSettings>().lookup, picture.view_depth = settings.style.view_depth;
-    picture.grid = still.grid, picture.tiles = still.tiles;
+    picture.grid = statics.grid, picture.tiles = statics.tiles;
     picture.sums =
-        history ? sums_with_history(*frame, still, history->froxels)
+        history ? sums_with_history(*frame, statics, history->froxels)
                 : integrate_froxels(picture.grid, picture.tiles,
                                     fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
     return [frame](const RayBatch& batch, std::span<Scatter> results) {

@@ -31,7 +31,7 @@ HWY_INLINE Floats running_sums(Floats a) {
     return a + moved_up<8>(a);
 }
 
-HWY_INLINE float last_lane(const Floats& a) { return hn::ExtractLane(a.part[parts - 1], lane_step - 1); }
+HWY_INLINE float last_lane(const Floats& a) { return hn::ExtractLane(a.part[vectors_per_packet - 1], lane_step - 1); }
 
 // Sixteen froxels or sums, one per lane: red, green, blue, and extinction or optical depth.
 struct Quads {
@@ -39,13 +39,13 @@ struct Quads {
 };
 HWY_INLINE Quads load_quads(const float* from) {
     Quads q;
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::LoadInterleaved4(FloatTag(), from + 4 * i * lane_step, q.channel[0].part[i], q.channel[1].part[i],
                              q.channel[2].part[i], q.channel[3].part[i]);
     return q;
 }
 HWY_INLINE void store_quads(const Quads& q, float* to) {
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::StoreInterleaved4(q.channel[0].part[i], q.channel[1].part[i], q.channel[2].part[i], q.channel[3].part[i],
                               FloatTag(), to + 4 * i * lane_step);
 }

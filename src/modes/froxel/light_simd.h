@@ -25,7 +25,7 @@ struct FroxelLanes {
 // Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
 // points of a soft light; null = its centre.
 HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
-                                    const Arriving& arrival, const Mask16& wanted, const Sample2* places) {
+                                    const LightSamples& arrival, const Mask16& wanted, const Sample2* places) {
     Occluders::ShadowRays rays;
     aim_at_center(lanes.point, arrival, wanted, rays);
     for (size_t i = 0; i < 16 && places; ++i)

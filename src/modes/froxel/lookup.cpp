@@ -57,7 +57,7 @@ void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& plac
         for (size_t p = 0; p < tap_parts; ++p) hn::Store(total[p], tag, both + p * tap_lanes);
         std::memcpy(values[0] + 4 * lane, both, 16), std::memcpy(values[1] + 4 * lane, both + 4, 16);
     }
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto load_four = [&](const float* from, Floats(&to)[4]) HWY_ATTR {
             hn::LoadInterleaved4(FloatTag(), from + 4 * i * lane_step, to[0].part[i], to[1].part[i], to[2].part[i],
                                  to[3].part[i]);
@@ -87,7 +87,7 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
     return result;
 }
 
-// Light before a depth and optical depth up to it. Within the slice the light comes as from even fog.
+// Light before a depth and optical depth up to it. Within the slice the light comes as from homogeneous fog.
 struct Reached {
     Vec3s light;
     Floats depth;     // of the ray
@@ -103,7 +103,7 @@ Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
     reached.last = faces.share * mean_transmittance(within * view_depth) / mean_transmittance(across * view_depth);
     const Vec3s near{faces.near[0], faces.near[1], faces.near[2]}, far{faces.far[0], faces.far[1], faces.far[2]};
     reached.last_light = (far - near) * reached.last;
-    // The tiles' lines are a little longer or shorter than the ray: in even fog the light is as 1 - e^-depth.
+    // The tiles' lines are a little longer or shorter than the ray: in homogeneous fog the light is as 1 - e^-depth.
     const Floats depth = reached.depth * view_depth, ratio = slant / places.tile_slant;
     const Floats fitted = ratio * mean_transmittance(depth) / mean_transmittance(depth / ratio);
     reached.light = (near + reached.last_light) * fitted;
@@ -149,7 +149,7 @@ void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::sp
     const Vec3s light = light_of(picture.sums, faces, start, end);
     const Floats through = exp(start.depth - max(end.depth, start.depth));
     alignas(64) float rgb[3][16], first[64], seen[16], valid[16];
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], through.part[i], FloatTag(),
                               first + 4 * i * lane_step);
     store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end), valid);

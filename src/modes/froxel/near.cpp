@@ -1,7 +1,7 @@
 // Froxels near a local light: points spread over them.
 #include "base/random.h"
 #include "integrate/equi_angular.h"
-#include "modes/froxel/lit.h"
+#include "modes/froxel/light_injection.h"
 #include "modes/froxel/settings.h"
 
 namespace tyndall {
@@ -45,15 +45,15 @@ size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, in
 float falloff_at(const Light& light, vec3 point, float width2) {
     Light unit = light;
     unit.intensity = vec3(1);
-    const Arrival arriving = arrival(unit, point);
+    const LightSample arriving = arrival(unit, point);
     const float reach = std::max(light.radius, smallest_radius);
     const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
     return arriving.irradiance.x * squared / std::max(squared, width2);
 }
 }
 
-FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,
-                           int slice, size_t light_index, uint32_t index) {
+FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,
+                               int slice, size_t light_index, uint32_t index) {
     const Light& light = scene.snapshot.lights[light_index];
     NearLine lines[16];
     const size_t count = near_lines(grid, tiles, at, slice, light, lines);
@@ -83,7 +83,7 @@ FroxelArrival near_arrival(const FroxelScene& scene, const FroxelGrid& grid, con
     if (light.shadows && occluders && !occluders->empty() && scene.settings.visibility != FroxelVisibility::off)
         occluders->transmission(shadow, visible);
 
-    FroxelArrival result;
+    FroxelLightSample result;
     for (size_t i = 0; i < 16; ++i) {
         const float amount = weight[i] > 0 ? weight[i] * visible[i] : 0;
         result.amount += amount, result.point += amount * points[i];

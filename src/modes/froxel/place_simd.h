@@ -120,7 +120,7 @@ HWY_INLINE Pixels pixels_of(const FroxelPicture& picture, const RayBatch& batch,
     Pixels at;
     if (batch.rays.size() == 16 && batch.positions.size() == 16) {
         const auto* from = reinterpret_cast<const float*>(batch.positions.data());
-        for (size_t i = 0; i < parts; ++i)
+        for (size_t i = 0; i < vectors_per_packet; ++i)
             hn::LoadInterleaved2(FloatTag(), from + 2 * i * lane_step, at.x.part[i], at.y.part[i]);
         return at;
     }

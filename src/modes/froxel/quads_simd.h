@@ -23,7 +23,7 @@ HWY_INLINE Floats extinctions(const Floats& light) {
     return load(values);
 #else
     Floats r;
-    for (size_t i = 0; i < parts; ++i) r.part[i] = hn::Broadcast<3>(light.part[i]);
+    for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::Broadcast<3>(light.part[i]);
     return r;
 #endif
 }
@@ -39,7 +39,7 @@ HWY_INLINE Floats finite_sums(const Floats& light) {
     return load(sums);
 #else
     Floats r;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto pairs = hn::Add(zeros.part[i], hn::Shuffle2301(zeros.part[i]));
         r.part[i] = hn::Add(pairs, hn::Shuffle1032(pairs));
     }
@@ -71,14 +71,14 @@ HWY_INLINE size_t lanes_of(size_t count, size_t i) {
 HWY_INLINE Floats load_some(const float* from, size_t count) {
     if (count >= 16) return load(from);
     Floats r = 0.0f;
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         if (const size_t here = lanes_of(count, i); here > 0)
             r.part[i] = hn::MaskedLoad(hn::FirstN(FloatTag(), here), FloatTag(), from + i * lane_step);
     return r;
 }
 HWY_INLINE void store_some(const Floats& values, size_t count, float* to) {
     if (count >= 16) return store(values, to);
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         if (const size_t here = lanes_of(count, i); here > 0)
             hn::BlendedStore(values.part[i], hn::FirstN(FloatTag(), here), FloatTag(), to + i * lane_step);
 }

@@ -8,8 +8,8 @@
 
 #include "integrate/scattering_simd.h"
 #include "integrate/style_simd.h"
-#include "modes/froxel/lit.h"
-#include "modes/froxel/look_simd.h"
+#include "modes/froxel/light_injection.h"
+#include "modes/froxel/samples_simd.h"
 #include "modes/froxel/settings.h"
 #include "trace/transmittance/light_grid_simd.h"
 
@@ -17,7 +17,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // What arrives of a light in each lane, through the surfaces in its way, and where.
-struct LaneArrivals {
+struct LaneLightSamples {
     Vec3s point;
     Floats amount;
 };
@@ -25,10 +25,10 @@ struct LaneArrivals {
 // A packet of froxels under way: 16 tiles, one slice, one sample.
 struct Job {
     const Lanes& where;
-    const Looks& looks;
+    const FroxelSamples& looks;
     int slice, sample;
     bool sheet;                    // the lanes are cut down to fog thinner than the slice
-    const FroxelLit* exact;        // with slices
+    const LightInjection* exact;   // with slices
     const float (*extinction)[16]; // of each medium
     Floats depth;                  // optical, of the stretches, as far as it dims the fog's own light
 };
@@ -45,7 +45,7 @@ Floats mean_seen_place(const Floats& depth) {
 // its mean place, and asked for where the eye sees it on average. That of a sun reaches to the nearer end of the slice;
 // that of a lamp, as 1/(h² + z²) at h from it, has the spread of its variance h L / atan(L/h) - h² (fitted within 3 %).
 void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& job, const Mask16& which,
-                       LaneArrivals& arrived) {
+                       LaneLightSamples& arrived) {
     constexpr float clear = 0.01f;
     const Mask16 dim = which & (arrived.amount > 0.0f) & (job.depth > clear);
     if (!any(dim)) return;
@@ -75,7 +75,7 @@ Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes
 }
 
 // Share of a light that passes the surfaces on the way to the lanes that shadow rays answer for.
-Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Arriving& plain,
+Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const LightSamples& plain,
                     const Mask16& by_rays) {
     const Light& light = fill.scene.snapshot.lights[index];
     const Occluders* occluders = fill.scene.snapshot.occluders.get();
@@ -93,14 +93,14 @@ Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, co
 }
 
 // What arrives where a froxel is large beside its distance from the light.
-void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneArrivals& arrived) {
+void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneLightSamples& arrived) {
     alignas(64) float is_near[16], amount[16], point[3][16];
     store(select(near, 1.0f, 0.0f), is_near), store(arrived.amount, amount);
     store(arrived.point.x, point[0]), store(arrived.point.y, point[1]), store(arrived.point.z, point[2]);
     for (size_t i = 0; i < 16; ++i) {
         if (!(is_near[i] > 0)) continue;
-        const FroxelArrival one = near_arrival(fill.scene, fill.grid, fill.tiles, job.where.at[i], job.slice, index,
-                                               spread_index(fill, job.where.at[i], job.sample));
+        const FroxelLightSample one = near_arrival(fill.scene, fill.grid, fill.tiles, job.where.at[i], job.slice, index,
+                                                   spread_index(fill, job.where.at[i], job.sample));
         amount[i] = one.amount;
         for (int c = 0; c < 3 && one.amount > 0; ++c) point[c][i] = one.point[c];
     }
@@ -108,7 +108,7 @@ void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near
 }
 
 // Light is asked for in the middle of a sheet where it arrives beside it, or the sheet fills less than half the slice.
-void hold_in_fog(const FroxelLanes& lanes, const Looks& looks, const Mask16& which, LaneArrivals& arrived) {
+void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mask16& which, LaneLightSamples& arrived) {
     const Floats place = dot(arrived.point - lanes.start, lanes.toward);
     const Floats slice = (load(looks.high) - load(looks.low)) * sqrt(dot(lanes.step, lanes.step));
     const Mask16 held = which & ((place < 0.0f) | (place > lanes.length) | (lanes.length < slice * 0.5f));
@@ -116,10 +116,10 @@ void hold_in_fog(const FroxelLanes& lanes, const Looks& looks, const Mask16& whi
                      select(held, lanes.point.z, arrived.point.z)};
 }
 
-LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
+LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const Arriving plain = arriving(light, fill.scene.cones[index], lanes.point);
-    LaneArrivals arrived{lanes.point, zero_unless(lit, plain.amount)};
+    const LightSamples plain = arriving(light, fill.scene.cones[index], lanes.point);
+    LaneLightSamples arrived{lanes.point, zero_unless(lit, plain.amount)};
     const Mask16 near = lit & near_lanes(fill, light, lanes, plain.distance);
     Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: what arrives on the whole stretch is known
     by_rays = by_rays & !near;
@@ -128,7 +128,7 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
         const size_t at = index * static_cast<size_t>(fill.grid.slices()) + static_cast<size_t>(job.slice);
         by_rays = by_rays & !sliced, along = along | sliced;
         if (is_distant(light)) {
-            const FroxelLit::Depths& depths = job.exact->depths[at];
+            const LightInjection::Depths& depths = job.exact->depths[at];
             const Floats length = zero_unless(sliced, load(depths.length));
             const Mask16 some = length > 0.0f;
             const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
@@ -136,7 +136,7 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
             arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
             arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
         } else {
-            const FroxelLit::Arrivals& exact = job.exact->arrivals[at];
+            const LightInjection::Arrivals& exact = job.exact->arrivals[at];
             const Floats amount = load(exact.amount);
             const Mask16 some = sliced & (amount > 0.0f);
             arrived.amount = select(sliced, amount, arrived.amount);
@@ -157,7 +157,7 @@ LaneArrivals arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, 
 // Light of one kind scattered towards the eye, per metre.
 Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const LaneArrivals arrived = arrivals(fill, index, lanes, lit, job);
+    const LaneLightSamples arrived = arrivals(fill, index, lanes, lit, job);
     const Mask16 reached = arrived.amount > 0.0f;
     if (!any(reached)) return splat(vec3(0));
 

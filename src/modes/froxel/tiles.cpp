@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int most_layers = 8;  // of BLEND surfaces in a row
+constexpr int max_layers = 8;   // of BLEND surfaces in a row
 constexpr float horizon = 1e9f; // metres; no ray goes further
 constexpr double opaque_depth = 12;
 
@@ -33,7 +33,7 @@ void trace_opaque(const Occluders& occluders, std::span<Ray> rays, float* distan
     bool done[16] = {};
     std::fill_n(distance, rays.size(), infinity);
     Hits hits;
-    for (int layer = 0; layer < most_layers; ++layer) {
+    for (int layer = 0; layer < max_layers; ++layer) {
         occluders.closest(rays, 0, hits, layer == 0);
         bool all = true;
         for (size_t i = 0; i < rays.size(); ++i) {

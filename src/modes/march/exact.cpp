@@ -165,7 +165,7 @@ void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum)
 // Light scattered towards the eye at a node of given weight, before what dims it on its way from the light.
 dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     const FogPieces& fog = on.scratch.fog;
-    const ArrivingAt light_at = arriving_at(on.scratch.along, t);
+    const LightSamplesAt light_at = arriving_at(on.scratch.along, t);
     const double cosine = glm::dot(light_at.to_light, dvec3(on.ray.direction));
     dvec3 scattering(0);
     for (size_t m = 0; m < fog.media; ++m) {

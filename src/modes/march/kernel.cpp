@@ -72,7 +72,7 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
 }
 
 // Share of the light that surfaces let through.
-Floats visible_share(const March& march, const Light& light, const Points& points, const Arriving& light_at,
+Floats visible_share(const March& march, const Light& light, const Points& points, const LightSamples& light_at,
                      const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
     if (march.settings.visibility == Visibility::maps) return lit_share16(*march.maps[light_index], points.position);
     if (!casts(light, march.snapshot) || march.settings.visibility == Visibility::off) return 1.0f;
@@ -86,7 +86,7 @@ Floats visible_share(const March& march, const Light& light, const Points& point
 Vec3s scattered_from(const March& march, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
     const Light& light = march.snapshot.lights[light_index];
-    const Arriving light_at = arriving(light, march.cones[light_index], points.position);
+    const LightSamples light_at = arriving(light, march.cones[light_index], points.position);
     Mask16 wanted = points.active & (light_at.amount > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
     const Floats share = visible_share(march, light, points, light_at, wanted, batch, step, light_index);

@@ -4,8 +4,8 @@
 #include "integrate/ray_batch.h"
 #include "integrate/style.h"
 #include "trace/fluence/fluence.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/shadows/intervals/shadow_slices.h"
-#include "trace/shadows/kept_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 

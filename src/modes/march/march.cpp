@@ -18,11 +18,11 @@ namespace {
 // Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
 // scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
 // once.
-constexpr uint64_t most_sliced = 200'000, most_with_volumes = 2'000'000;
+constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
 }
 
 ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
-    const uint64_t most = is_soft(light) ? most_sliced : most_with_volumes;
+    const uint64_t most = is_soft(light) ? max_sliced : max_with_volumes;
     if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
     return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
 }
@@ -31,7 +31,7 @@ namespace {
 // Steps inside lit stretches. Shadows are exact, of one point of each light for a ray; but sampled by rays at every
 // step where surfaces have alpha, or are too many.
 ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    auto fog = std::make_shared<LitFog>();
+    auto fog = std::make_shared<SingleScattering>();
     const MarchSettings& march = settings.march;
     fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
@@ -43,8 +43,8 @@ ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const
         if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
     fog->sampled = has_grid(fog->snapshot) || !sampled.empty();
     if (fog->sampled) fog->rule = march_steps(march, std::move(sampled));
-    fog->fluence = kept_fluence(fog->snapshot, settings.fluence, view.seed);
-    return [fog](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*fog, batch, results); };
+    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
+    return [fog](const RayBatch& batch, std::span<Scatter> results) { single_scattering_packet(*fog, batch, results); };
 }
 }
 
@@ -61,7 +61,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march->cones.push_back(cone_falloff(light));
     }
     march->steps = march_steps(settings.march, march->snapshot.lights);
-    march->fluence = kept_fluence(march->snapshot, settings.fluence, view.seed);
+    march->fluence = cached_fluence(march->snapshot, settings.fluence, view.seed);
     if (settings.march.visibility == Visibility::maps) march->maps = make_shadow_maps(view, march->snapshot, settings);
     if (settings.march.visibility != Visibility::exact)
         return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };

@@ -1,6 +1,6 @@
 // How the march finds the shadows of a light within lit intervals.
 #pragma once
-#include "integrate/lit_fog.h"
+#include "integrate/single_scattering.h"
 
 namespace tyndall {
 ShadowsBy shadows_by(const Light& light, const Occluders& occluders);

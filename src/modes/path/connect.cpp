@@ -59,7 +59,7 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, 
     return c;
 }
 
-Connection connection_to_glow(vec3 point, const GlowPoint& target) {
+Connection connection_to_glow(vec3 point, const EmissivePoint& target) {
     const vec3 offset = target.position - point;
     const float distance = glm::length(offset);
     Connection c;

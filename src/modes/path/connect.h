@@ -25,7 +25,7 @@ struct Connection {
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int light, vec3 to_light, vec2 u);
 
 // From a point to a point on a glowing surface.
-Connection connection_to_glow(vec3 point, const GlowPoint& target);
+Connection connection_to_glow(vec3 point, const EmissivePoint& target);
 
 // Share of light that surfaces let through, of up to 16 connections; 1 for dark ones and lights without shadows.
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility);

@@ -1,5 +1,5 @@
 // Light from fog on a stretch of a line.
-#include "modes/path/line.h"
+#include "modes/path/vertex.h"
 #include "scene/light.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
@@ -17,10 +17,10 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
 
 // A guess at the share of light that passes up to a distance. Weights may be built from any guess: they only have to
 // be the same from both sides. Grids count with their mean; a ray may find gaps in them, so that is not taken too far.
-float guessed_transmittance(const Snapshot& snapshot, const Line& line, float distance) {
+float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float distance) {
     Ray ray = line.rest;
     ray.t_max = distance;
-    constexpr double most_in_grids = 3;
+    constexpr double max_in_grids = 3;
     double depth = 0, in_grids = 0;
     for (const Medium& medium : snapshot.media) {
         if (medium.kind != DensityKind::bricks) {
@@ -30,7 +30,7 @@ float guessed_transmittance(const Snapshot& snapshot, const Line& line, float di
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
         in_grids += static_cast<double>(inside.length()) * grey_extinction(medium.optics) * medium.bricks->mean;
     }
-    return static_cast<float>(std::exp(-depth - std::min(in_grids, most_in_grids)));
+    return static_cast<float>(std::exp(-depth - std::min(in_grids, max_in_grids)));
 }
 
 // How many distances a line is asked at. The eye's lines are many times worth their shadow rays: beams are narrow.
@@ -43,7 +43,7 @@ struct Candidate {
 };
 
 // Spreads the candidates over lights and distances and asks for all shadows at once.
-void find_candidates(const Walk& walk, const Line& line, std::span<Candidate> candidates,
+void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate> candidates,
                      std::span<Connection> connections) {
     const Snapshot& snapshot = walk.snapshot;
     const std::vector<LineLight>& lights = walk.scratch.lights;
@@ -61,7 +61,7 @@ void find_candidates(const Walk& walk, const Line& line, std::span<Candidate> ca
         };
         candidates[i].distance = lights[light].distance(turned(u.y));
         const vec3 point = line.rest.at(candidates[i].distance);
-        const Arrival arriving = arrival(snapshot.lights[light], point);
+        const LightSample arriving = arrival(snapshot.lights[light], point);
         connections[i] = connection_to_light(walk.tracer, point, static_cast<int>(light), arriving.to_light,
                                              {turned(soft.x), soft.y});
         connections[i].light = arriving.irradiance * snapshot.lights[light].volume_scale;
@@ -72,7 +72,7 @@ void find_candidates(const Walk& walk, const Line& line, std::span<Candidate> ca
         connections[i].light *= visibility[i], connections[i].shadows = false;
 }
 
-void weigh(const Walk& walk, const Line& line, const Connection& connection, Candidate& candidate, int& lookups) {
+void weigh(const Walk& walk, const Segment& line, const Connection& connection, Candidate& candidate, int& lookups) {
     if (!(max_component(connection.light) > 0)) return;
     const Snapshot& snapshot = walk.snapshot;
     FogPoint& fog = walk.scratch.fog;
@@ -90,7 +90,7 @@ void weigh(const Walk& walk, const Line& line, const Connection& connection, Can
 
 // Light scattered at a distance picked for the lights: of several candidates one goes on, in proportion to what it
 // would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
-float gather_on_the_way(const Walk& walk, Line& line) {
+float gather_on_the_way(const Walk& walk, Segment& line) {
     int& lookups = walk.results[line.walker.lane].steps;
     const auto passing = [&](Interval<float> range) {
         float share = 1;
@@ -128,7 +128,7 @@ float gather_on_the_way(const Walk& walk, Line& line) {
 }
 
 // Light that reaches the point of a collision, straight from lights and glowing surfaces.
-void gather_at_collision(const Walk& walk, Line& line, float distance, const FogPoint& fog) {
+void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
     const Snapshot& snapshot = walk.snapshot;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
@@ -143,7 +143,7 @@ void gather_at_collision(const Walk& walk, Line& line, float distance, const Fog
               scattered * (weight / pick.chance), in_fog);
     }
     if (walk.tracer.glow.empty()) return;
-    const GlowPoint target =
+    const EmissivePoint target =
         pick_glow_point(walk.tracer.glow, snapshot, line.numbers(use_light).y, line.numbers(use_glow));
     const Connection connection = connection_to_glow(fog.position, target);
     const float facing = std::abs(glm::dot(target.normal, connection.to_light));
@@ -155,7 +155,7 @@ void gather_at_collision(const Walk& walk, Line& line, float distance, const Fog
 }
 
 // Where the path collides with fog on this stretch it gathers light and turns.
-void collide(const Walk& walk, Line& line) {
+void collide(const Walk& walk, Segment& line) {
     const Snapshot& snapshot = walk.snapshot;
     float nearest = line.end;
     int hit = -1;
@@ -178,11 +178,11 @@ void collide(const Walk& walk, Line& line) {
     gather_at_collision(walk, line, nearest, fog);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
-    turn(walk, line, {fog.position, direction}, optics.albedo, density, in_fog);
+    scatter(walk, line, {fog.position, direction}, optics.albedo, density, in_fog);
 }
 }
 
-void follow_fog(const Walk& walk, Line& line) {
+void follow_fog(const Walk& walk, Segment& line) {
     const float passing = gather_on_the_way(walk, line);
     if (line.walking) collide(walk, line);
     line.through *= passing;

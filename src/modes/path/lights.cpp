@@ -50,7 +50,7 @@ template<class Irradiance> LightPick pick(size_t count, float u, const Irradianc
     double left = u * total;
     LightPick result;
     for (size_t i = 0; i < count; ++i) {
-        const Arrival arriving = irradiance(i);
+        const LightSample arriving = irradiance(i);
         const double share = luminance(arriving.irradiance);
         if (!(share > 0)) continue;
         result = {static_cast<int>(i), static_cast<float>(share / total), arriving.irradiance, arriving.to_light};
@@ -84,7 +84,7 @@ void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineL
 
 LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
     return pick(snapshot.lights.size(), u, [&](size_t i) {
-        Arrival arriving = arrival(snapshot.lights[i], point);
+        LightSample arriving = arrival(snapshot.lights[i], point);
         arriving.irradiance *= snapshot.lights[i].volume_scale;
         return arriving;
     });
@@ -92,7 +92,7 @@ LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
 
 LightPick pick_light(const Snapshot& snapshot, vec3 point, vec3 normal, float u) {
     return pick(snapshot.lights.size(), u, [&](size_t i) {
-        Arrival arriving = arrival(snapshot.lights[i], point);
+        LightSample arriving = arrival(snapshot.lights[i], point);
         arriving.irradiance *= snapshot.lights[i].surface_scale * std::max(0.0f, glm::dot(normal, arriving.to_light));
         return arriving;
     });

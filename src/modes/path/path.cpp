@@ -11,7 +11,7 @@
 
 namespace tyndall {
 namespace {
-bool glimmers(const PathTracer& tracer) {
+bool has_emission(const PathTracer& tracer) {
     if (max_component(tracer.snapshot.ambient) > 0) return true;
     for (const Medium& medium : tracer.snapshot.media)
         if (max_component(medium.optics.emission) > 0) return true;
@@ -27,8 +27,8 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->snapshot = with_terms(snapshot, settings.terms);
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
-    if (tracer->surfaces_emit) tracer->glow = make_glow(tracer->snapshot);
-    tracer->glimmers = glimmers(*tracer);
+    if (tracer->surfaces_emit) tracer->glow = make_emissive_triangles(tracer->snapshot);
+    tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }
 

@@ -1,7 +1,7 @@
 // The walk: lines, the surfaces on them, and turns.
 #include "modes/path/tracer.h"
 
-#include "modes/path/line.h"
+#include "modes/path/vertex.h"
 
 namespace tyndall {
 namespace {
@@ -21,7 +21,7 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
 }
 
 // Chance per steradian with which a glowing surface point is picked as a target from where the line began.
-float target_density(const PathTracer& tracer, const Line& line, const SurfacePoint& surface, int instance,
+float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
                      int triangle) {
     const float density = glow_density(tracer.glow, instance, triangle);
     const float distance = line.travelled + line.end,
@@ -29,7 +29,7 @@ float target_density(const PathTracer& tracer, const Line& line, const SurfacePo
     return density > 0 ? density * distance * distance / std::max(facing, 1e-12f) : 0;
 }
 
-void gather_at_surface(const Walk& walk, Line& line, const SurfacePoint& surface, float share) {
+void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, float share) {
     const vec3 reflected = surface.base_color * (share / pi);
     const LightPick pick =
         pick_light(walk.snapshot, surface.position, surface.normal, line.numbers(use_surface_light).x);
@@ -40,8 +40,8 @@ void gather_at_surface(const Walk& walk, Line& line, const SurfacePoint& surface
         queue(walk, line, connection, reflected * pick.irradiance / pick.chance, line.walker.in_fog);
     }
     if (walk.tracer.glow.empty()) return;
-    const GlowPoint target = pick_glow_point(walk.tracer.glow, walk.snapshot, line.numbers(use_surface_light).y,
-                                             line.numbers(use_surface_glow));
+    const EmissivePoint target = pick_glow_point(walk.tracer.glow, walk.snapshot, line.numbers(use_surface_light).y,
+                                                 line.numbers(use_surface_glow));
     Connection connection = connection_to_glow(surface.position, target);
     connection.face_normal = surface.face_normal;
     const float cosine = glm::dot(surface.normal, connection.to_light),
@@ -53,7 +53,7 @@ void gather_at_surface(const Walk& walk, Line& line, const SurfacePoint& surface
 }
 
 // Lambert: directions by their cosine, which leaves the base colour as weight.
-void bounce(const Walk& walk, const Line& line, const SurfacePoint& surface) {
+void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) {
     const vec2 u = line.numbers(use_bounce);
     vec3 x, y;
     make_frame(surface.normal, x, y);
@@ -62,11 +62,11 @@ void bounce(const Walk& walk, const Line& line, const SurfacePoint& surface) {
         glm::normalize(across * std::cos(turned) * x + across * std::sin(turned) * y + cosine * surface.normal);
     const float side = glm::dot(surface.face_normal, direction) < 0 ? -1.0f : 1.0f;
     const vec3 origin = surface.position + surface.face_normal * (side * shadow_offset(surface.position));
-    turn(walk, line, {origin, direction}, surface.base_color, cosine / pi, line.walker.in_fog);
+    scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, line.walker.in_fog);
 }
 
 // Nothing more is met: the background for the eye, the surroundings for everything else.
-void leave(const Walk& walk, Line& line) {
+void leave(const Walk& walk, Segment& line) {
     const vec3 radiance = walk.order == 0 ? background_radiance(walk.snapshot.background, line.walker.ray.direction,
                                                                 screen_position(walk.tracer, line.walker.ray))
                                           : walk.snapshot.ambient;
@@ -76,8 +76,8 @@ void leave(const Walk& walk, Line& line) {
 
 void start_lines(const Walk& walk) {
     walk.scratch.lines.clear();
-    for (const Walker& walker : walk.scratch.walkers) {
-        Line line;
+    for (const PathVertex& walker : walk.scratch.walkers) {
+        Segment line;
         line.walker = walker, line.rest = walker.ray, line.skip = walker.skip;
         line.order = walk.order;
         line.random = {hash(walker.id, static_cast<uint32_t>(walk.order))};
@@ -88,9 +88,9 @@ void start_lines(const Walk& walk) {
 
 // The next stretch of every line, up to a surface or out of the scene.
 void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
-    const std::vector<Line>& lines = walk.scratch.lines;
+    const std::vector<Segment>& lines = walk.scratch.lines;
     for (size_t i = 0; i < lines.size(); ++i) {
-        const Line& line = lines[i];
+        const Segment& line = lines[i];
         const float left = std::max(line.rest.t_max - line.skip, 0.0f);
         tested[i] = {line.rest.at(line.skip), line.rest.direction, left};
     }
@@ -98,19 +98,19 @@ void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
     const Occluders* occluders = walk.snapshot.occluders.get();
     if (occluders && !occluders->empty()) occluders->closest({tested, lines.size()}, 0, hits, walk.order == 0);
     for (size_t i = 0; i < lines.size(); ++i) {
-        Line& line = walk.scratch.lines[i];
+        Segment& line = walk.scratch.lines[i];
         line.end = hits.instance[i] >= 0 ? line.skip + hits.t[i] : line.rest.t_max;
     }
 }
 
 void follow_lines(const Walk& walk) {
-    std::vector<Line>& lines = walk.scratch.lines;
-    for (int layer = 0; layer < most_layers && !lines.empty(); ++layer) {
+    std::vector<Segment>& lines = walk.scratch.lines;
+    for (int layer = 0; layer < max_layers && !lines.empty(); ++layer) {
         Ray tested[16];
         Hits hits;
         find_ends(walk, tested, hits);
         for (size_t i = 0; i < lines.size(); ++i) {
-            Line& line = lines[i];
+            Segment& line = lines[i];
             line.layer = layer;
             follow_fog(walk, line);
             if (hits.instance[i] < 0) {
@@ -120,42 +120,42 @@ void follow_lines(const Walk& walk) {
             if (!line.open()) continue;
             SurfacePoint surface = walk.snapshot.occluders->surface(tested[i], hits, static_cast<int>(i));
             if (hits.instance[i] == line.instance && hits.triangle[i] == line.triangle) surface.alpha = 0;
-            if (layer + 1 == most_layers) surface.alpha = 1;
+            if (layer + 1 == max_layers) surface.alpha = 1;
             meet_surface(walk, line, surface, hits.instance[i], hits.triangle[i]);
         }
         connect(walk.tracer, walk.scratch.connections, walk.batch, walk.results);
-        std::erase_if(lines, [](const Line& line) { return !line.open(); });
+        std::erase_if(lines, [](const Segment& line) { return !line.open(); });
     }
 }
 }
 
-void add_light(const Walk& walk, const Line& line, vec3 radiance, bool in_fog) {
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, bool in_fog) {
     Scatter& result = walk.results[line.walker.lane];
-    (in_fog ? result.radiance : result.surface) += line.walker.carried * radiance;
+    (in_fog ? result.radiance : result.surface) += line.walker.throughput * radiance;
 }
 
-void queue(const Walk& walk, Line& line, Connection connection, vec3 light, bool in_fog) {
+void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {
     connection.lane = line.walker.lane, connection.in_fog = in_fog;
-    connection.light = line.walker.carried * light;
+    connection.light = line.walker.throughput * light;
     connection.random = {hash(line.random.key, line.random.count++, 1u)};
     if (max_component(connection.light) > 0) walk.scratch.connections.push_back(connection);
 }
 
-void turn(const Walk& walk, const Line& line, Ray ray, vec3 share, float density, bool in_fog) {
-    const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !walk.tracer.glimmers;
-    Walker next = line.walker;
+void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, bool in_fog) {
+    const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !walk.tracer.has_emission;
+    PathVertex next = line.walker;
     next.ray = ray, next.skip = 0, next.density = density, next.in_fog = in_fog;
-    next.carried *= share;
-    const float brightness = max_component(next.carried);
+    next.throughput *= share;
+    const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;
     if (walk.order + 1 >= certain_orders && brightness < 1) {
         if (line.numbers(use_roulette).x >= brightness) return;
-        next.carried /= brightness;
+        next.throughput /= brightness;
     }
     walk.scratch.walkers.push_back(next);
 }
 
-void meet_surface(const Walk& walk, Line& line, const SurfacePoint& surface, int instance, int triangle) {
+void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
     const float share = line.through * surface.alpha;
     if (walk.tracer.surfaces_emit && max_component(surface.emission) > 0) {
         const float aimed =
@@ -184,9 +184,9 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
     scratch.walkers.clear(), scratch.connections.clear();
     std::fill(results.begin(), results.end(), Scatter{});
     for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
-        Walker walker;
+        PathVertex walker;
         walker.lane = lane, walker.ray = batch.rays[lane], walker.id = batch.ids[lane];
-        walker.skip = batch.near.empty() ? 0 : batch.near[lane];
+        walker.skip = batch.clip_near.empty() ? 0 : batch.clip_near[lane];
         walker.place = batch.places.empty() ? SamplePlace{walker.id, 0} : batch.places[lane];
         scratch.walkers.push_back(walker);
     }
@@ -194,7 +194,7 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
     for (int order = 0; order <= orders && !scratch.walkers.empty(); ++order) {
         // What this limit cuts off would be missing: the sample does not count as valid.
         if (order == all_orders)
-            for (const Walker& walker : scratch.walkers) results[walker.lane].validity = 0;
+            for (const PathVertex& walker : scratch.walkers) results[walker.lane].validity = 0;
         const Walk walk{tracer, tracer.snapshot, batch, results, scratch, order, order < orders};
         start_lines(walk);
         follow_lines(walk);

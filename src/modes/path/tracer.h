@@ -8,7 +8,7 @@
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
-#include "trace/glow.h"
+#include "trace/emissive_triangles.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {
@@ -18,8 +18,8 @@ struct PathTracer {
     bool surfaces_emit = true;
     Camera camera;
     ivec2 size{0};
-    Glow glow;
-    bool glimmers = false; // fog, surfaces or surroundings give off light that paths must find by themselves
+    EmissiveTriangles glow;
+    bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 
 // Traces the paths of one pixel sample of up to 16 pixels.

@@ -17,10 +17,10 @@ float smooth(float x) {
     return t * t * (3 - 2 * t);
 }
 
-// What even fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth).
+// What homogeneous fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth).
 vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards) {
     vec3 sum(0);
-    for (const Medium& medium : even_media(snapshot.media)) {
+    for (const Medium& medium : homogeneous_media(snapshot.media)) {
         const float depth = static_cast<float>(optical_depth(medium, towards));
         sum += medium.optics.albedo * (phase_value(medium.optics.phase, 1) * -std::expm1(-depth));
     }
@@ -32,7 +32,7 @@ vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& tow
 vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float radius) {
     vec3 sum(0);
     float whole = 0;
-    for (const Medium& medium : even_media(snapshot.media)) {
+    for (const Medium& medium : homogeneous_media(snapshot.media)) {
         const float depth = static_cast<float>(optical_depth(medium, towards));
         sum += medium.optics.albedo * depth, whole += depth;
     }

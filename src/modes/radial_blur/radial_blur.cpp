@@ -4,9 +4,9 @@
 #include "modes/radial_blur/limitations.h"
 #include "modes/radial_blur/settings.h"
 
-#include "integrate/even_fog.h"
+#include "integrate/homogeneous_fog.h"
 #include "integrate/style.h"
-#include "modes/fog_picture.h"
+#include "modes/fog_buffer.h"
 #include "modes/mode.h"
 #include "modes/radial_blur/glow.h"
 #include "scene/light.h"
@@ -25,7 +25,7 @@ struct RadialBlur {
 
 Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
     const View& view = blur.view;
-    const ivec2 size = shared_size(view.size, blur.settings.picture);
+    const ivec2 size = shared_size(view.size, blur.settings.resolution);
     Addition addition{Image<vec3>(view.size), Image<float>(view.size, 1.0f), {}};
     if (view.per_light) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(view.size));
     if (blur.lights.empty()) return addition;
@@ -49,7 +49,8 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
 }
 
 ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const Settings& settings, History*) {
-    return dimming_only(settings.of<RadialBlurSettings>().fog ? even_media(snapshot.media) : std::vector<Medium>{});
+    return dimming_only(settings.of<RadialBlurSettings>().fog ? homogeneous_media(snapshot.media)
+                                                              : std::vector<Medium>{});
 }
 
 PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const Settings& settings) {
@@ -65,7 +66,7 @@ Mode radial_blur_mode() {
     return {.name = "radial-blur",
             .summary = "brightness smeared away from the lights in the finished picture",
             .use = "a quick effect over a finished image, with the light in or near the frame",
-            .accuracy = Accuracy::look,
+            .accuracy = Accuracy::artistic,
             .surfaces = Surfaces::post,
             .limitations = radial_blur_limitations,
             .prepare = prepare_radial_blur,

@@ -29,19 +29,19 @@ void append_radial_blur_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("radial_blur.fade", "half pictures", 0.01, 100,
                               "how far outside the picture a light is when its rays have faded",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fade)));
-    rows.push_back(choice_row("radial_blur.picture", picture_shares, "resolution of the blur along each side",
-                              TYNDALL_FIELD(of<RadialBlurSettings>().picture)));
+    rows.push_back(choice_row("radial_blur.resolution", resolutions, "resolution of the blur along each side",
+                              TYNDALL_FIELD(of<RadialBlurSettings>().resolution)));
     rows.push_back(choice_row("radial_blur.fog", switches, "surfaces and background fade in fog, taken as even",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fog)));
     mark_advanced(rows, {"decay", "weight", "exposure", "fade"});
 }
 
 std::vector<Rung> radial_blur_rungs() {
-    return {{"", "pixel.samples=1 radial_blur.samples=8 radial_blur.picture=quarter"},
-            {"", "pixel.samples=1 radial_blur.samples=16 radial_blur.picture=quarter"},
-            {"", "pixel.samples=1 radial_blur.samples=32 radial_blur.picture=half"},
-            {"", "pixel.samples=4 radial_blur.samples=64 radial_blur.picture=half"},
-            {"", "pixel.samples=16 radial_blur.samples=128 radial_blur.picture=full"},
-            {"", "pixel.samples=64 radial_blur.samples=256 radial_blur.picture=full"}};
+    return {{"", "pixel.samples=1 radial_blur.samples=8 radial_blur.resolution=quarter"},
+            {"", "pixel.samples=1 radial_blur.samples=16 radial_blur.resolution=quarter"},
+            {"", "pixel.samples=1 radial_blur.samples=32 radial_blur.resolution=half"},
+            {"", "pixel.samples=4 radial_blur.samples=64 radial_blur.resolution=half"},
+            {"", "pixel.samples=16 radial_blur.samples=128 radial_blur.resolution=full"},
+            {"", "pixel.samples=64 radial_blur.samples=256 radial_blur.resolution=full"}};
 }
 }

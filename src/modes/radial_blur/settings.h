@@ -1,6 +1,6 @@
 // Settings of the radial blur.
 #pragma once
-#include "modes/picture_share.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 
 namespace tyndall {
@@ -19,8 +19,8 @@ struct RadialBlurSettings {
     float size = 2.5f;      // occlusion: radius of the bright sky around a sun, in picture heights
     float lamp_size = 0.3f; // occlusion: radius of the bright disc of other lights, metres
     float fade = 2;         // how far outside the picture a light may be before its rays have faded, in half pictures
-    PictureShare picture = PictureShare::half;
-    bool fog = true; // what lies behind fades in even fog
+    Resolution resolution = Resolution::half;
+    bool fog = true; // what lies behind fades in homogeneous fog
 };
 
 // For its row of the table.

@@ -76,7 +76,7 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     result.radiance = vec3(0);
     for (size_t m = 0; m < packet.media(); ++m) {
         result.radiance +=
-            glow_per_extinction(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
+            source_radiance(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
     }
     for (size_t i = 0; i < packet.lights(); ++i) {
         vec3 part(0);

@@ -3,7 +3,7 @@
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "modes/shadow_map/settings.h"
-#include "trace/shadows/kept_shadows.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 
@@ -27,15 +27,15 @@ struct ShadowMapMarch {
 // Smallest detail of the brick media, metres: that of a noise's last octave is some voxels wide.
 float fog_detail(std::span<const Medium> media);
 
-inline constexpr int least_uneven_steps = 8; // fewer are even
+inline constexpr int min_uneven_steps = 8; // fewer are even
 
 // The borders of `count` steps along a ray from first to last fog, t[0], t[stride], ...; the last is t[count·stride].
 // Of fog that goes on far beyond the scene the scene gets most steps, and what follows ever longer ones. All equal when
 // there is no fog.
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride);
 
-// Fog along up to 16 rays, in steps of even fog whose integral is exact: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire 2015,
-// section 5.6.3). Suns are asked for at the steps of the ray; a local light has as many steps of its own on what it
-// reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).
+// Fog along up to 16 rays, in steps of homogeneous fog whose integral is exact: L += T J (1-e^-D)/σ, T *= e^-D
+// (Hillaire 2015, section 5.6.3). Suns are asked for at the steps of the ray; a local light has as many steps of its
+// own on what it reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).
 void march_shadow_maps(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results);
 }

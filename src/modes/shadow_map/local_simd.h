@@ -116,7 +116,7 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
         const EquiAngular16 turning({low, high}, scale);
         const Floats slope = turning.slope(packet.jitter);
         const Vec3s position = fused(packet.direction, passing.nearest + slope * scale, packet.origin);
-        const Arriving light_at = arriving(light, march.cones[index], position);
+        const LightSamples light_at = arriving(light, march.cones[index], position);
         Mask16 active = reached & (length > 0.0f) & (light_at.amount > 0.0f);
         Floats share = 0.0f;
         if (any(active)) share = lit_share_of(packet, rays, turning, passing.nearest);

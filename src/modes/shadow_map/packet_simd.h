@@ -53,7 +53,7 @@ struct Packet {
 
 HWY_INLINE void add(const Floats& value, Sixteen& sum) { store(load(sum.data()) + value, sum.data()); }
 
-// Stretches of rays inside a box of the world.
+// PathPacket of rays inside a box of the world.
 HWY_INLINE Interval<Floats> inside_world_box(const Box& box, const Vec3s& origin, const Vec3s& direction,
                                              Interval<Floats> range) {
     clip_axis(origin.x, direction.x, box.low.x, box.high.x, range);
@@ -75,7 +75,7 @@ HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
     const Mask16 some = stretch.low < stretch.high;
     stretch = {zero_unless(some, stretch.low), zero_unless(some, stretch.high)};
     const Box& bounds = packet.march.snapshot.bounds;
-    if (packet.steps >= least_uneven_steps && !bounds.empty()) {
+    if (packet.steps >= min_uneven_steps && !bounds.empty()) {
         const Interval<Floats> scene = inside_world_box(bounds, packet.origin, packet.direction, stretch);
         const Mask16 crossed = scene.low < scene.high;
         if (any(crossed & (stretch.high - stretch.low >= (scene.high - scene.low) * 2.0f))) return false;

@@ -23,10 +23,10 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("shadow_map.bias", "texels", 0, 64,
                               "moves surfaces away from the light; fog needs none, and light leaks by as much",
                               TYNDALL_FIELD(of<ShadowMapSettings>().bias)));
-    rows.push_back(choice_row("shadow_map.picture", picture_shares,
+    rows.push_back(choice_row("shadow_map.fog_resolution", resolutions,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "
                               "regard to depth",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().picture)));
+                              TYNDALL_FIELD(of<ShadowMapSettings>().fog_resolution)));
     rows.push_back(choice_row("shadow_map.blur", switches,
                               "smooths the jitter's pattern over 4x4 pixels of like depth (of one ray per pixel)",
                               TYNDALL_FIELD(of<ShadowMapSettings>().blur)));

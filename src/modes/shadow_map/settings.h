@@ -1,6 +1,6 @@
 // Settings of the march with shadow maps.
 #pragma once
-#include "modes/picture_share.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 
 namespace tyndall {
@@ -15,7 +15,7 @@ struct ShadowMapSettings {
     int cascades = 3;     // most maps of a sun
     int pcf = 0;          // 0 nearest texel, 1 the four around, 2 sixteen
     float bias = 0;       // texels
-    PictureShare picture = PictureShare::full;
+    Resolution fog_resolution = Resolution::full;
     bool blur = false; // of the jitter's pattern
 };
 

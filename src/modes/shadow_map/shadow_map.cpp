@@ -1,10 +1,10 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "integrate/style.h"
-#include "modes/fog_picture.h"
+#include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
-#include "modes/picture_share.h"
+#include "modes/resolution.h"
 #include "modes/shadow_map/kernel.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
@@ -42,10 +42,11 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
         march_shadow_maps(*march, batch, results);
     };
-    const FogPictureOptions picture{settings.of<ShadowMapSettings>().picture, settings.of<ShadowMapSettings>().blur};
+    const FogBufferOptions picture{settings.of<ShadowMapSettings>().fog_resolution,
+                                   settings.of<ShadowMapSettings>().blur};
     if (history) follow(*history, view, snapshot, settings);
-    if (picture.share == PictureShare::full && !picture.blur && !history) return scatter;
-    return from_fog_picture(view, snapshot, picture, std::move(scatter), history);
+    if (picture.share == Resolution::full && !picture.blur && !history) return scatter;
+    return from_fog_buffer(view, snapshot, picture, std::move(scatter), history);
 }
 
 Mode shadow_map_mode() {

@@ -13,7 +13,7 @@ void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* 
             t[static_cast<size_t>(first + k) * stride] = part.low + step * static_cast<float>(k);
     };
     const Interval<float> scene = scene_part(march.snapshot, ray, stretch);
-    if (scene.length() == stretch.length() || count < least_uneven_steps) return even(stretch, 0, count);
+    if (scene.length() == stretch.length() || count < min_uneven_steps) return even(stretch, 0, count);
 
     const int before = scene.low > stretch.low ? count / 8 : 0, after = stretch.high > scene.high ? count / 4 : 0;
     even({stretch.low, scene.low}, 0, before);

@@ -5,7 +5,7 @@
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
-#include "trace/shadows/kept_shadows.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/shadows/volumes/shadow_volumes.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
@@ -36,7 +36,7 @@ void add_shadows(const Snapshot& snapshot, Limitations& limitations) {
         shadows = true;
         if (is_soft(light))
             limitations.push_back({Severity::degraded, &limitation::hard_shadows, Subject::light, light.name});
-        const size_t edges = kept_shadow_volumes(snapshot, light)->sides.size();
+        const size_t edges = cached_shadow_volumes(snapshot, light)->sides.size();
         if (edges > many_edges)
             limitations.push_back({Severity::info,
                                    &limitation::many_silhouette_edges,

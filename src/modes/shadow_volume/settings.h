@@ -10,12 +10,12 @@ struct Snapshot;
 enum class ShadowDraw { exact, shells };
 // The fog that is integrated: every medium at its mean density in closed form, or the true densities in short steps.
 // `automatic` samples where there is a grid.
-enum class ShadowFog { automatic, even, sampled };
+enum class ShadowFog { automatic, homogeneous, sampled };
 
 struct ShadowVolumeSettings {
     ShadowDraw draw = ShadowDraw::exact;
     ShadowFog fog = ShadowFog::automatic;
-    int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of even fog
+    int nodes = 4;                 // Gauss–Legendre nodes on each lit stretch of homogeneous fog
     int steps = 24;                // along a ray, where fog is sampled
     float shell_length = 0;        // metres behind the occluder at which a shell has faded out; 0 = half the scene
     float shell_intensity = 0.03f; // share of that length: the depth of lit fog a shell is as bright as

@@ -1,5 +1,5 @@
 // Shadow volumes: exact shafts without noise.
-#include "integrate/lit_fog.h"
+#include "integrate/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/mode.h"
 #include "modes/shadow_volume/limitations.h"
@@ -19,7 +19,7 @@ float half_diagonal(const Box& scene) {
 }
 
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
-    auto frame = std::make_shared<LitFog>();
+    auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     frame->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), frame->style = settings.style;
     frame->nodes = own.nodes, frame->steps = own.steps;
@@ -28,19 +28,21 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     frame->sampled = samples_fog(frame->snapshot, own);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
-            if (medium.kind == DensityKind::bricks) frame->uneven.push_back(medium.world_bounds);
-        frame->snapshot.media = even_media(frame->snapshot.media);
+            if (medium.kind == DensityKind::bricks) frame->heterogeneous.push_back(medium.world_bounds);
+        frame->snapshot.media = homogeneous_media(frame->snapshot.media);
     }
     const auto by = [](const Light&) { return ShadowsBy::volumes; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
-    return [frame](const RayBatch& batch, std::span<Scatter> results) { lit_fog_packet(*frame, batch, results); };
+    return [frame](const RayBatch& batch, std::span<Scatter> results) {
+        single_scattering_packet(*frame, batch, results);
+    };
 }
 
 Mode shadow_volume_mode() {
     return {.name = "shadow-volume",
             .summary = "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
             .use = "a sun through gaps, without noise",
-            .accuracy = Accuracy::even_fog,
+            .accuracy = Accuracy::homogeneous,
             .surfaces = Surfaces::shared,
             .limitations = shadow_volume_limitations,
             .prepare = prepare_shadow_volume,

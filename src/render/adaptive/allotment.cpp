@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
 // A tile spreads at least as this share of the variance beside it, or of the picture's: chance may have hidden it.
-constexpr double beside_share = 1.0 / 16, picture_share = 1.0 / 256;
+constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
@@ -57,7 +57,7 @@ std::vector<double> cautious(const Tiles& tiles) {
     for (int y = 0; y < tiles.size.y; ++y)
         for (int x = 0; x < tiles.size.x; ++x) {
             const size_t here = tiles.index({x, y});
-            result[here] = std::max(tiles.variance[here] / tiles.pixels[here], picture_share * sum / pixels);
+            result[here] = std::max(tiles.variance[here] / tiles.pixels[here], image_share * sum / pixels);
             for (int v = std::max(y - 1, 0); v <= std::min(y + 1, tiles.size.y - 1); ++v)
                 for (int u = std::max(x - 1, 0); u <= std::min(x + 1, tiles.size.x - 1); ++u) {
                     const size_t i = tiles.index({u, v});
@@ -69,7 +69,7 @@ std::vector<double> cautious(const Tiles& tiles) {
 
 float samples_at(double scale, double variance, double power, int least) {
     return static_cast<float>(
-        std::clamp(scale * std::pow(variance, 1 / (1 + power)), 1.0 * least, 1.0 * most_tile_samples));
+        std::clamp(scale * std::pow(variance, 1 / (1 + power)), 1.0 * least, 1.0 * max_tile_samples));
 }
 }
 
@@ -103,7 +103,7 @@ std::shared_ptr<const TileFactors> factors_of(const Allotment& allotment, double
     result->low = allotment.low, result->factors = Image<uint16_t>(allotment.samples.size);
     for (size_t i = 0; i < allotment.samples.pixels.size(); ++i)
         result->factors.pixels[i] = static_cast<uint16_t>(
-            std::clamp(std::ceil(scale * allotment.samples.pixels[i] / unit), 1.0, 1.0 * most_tile_samples - 1));
+            std::clamp(std::ceil(scale * allotment.samples.pixels[i] / unit), 1.0, 1.0 * max_tile_samples - 1));
     return result;
 }
 }

@@ -6,7 +6,7 @@
 namespace tyndall {
 struct TileFactors;
 
-inline constexpr int most_tile_samples = 1 << 16; // of a pixel
+inline constexpr int max_tile_samples = 1 << 16; // of a pixel
 
 struct Allotment {
     ivec2 low{0};             // the first tile's place

@@ -18,7 +18,7 @@ std::vector<std::string> free_rows(const Mode& mode, const Settings& settings, Q
 }
 
 bool has_integrator(const Mode& mode) {
-    return mode.accuracy != Accuracy::look && !error_is_noise(mode) && !ladder_rows(mode).empty();
+    return mode.accuracy != Accuracy::artistic && !error_is_noise(mode) && !ladder_rows(mode).empty();
 }
 
 bool error_can_be_told(const Mode& mode) { return error_is_noise(mode) || has_integrator(mode); }

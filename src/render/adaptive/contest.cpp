@@ -32,7 +32,7 @@ double samples_for(const Contender& contender, double error) {
     if (m.single.bound <= wanted) return 1;
     if (!(left > 0)) return infinity;
     const double samples = std::max(2.0, std::ceil(std::pow(m.sample.value / left, 1 / contender.choice.power)));
-    return samples <= most_target_samples ? samples : infinity;
+    return samples <= max_target_samples ? samples : infinity;
 }
 
 // The picture a candidate would make of the goal. Where it does not get there, as good as it may become.
@@ -41,7 +41,7 @@ void predict(Contender& contender, const Goal& goal) {
     const auto seconds_of = [&](double samples) { return m.prepare_seconds + samples * m.sample_seconds; };
     if (goal.error > 0) {
         contender.samples = samples_for(contender, goal.error);
-        const double samples = std::min(contender.samples, 1.0 * most_target_samples);
+        const double samples = std::min(contender.samples, 1.0 * max_target_samples);
         contender.seconds = seconds_of(samples), contender.error = error_with(contender, samples);
         if (goal.seconds == 0 || (contender.gets_there() && contender.seconds <= goal.seconds)) return;
     }
@@ -52,11 +52,11 @@ void predict(Contender& contender, const Goal& goal) {
 
 // Whether finer candidates of a mode than this can still win.
 bool may_improve(const Contender& last, int idle, const Contender& best, const Goal& goal) {
-    constexpr int most_idle = 2; // reduced pictures may be as wrong as each other beside a lamp
+    constexpr int max_idle = 2; // reduced pictures may be as wrong as each other beside a lamp
     const Measured& m = last.choice.measured;
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
-    if (idle >= most_idle) return false;
+    if (idle >= max_idle) return false;
     if (goal.error > 0 && best.gets_there() && least >= best.seconds) return false;
     if (goal.error > 0 && last.gets_there() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
     // Where noise rules, or time is nearly up, finer is worse.

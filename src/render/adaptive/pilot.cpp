@@ -27,7 +27,7 @@ void spread_tiles(const View& view, Pilot& pilot) {
     const ivec2 first = (cropped ? view.crop_low : ivec2(0)) / tile_side;
     const ivec2 tiles = ((cropped ? view.crop_high : view.size) - 1) / tile_side + 1 - first;
     pilot.tiles = static_cast<double>(tiles.x) * tiles.y;
-    size_t wanted = most_lamp_tiles;
+    size_t wanted = max_lamp_tiles;
     std::vector<ivec2>& corners = pilot.corners;
     const auto add = [&](ivec2 tile) {
         const ivec2 corner = (first + tile) * tile_side;
@@ -40,8 +40,8 @@ void spread_tiles(const View& view, Pilot& pilot) {
             add(ivec2(place));
     }
     pilot.lamp_tiles = corners.size();
-    wanted = static_cast<size_t>(std::min<double>(pilot.tiles, most_pilot_tiles));
-    for (uint32_t k = 0; k < 4 * most_pilot_tiles; ++k) {
+    wanted = static_cast<size_t>(std::min<double>(pilot.tiles, max_pilot_tiles));
+    for (uint32_t k = 0; k < 4 * max_pilot_tiles; ++k) {
         const Sample2 place = sample2(k, use_pilot);
         add(glm::min(ivec2(vec2(place.x, place.y) * vec2(tiles)), tiles - 1));
     }

@@ -10,9 +10,9 @@
 #include "trace/view.h"
 
 namespace tyndall {
-inline constexpr int most_pilot_tiles = 128; // of sixteen pixels
+inline constexpr int max_pilot_tiles = 128; // of sixteen pixels
 inline constexpr int fewest_pilot_tiles = 32;
-inline constexpr int most_lamp_tiles = 16;
+inline constexpr int max_lamp_tiles = 16;
 // Of a tile: for both samples, for each of its pixels, colour and fog light.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 

@@ -15,13 +15,13 @@ namespace tyndall {
 namespace {
 // Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
 // which show by then.
-constexpr double most_first_samples = 64;
+constexpr double max_first_samples = 64;
 
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.
 int samples_needed(const Noise& noise, int samples, double target, int batches) {
     const double ratio = noise.bound / target, needed = 1.02 * samples * ratio * ratio;
-    if (!(needed < most_target_samples)) return most_target_samples;
+    if (!(needed < max_target_samples)) return max_target_samples;
     const int whole = (static_cast<int>(std::ceil(needed)) + batches - 1) / batches * batches;
     return std::max(whole, samples + batches);
 }
@@ -42,11 +42,11 @@ struct Rounds {
     std::optional<Allotment> allotment{};
     double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
     double first_part = 1;   // of an allotment
-    double done = 0, expected = most_target_samples;
+    double done = 0, expected = max_target_samples;
     int freedom = 0; // differences between batches so far
 
     double left() const { return goal.seconds - (goal.clock() - start); }
-    int most_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
+    int max_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
     // Samples that are allotted at once.
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
@@ -65,7 +65,7 @@ struct Rounds {
     View round_view(double& work, int round) const {
         View result = view;
         if (round) result.seed = hash(view.seed, static_cast<uint32_t>(round));
-        result.batches = allotment ? unit() : std::min(most_batches(), static_cast<int>(work));
+        result.batches = allotment ? unit() : std::min(max_batches(), static_cast<int>(work));
         result.pixel_samples = allotment ? unit() : static_cast<int>(work) / result.batches * result.batches;
         if (allotment)
             result.allotted = factors_of(*allotment, work, unit());
@@ -95,19 +95,19 @@ Choice choice_for(const Rounds& rounds, const Snapshot& snapshot, const Settings
 // Where nothing is known, the first round is as the view asks; otherwise a small part of what is likely to be needed:
 // it shows which pixels need it.
 int first_round(Rounds& rounds) {
-    if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), most_target_samples);
+    if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), max_target_samples);
     const Measured& measured = rounds.choice->measured;
-    int samples = most_target_samples;
+    int samples = max_target_samples;
     if (rounds.goal.error > 0) {
         const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
         const double needed = std::pow(ratio, 1 / rounds.choice->power);
-        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, most_first_samples));
+        samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, max_first_samples));
         if (needed < 8) samples = std::max(static_cast<int>(std::ceil(needed / 2)), 2);
         if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
-        rounds.expected = std::max<double>(samples, std::min<double>(needed, most_target_samples));
+        rounds.expected = std::max<double>(samples, std::min<double>(needed, max_target_samples));
     }
     if (rounds.goal.seconds > 0) {
-        const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + most_target_samples));
+        const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + max_target_samples));
         samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
         rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
     }
@@ -122,7 +122,7 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     const double pixels = pixel_count(rounds.view);
     const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
     const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
-    Enough enough{0, most_target_samples * pixels};
+    Enough enough{0, max_target_samples * pixels};
     if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
     if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
     const Allotment allotment = allot(layers, rounds.done, enough, power, rounds.unit());
@@ -156,8 +156,8 @@ double next_part(Rounds& rounds, const FrameStats& stats) {
 // Rounds stay large enough for a few to do, and no round wastes more than all before it; 0 when time is up.
 double next_round(Rounds& rounds, const FrameStats& stats) {
     if (rounds.allotment) return next_part(rounds, stats);
-    const int samples = static_cast<int>(rounds.done), batches = std::min(rounds.most_batches(), samples);
-    int wanted = most_target_samples - samples;
+    const int samples = static_cast<int>(rounds.done), batches = std::min(rounds.max_batches(), samples);
+    int wanted = max_target_samples - samples;
     if (rounds.goal.error > 0) {
         rounds.expected = samples_needed(*stats.noise, samples, rounds.noise_target(), batches);
         const int least = (samples / 8 + batches - 1) / batches * batches;
@@ -249,7 +249,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
         // A picture of one sample is the end: it has no variance to go on from.
-        if (judge(rounds, result, stats) || rays >= most_target_samples * pixels || rounds.freedom == 0) break;
+        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) break;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
     }

@@ -3,8 +3,8 @@
 #include "render/adaptive/goal.h"
 
 namespace tyndall {
-inline constexpr int noise_batches = 64;          // of a picture whose noise is measured pixel by pixel
-inline constexpr int most_target_samples = 65536; // per pixel
+inline constexpr int noise_batches = 64;         // of a picture whose noise is measured pixel by pixel
+inline constexpr int max_target_samples = 65536; // per pixel
 
 // The next number of samples that noise_batches divide.
 int batched_samples(int samples);
@@ -13,7 +13,7 @@ int batched_samples(int samples);
 void check_target(const Mode& mode, std::string_view option = "--target-error");
 
 // Renders rounds of samples, each with a seed of its own, until the bound of the error is at most goal.error, the next
-// round would end after goal.seconds, or pixels have most_target_samples on the average; stats.error() says how good it
+// round would end after goal.seconds, or pixels have max_target_samples on the average; stats.error() says how good it
 // is. First all pixels take equally many samples. Where that shows that a few need most of them, the picture is begun
 // anew with as many as each tile of 4×4 needs (render/adaptive/allotment.h), and stats.samples is their mean;
 // pixel.lamp_samples and pixel.edge_samples decide nothing. Noise is measured between batches: 64 in a round where

@@ -41,7 +41,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
 }
 }
 
-void start_paths(const View& view, std::span<const ivec2> pixels, int sample, Stretches& s,
+void start_paths(const View& view, std::span<const ivec2> pixels, int sample, PathPacket& s,
                  std::span<PixelSample> samples) {
     s.count = static_cast<int>(pixels.size());
     for (int i = 0; i < s.count; ++i) {
@@ -50,7 +50,7 @@ void start_paths(const View& view, std::span<const ivec2> pixels, int sample, St
     }
 }
 
-void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s) {
+void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s) {
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];
         s.tested[i] = {path.ray.at(path.skip), path.ray.direction, std::max(path.ray.t_max - path.skip, 0.0f)};
@@ -61,20 +61,20 @@ void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s) {
     for (int i = 0; i < s.count; ++i) s.length[i] = s.hit(i) ? s.path[i].skip + s.hits.t[i] : s.path[i].ray.t_max;
 }
 
-SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const Stretches& s) {
+SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& s) {
     SurfacesMet met;
     for (int i = 0; i < s.count; ++i) {
         if (!s.hit(i)) continue;
         SurfacePoint& point = met.points[met.count];
         point = snapshot.occluders->surface(s.tested[i], s.hits, i);
         if (s.hit_again(i)) point.alpha = 0;
-        if (layer + 1 == most_layers) point.alpha = 1;
+        if (layer + 1 == max_layers) point.alpha = 1;
         met.which[met.count++] = i;
     }
     return met;
 }
 
-bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<PixelSample> samples) {
+bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<PixelSample> samples) {
     int left = 0;
     for (size_t k = 0; k < met.count; ++k) {
         const int i = met.which[k];
@@ -96,7 +96,7 @@ bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<P
     return left > 0;
 }
 
-RayNumbers ray_numbers(const View& view, int layer, const Stretches& s) {
+RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s) {
     RayNumbers numbers;
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];

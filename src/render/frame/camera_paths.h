@@ -5,7 +5,7 @@
 #include "trace/occlusion/occluders.h"
 
 namespace tyndall {
-inline constexpr int most_layers = 64;
+inline constexpr int max_layers = 64;
 
 // Uses of random numbers.
 enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
@@ -25,7 +25,7 @@ struct Path {
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
 
-struct Stretches { // of the paths still on their way, packed
+struct PathPacket { // of the paths still on their way, packed
     Path path[16];
     int count = 0;
     Hits hits;
@@ -55,19 +55,19 @@ struct RayNumbers {
 
 // Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are and
 // how much they count.
-void start_paths(const View& view, std::span<const ivec2> pixels, int sample, Stretches& s,
+void start_paths(const View& view, std::span<const ivec2> pixels, int sample, PathPacket& s,
                  std::span<PixelSample> samples);
 
 // The first surface of each path. The 64th layer counts as opaque.
-void find_surfaces(const Snapshot& snapshot, int layer, Stretches& s);
-SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const Stretches& s);
+void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s);
+SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& s);
 
 // Ends the paths at opaque surfaces and moves the others to the far side of theirs; true while any is left.
-bool advance(const View& view, const SurfacesMet& met, Stretches& s, std::span<PixelSample> samples);
+bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<PixelSample> samples);
 
-RayNumbers ray_numbers(const View& view, int layer, const Stretches& s);
+RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s);
 
 // Modes with Surfaces::own: one whole ray for each path.
-void follow_own_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples,
+void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples,
                       std::span<vec3> per_light);
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr int tile_side = 4;
 constexpr int fewest_samples = 4; // of a pixel that probes pay for
 // Difference between brightest and darkest over their sum, at which a tile takes more samples, and all it may.
-constexpr float least_contrast = 0.15f, full_contrast = 0.6f;
+constexpr float min_contrast = 0.15f, full_contrast = 0.6f;
 
 // What centres of pixels show: sums over colours of the picture and of its fog light.
 struct Probes {
@@ -76,7 +76,7 @@ std::shared_ptr<const TileFactors> edge_factors(const FrameTracer& tracer, ivec2
     for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) {
             const float share =
-                (contrast(probes, ivec2(x, y) * tile_side) - least_contrast) / (full_contrast - least_contrast);
+                (contrast(probes, ivec2(x, y) * tile_side) - min_contrast) / (full_contrast - min_contrast);
             const float most = static_cast<float>(view.edge_samples);
             factors->factors.at(x - first.x, y - first.y) =
                 static_cast<uint16_t>(std::clamp(1 + share * (most - 1), 1.0f, most));

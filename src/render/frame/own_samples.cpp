@@ -4,7 +4,7 @@
 namespace tyndall {
 namespace {
 // One whole ray for each sample, from the eye to the far plane.
-void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
+void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
     const size_t count = static_cast<size_t>(s.count);
     Ray rays[16];
     float near[16];
@@ -16,7 +16,7 @@ void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> s
                     .per_light = per_light,
                     .jitter = {numbers.jitter, count},
                     .places = {numbers.places, count},
-                    .near = {near, count},
+                    .clip_near = {near, count},
                     .positions = {numbers.positions, count}},
                    {scatter, count});
 
@@ -32,12 +32,12 @@ void add_light(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> s
 }
 }
 
-void follow_own_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples,
+void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples,
                       std::span<vec3> per_light) {
     add_light(tracer, s, samples, per_light);
 
     // What covers the background, and the depth.
-    for (int layer = 0; layer < most_layers; ++layer) {
+    for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         for (int i = 0; i < s.count; ++i)
             if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through;

@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<PixelSample> samples,
+void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<PixelSample> samples,
              std::span<vec3> per_light) {
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
     Ray rays[16];
@@ -49,7 +49,7 @@ void add_fog(const FrameTracer& tracer, int layer, Stretches& s, std::span<Pixel
 }
 
 // Light of the surfaces met.
-void add_surfaces(const FrameTracer& tracer, int layer, const Stretches& s, const SurfacesMet& met,
+void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, const SurfacesMet& met,
                   std::span<PixelSample> samples, std::span<vec3> per_light) {
     const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
     const size_t points = static_cast<size_t>(tracer.light_points);
@@ -87,8 +87,8 @@ bool PixelSample::finite() const {
 }
 
 namespace {
-void follow_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
-    for (int layer = 0; layer < most_layers; ++layer) {
+void follow_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
+    for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         add_fog(tracer, layer, s, samples, per_light);
         for (int i = 0; i < s.count; ++i)
@@ -105,7 +105,7 @@ void follow_paths(const FrameTracer& tracer, Stretches& s, std::span<PixelSample
 void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
                    std::span<vec3> per_light) {
     std::fill(per_light.begin(), per_light.end(), vec3(0));
-    Stretches s;
+    PathPacket s;
     start_paths(tracer.view, pixels, sample, s, samples);
     if (tracer.surfaces == Surfaces::own)
         follow_own_paths(tracer, s, samples, per_light);

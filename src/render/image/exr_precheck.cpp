@@ -7,9 +7,9 @@
 
 namespace tyndall {
 namespace {
-constexpr int largest_side = 16384, most_channels = 1024, most_attributes = 4096;
+constexpr int largest_side = 16384, max_channels = 1024, max_attributes = 4096;
 constexpr int largest_coordinate = 1 << 24;
-constexpr uint64_t most_decoded_bytes = uint64_t{4} << 30;
+constexpr uint64_t max_decoded_bytes = uint64_t{4} << 30;
 constexpr uint64_t best_ratio = 1032; // of deflate; run lengths reach 64
 
 enum : uint32_t { tiled_flag = 0x200, long_names_flag = 0x400, deep_flag = 0x800, multipart_flag = 0x1000 };
@@ -45,7 +45,7 @@ void read_channels(Cursor cursor, ExrClaims& claims) {
         const int step_x = cursor.integer(), step_y = cursor.integer();
         if (type < 0 || type > 2) refuse(cursor.file, "a channel has an unknown pixel type");
         if (step_x != 1 || step_y != 1) refuse(cursor.file, "channels of reduced resolution are not read");
-        if (++claims.channels > most_channels) refuse(cursor.file, "more than 1024 channels");
+        if (++claims.channels > max_channels) refuse(cursor.file, "more than 1024 channels");
         claims.bytes_per_pixel += type == 1 ? 2 : 4;
     }
     if (claims.channels == 0) refuse(cursor.file, "there are no channels");
@@ -87,7 +87,7 @@ void check_amount(const ExrClaims& claims, uint64_t file_bytes, const std::strin
     const ivec2 size = claims.high - claims.low + 1;
     if (size.x > largest_side || size.y > largest_side) refuse(file, "the picture is larger than 16384 x 16384 pixels");
     const uint64_t pixels = static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
-    if (pixels * static_cast<uint64_t>(claims.channels) * sizeof(float) > most_decoded_bytes)
+    if (pixels * static_cast<uint64_t>(claims.channels) * sizeof(float) > max_decoded_bytes)
         refuse(file, "the picture would need more than 4 GiB of memory");
     if (pixels * claims.bytes_per_pixel / best_ratio > file_bytes)
         refuse(file, "the file is too short for its picture: cut off or damaged");
@@ -103,7 +103,7 @@ ExrClaims check_exr_claims(std::string_view bytes, const std::string& file) {
     for (int count = 0;; ++count) {
         const std::string_view name = cursor.name();
         if (name.empty()) break;
-        if (count == most_attributes) refuse(file, "the header has more than 4096 attributes");
+        if (count == max_attributes) refuse(file, "the header has more than 4096 attributes");
         const std::string_view type = cursor.name();
         const int32_t size = cursor.integer();
         if (size < 0) refuse(file, "an attribute has a negative size");

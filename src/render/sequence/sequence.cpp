@@ -155,7 +155,7 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
 void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
     Snapshot previous = work.snapshot;
-    previous.kept = work.snapshot.kept_before;
+    previous.cache = work.snapshot.cache_before;
     for (int back = pipeline.request.history; back > 0 && !pipeline.cancel; --back) {
         const int earlier = std::max(frame - back, first);
         Snapshot snapshot =
@@ -165,7 +165,7 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
         pipeline.plan.mode->prepare(view, snapshot, pipeline.plan.settings, &history);
         previous = std::move(snapshot);
     }
-    work.snapshot.kept_before = previous.kept;
+    work.snapshot.cache_before = previous.cache;
 }
 
 void render(Pipeline& pipeline, Work& work) {

@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-constexpr uint64_t most_bytes = uint64_t{4} << 30;
+constexpr uint64_t max_bytes = uint64_t{4} << 30;
 constexpr uint32_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
 uint32_t word(std::string_view bytes, size_t offset) {
@@ -54,7 +54,7 @@ void split_chunks(GltfContainer& container, const std::string& file) {
 GltfContainer read_gltf_container(const std::filesystem::path& path) {
     const std::string file = path.string();
     GltfContainer container;
-    container.bytes = read_file(path, most_bytes);
+    container.bytes = read_file(path, max_bytes);
     const std::string_view bytes = container.bytes;
     if (bytes.starts_with("glTF")) {
         split_chunks(container, file);

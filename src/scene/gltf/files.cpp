@@ -9,7 +9,7 @@
 namespace tyndall {
 namespace {
 namespace fs = std::filesystem;
-constexpr uint64_t most_buffer_bytes = uint64_t{8} << 30;
+constexpr uint64_t max_buffer_bytes = uint64_t{8} << 30;
 
 int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
@@ -142,7 +142,7 @@ void load_gltf_buffers(GltfDocument& document, const Json& json, const GltfConta
     uint64_t total = 0;
     for (size_t i = 0; i < buffers->items.size(); ++i) {
         total += static_cast<uint64_t>(buffers->items[i].number_or("byteLength", 0));
-        if (total > most_buffer_bytes)
+        if (total > max_buffer_bytes)
             refuse(document.place(gltf_pointer("buffers", i, "byteLength")), "all buffers together are over 8 GiB");
         document.lacking.emplace_back();
         document.buffers.push_back(buffer_bytes(document, buffers->items[i], i, container, document.lacking.back()));

@@ -8,7 +8,7 @@
 namespace tyndall {
 namespace {
 constexpr int largest_texture_side = 4096;
-constexpr size_t most_texels = size_t{64} << 20; // 1 GiB
+constexpr size_t max_texels = size_t{64} << 20; // 1 GiB
 
 // A texture as a material refers to it.
 struct TextureUse {
@@ -91,7 +91,7 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
 Image<vec4> fitted(GltfDocument& document, Image<vec4> image, int index) {
     const ivec2 before = image.size;
     while (std::max(image.size.x, image.size.y) > largest_texture_side ||
-           (image.pixels.size() > 1 && document.texels + image.pixels.size() > most_texels))
+           (image.pixels.size() > 1 && document.texels + image.pixels.size() > max_texels))
         image = halved(image);
     document.texels += image.pixels.size();
     if (image.size != before)

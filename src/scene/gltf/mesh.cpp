@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t most_triangles = size_t{1} << 29;
+constexpr size_t max_triangles = size_t{1} << 29;
 
 // The attributes of a primitive as they stand in the file.
 struct Vertices {
@@ -57,7 +57,7 @@ std::vector<uint32_t> read_indices(GltfDocument& document, const tinygltf::Primi
                                                                  std::to_string(vertices) + " vertices");
         return indices;
     }
-    if (vertices > most_triangles) refuse(document.place(pointer), "has too many vertices");
+    if (vertices > max_triangles) refuse(document.place(pointer), "has too many vertices");
     indices.resize(vertices);
     for (size_t i = 0; i < vertices; ++i) indices[i] = static_cast<uint32_t>(i);
     return indices;
@@ -160,8 +160,8 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
     if (primitive.material >= 0) mesh.material = gltf_material(document, primitive.material, uv_set);
     const Vertices vertices = read_vertices(document, primitive, uv_set, pointer);
     const std::vector<uint32_t> indices = read_indices(document, primitive, vertices.count(), pointer);
-    if (indices.size() / 3 + document.triangles > most_triangles)
-        refuse(document.place(pointer), "the file has more than " + std::to_string(most_triangles) + " triangles");
+    if (indices.size() / 3 + document.triangles > max_triangles)
+        refuse(document.place(pointer), "the file has more than " + std::to_string(max_triangles) + " triangles");
     mesh.triangles = triangles_of(indices, primitive.mode);
     if (const size_t dropped = drop_non_finite(mesh.triangles, vertices.positions))
         document.count("triangles with corners that are not numbers are left out", static_cast<int>(dropped));

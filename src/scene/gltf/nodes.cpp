@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t most_instances = 1000000;
+constexpr size_t max_instances = 1000000;
 
 vec3 triple(const std::vector<double>& values, vec3 otherwise) {
     return values.size() == 3 ? vec3(values[0], values[1], values[2]) : otherwise;
@@ -62,8 +62,8 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
 
 void add_instances(GltfDocument& document, int mesh, int node, const std::string& pointer) {
     for (const int drawn : gltf_mesh(document, mesh)) {
-        if (document.scene->instances.size() >= most_instances)
-            refuse(document.place(pointer), "the scene has more than " + std::to_string(most_instances) + " instances");
+        if (document.scene->instances.size() >= max_instances)
+            refuse(document.place(pointer), "the scene has more than " + std::to_string(max_instances) + " instances");
         document.scene->instances.push_back({node, drawn});
     }
 }
@@ -84,7 +84,7 @@ void add_gpu_instances(GltfDocument& document, int index, const tinygltf::Value&
     };
     const std::vector<float> moves = values("TRANSLATION", 3), turns = values("ROTATION", 4),
                              sizes = values("SCALE", 3);
-    if (count > most_instances) refuse(document.place(pointer), "has too many instances");
+    if (count > max_instances) refuse(document.place(pointer), "has too many instances");
     for (size_t i = 0; i < count; ++i) {
         Node node;
         node.name = document.scene->nodes[document.nodes[index]].name + " " + std::to_string(i);

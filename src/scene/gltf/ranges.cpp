@@ -6,8 +6,8 @@
 
 namespace tyndall {
 namespace {
-constexpr uint64_t most_elements_of_zeros = uint64_t{1} << 24; // of an accessor without data
-constexpr int most_levels = 256;
+constexpr uint64_t max_elements_of_zeros = uint64_t{1} << 24; // of an accessor without data
+constexpr int max_levels = 256;
 
 void check_buffer_views(const GltfDocument& document) {
     for (size_t i = 0; i < document.model.bufferViews.size(); ++i) {
@@ -53,7 +53,7 @@ void check_accessors(const GltfDocument& document) {
                            " bytes of an element of accessor " + std::to_string(i));
             check_span(document, accessor.bufferView, accessor.byteOffset, accessor.count, extent(accessor, size),
                        stride ? stride : size, pointer);
-        } else if (accessor.count > most_elements_of_zeros) {
+        } else if (accessor.count > max_elements_of_zeros) {
             refuse(document.place(pointer + "/count"),
                    "is " + std::to_string(accessor.count) + ": too many for an accessor without a buffer view");
         }
@@ -88,9 +88,9 @@ void check_nodes(const GltfDocument& document) {
     std::vector<int> level(nodes.size(), 0);
     for (size_t i = 0; i < nodes.size(); ++i) {
         int steps = 0, at = static_cast<int>(i);
-        while (at >= 0 && !level[at] && ++steps <= most_levels) at = parent[at];
+        while (at >= 0 && !level[at] && ++steps <= max_levels) at = parent[at];
         const int above = at >= 0 && level[at] ? level[at] : 0;
-        if (steps + above > most_levels)
+        if (steps + above > max_levels)
             refuse(document.place(gltf_pointer("nodes", i)), "its parents go in a circle, or more than 256 levels up");
         int down = steps + above;
         for (int walk = static_cast<int>(i); walk >= 0 && !level[walk]; walk = parent[walk]) level[walk] = down--;

@@ -6,7 +6,7 @@
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"
 #include "trace/fluence/walls.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
@@ -19,7 +19,7 @@ constexpr int64_t round_blocks = 64; // traced before their flights are put into
 constexpr int slab_cells = 4;        // along x, filled by one thread at a time
 constexpr int64_t pilot_share = 8;   // one path of so many finds out where light is worth following
 constexpr int64_t fewest_hits = 8;   // of the pilot in a stratum, on average
-constexpr int most_side = 32;        // strata
+constexpr int max_side = 32;         // strata
 constexpr double evenly = 0.2;       // share of the paths that the pilot has no say in
 
 // Cells of one size, at multiples of it in the world: the grid stands still while the fog's bounds change a little.
@@ -110,8 +110,8 @@ struct Pilot {
 };
 
 Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
-    const Emission emission = even_emission(snapshot, rules.reach, most_side);
-    Pilot pilot{most_side, std::vector<double>(emission.cumulative.size(), 0.0)};
+    const Emission emission = even_emission(snapshot, rules.reach, max_side);
+    Pilot pilot{max_side, std::vector<double>(emission.cumulative.size(), 0.0)};
     std::vector<LightPathResult> results(static_cast<size_t>((paths + block_paths - 1) / block_paths));
     rules.seed = hash(rules.seed, 1u);
     parallel_for(static_cast<int64_t>(results.size()), [&](int64_t b) {
@@ -146,8 +146,8 @@ Emission emission_by_pilot(const Snapshot& snapshot, const LightPathRules& rules
     return emission;
 }
 
-KeptKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
-    KeptKey key;
+CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
+    CacheKey key;
     key.add(seed);
     key.add(snapshot.occluders).add(snapshot.bounds);
     key.add(settings.orders).add(settings.resolution).add(settings.paths);
@@ -192,11 +192,11 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     return grid;
 }
 
-std::shared_ptr<const FluenceGrid> kept_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
-                                                uint32_t seed) {
+std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
+                                                  uint32_t seed) {
     if (settings.orders < 2 || snapshot.media.empty() || snapshot.lights.empty()) return nullptr;
     const std::shared_ptr<const FluenceGrid> grid =
-        kept(snapshot, fluence_key(snapshot, settings, seed), [&] { return make_fluence(snapshot, settings, seed); });
+        cached(snapshot, fluence_key(snapshot, settings, seed), [&] { return make_fluence(snapshot, settings, seed); });
     return grid->empty() ? nullptr : grid;
 }
 }

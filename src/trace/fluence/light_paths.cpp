@@ -12,13 +12,13 @@
 namespace tyndall {
 namespace {
 constexpr int certain_orders = 4;      // scatterings before Russian roulette may end a path
-constexpr int most_flights = 65536;    // of a path, BLEND surfaces included: more than roulette ever leaves
+constexpr int max_flights = 65536;     // of a path, BLEND surfaces included: more than roulette ever leaves
 constexpr size_t walkers_at_once = 16; // one packet of the ray tracer
 
 bool is_endless(const Medium& medium) { return !is_finite(medium.world_bounds.size()); }
 
 // The end of a path.
-struct Walker {
+struct PathVertex {
     Ray ray;
     vec3 light{0}; // power at its start, over the chance of the path
     vec3 share{1}; // of it that is left
@@ -44,8 +44,8 @@ struct Walk {
 };
 
 // Starts path `index` of `total`.
-Walker start(const Walk& walk, int64_t index, int64_t total) {
-    Walker walker;
+PathVertex start(const Walk& walk, int64_t index, int64_t total) {
+    PathVertex walker;
     walker.random = {hash(walk.rules.seed, static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32))};
     const std::vector<double>& sums = walk.emission.cumulative;
     const double wanted = (static_cast<double>(index) + walker.random.next()) / static_cast<double>(total);
@@ -72,7 +72,7 @@ Walker start(const Walk& walk, int64_t index, int64_t total) {
 }
 
 // Notes the part of a flight that counts.
-void note(const Walk& walk, Walker& walker, float length) {
+void note(const Walk& walk, PathVertex& walker, float length) {
     if (walker.order == 0 || walker.order >= walk.rules.orders) return;
     const Interval<float> inside = clip(walk.rules.noted, walker.ray.origin, walker.ray.direction, {0, length});
     if (inside.empty()) return;
@@ -82,13 +82,13 @@ void note(const Walk& walk, Walker& walker, float length) {
 }
 
 // What the light's range leaves of light that comes straight from it.
-float ranged(const Walk& walk, const Walker& walker, vec3 point) {
+float ranged(const Walk& walk, const PathVertex& walker, vec3 point) {
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
     return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
 // Goes on from a point with a share of the light, unless roulette ends the path.
-void turn(const Walk& walk, Walker& walker, Ray ray, vec3 share) {
+void turn(const Walk& walk, PathVertex& walker, Ray ray, vec3 share) {
     walker.share *= share, walker.ray = ray;
     ++walker.order;
     const float left = max_component(walker.share);
@@ -98,7 +98,7 @@ void turn(const Walk& walk, Walker& walker, Ray ray, vec3 share) {
     walker.share /= left;
 }
 
-void scatter(const Walk& walk, Walker& walker, const Optics& optics, float distance) {
+void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float distance) {
     const vec3 point = walker.ray.at(distance);
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
     vec3 share = optics.albedo;
@@ -110,7 +110,7 @@ void scatter(const Walk& walk, Walker& walker, const Optics& optics, float dista
 }
 
 // Lambert. Light that a surface does not cut off passes and is reflected as well, in half of the paths each.
-void meet(const Walk& walk, Walker& walker, const SurfacePoint& surface, float distance) {
+void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, float distance) {
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
     const bool through = walker.order == 0 && !light.shadows;
     const float reflecting = through ? 0.5f : surface.alpha;
@@ -135,7 +135,7 @@ void meet(const Walk& walk, Walker& walker, const SurfacePoint& surface, float d
 }
 
 // One flight of a walker, up to what it meets at `wall`.
-void fly(const Walk& walk, Walker& walker, float wall, const auto& surface_at) {
+void fly(const Walk& walk, PathVertex& walker, float wall, const auto& surface_at) {
     float nearest = std::min(wall, walker.ray.t_max);
     const Medium* hit = nullptr;
     int lookups = 0;
@@ -151,7 +151,7 @@ void fly(const Walk& walk, Walker& walker, float wall, const auto& surface_at) {
 }
 
 // Lets up to sixteen walkers make one flight each.
-void fly_all(const Walk& walk, std::span<Walker*> walkers) {
+void fly_all(const Walk& walk, std::span<PathVertex*> walkers) {
     const Occluders* occluders = walk.snapshot.occluders.get();
     Ray rays[walkers_at_once];
     Hits hits;
@@ -165,7 +165,7 @@ void fly_all(const Walk& walk, std::span<Walker*> walkers) {
     for (size_t i = 0; i < walkers.size(); ++i) {
         const float wall = hits.instance[i] >= 0 ? hits.t[i] : infinity;
         fly(walk, *walkers[i], wall, [&] { return occluders->surface(rays[i], hits, static_cast<int>(i)); });
-        if (++walkers[i]->flights == most_flights) walkers[i]->walking = false;
+        if (++walkers[i]->flights == max_flights) walkers[i]->walking = false;
     }
 }
 }
@@ -218,12 +218,12 @@ void trace_light_paths(const Snapshot& snapshot, const Emission& emission, const
     std::vector<LightSquare> squares;
     for (const Light& light : snapshot.lights) squares.push_back(square_of(light, rules.reach));
     const Walk walk{snapshot, emission, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
-    Walker walkers[walkers_at_once];
+    PathVertex walkers[walkers_at_once];
     for (int64_t done = 0; done < count; done += walkers_at_once) {
         const size_t some = static_cast<size_t>(std::min<int64_t>(walkers_at_once, count - done));
         for (size_t i = 0; i < some; ++i) walkers[i] = start(walk, first + done + static_cast<int64_t>(i), total);
         for (;;) {
-            Walker* walking[walkers_at_once];
+            PathVertex* walking[walkers_at_once];
             size_t left = 0;
             for (size_t i = 0; i < some; ++i)
                 if (walkers[i].walking) walking[left++] = &walkers[i];

@@ -11,9 +11,9 @@ namespace tyndall {
 namespace {
 constexpr uint32_t candidates = 32; // the even ones of the filter, the odd ones of lamps in the pixel
 constexpr uint32_t use_lamp = 0x1a3bu, use_choice = 0x1a3cu;
-constexpr float least_distance = 1e-4f; // pixels, below which the glow grows no further
-constexpr float beside_share = 0.02f;   // of the glow, outside of a spot's beam
-constexpr float away_glow = 0.125f;     // everywhere: that of a lamp 8 pixels away
+constexpr float min_distance = 1e-4f; // pixels, below which the glow grows no further
+constexpr float beside_share = 0.02f; // of the glow, outside of a spot's beam
+constexpr float away_glow = 0.125f;   // everywhere: that of a lamp 8 pixels away
 
 // The beam of a spot as the picture shows it: planes through the line of sight touch the cone at an angle ψ from the
 // axis in the picture, sin ψ = sin θ / sin β, with β between the axis and the line of sight.
@@ -39,7 +39,7 @@ float glow(const View& view, vec2 position) {
     for (const View::Lamp& lamp : view.lamps) {
         const vec2 off = position - lamp.at;
         const float distance = glm::length(off);
-        sum += (in_beam(lamp, off, distance) ? 1 : beside_share) / std::max({distance, lamp.radius, least_distance});
+        sum += (in_beam(lamp, off, distance) ? 1 : beside_share) / std::max({distance, lamp.radius, min_distance});
     }
     return sum;
 }

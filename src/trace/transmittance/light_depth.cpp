@@ -7,7 +7,7 @@
 #include "trace/transmittance/light_froxels.h"
 #include "trace/transmittance/light_grid.h"
 
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
 
@@ -58,8 +58,8 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 }
 
 // What the depths of the brick media along the way to a light depend on, apart from where they are asked for.
-KeptKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
-    KeptKey key;
+CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
+    CacheKey key;
     key.add(light).add(resolution);
     for (const Medium* medium : bricks) key.add(medium->bricks).add(grey_extinction(medium->optics));
     return key;
@@ -67,17 +67,17 @@ KeptKey depth_key(std::span<const Medium* const> bricks, const Light& light, int
 
 LightDepthFroxels kept_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
                                int resolution, const View& view) {
-    KeptKey key = depth_key(bricks, light, resolution);
-    return *kept(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
+    CacheKey key = depth_key(bricks, light, resolution);
+    return *cached(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
         LightDepthFroxels froxels = fitted_froxels(view, snapshot.bounds, resolution);
         if (froxels.size.x > 0) fill_froxels(bricks, light, froxels);
         return froxels;
     });
 }
 
-LightDepthGrid kept_grid(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
-                         int resolution) {
-    return *kept(snapshot, depth_key(bricks, light, resolution), [&] {
+LightDepthGrid cached_grid(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
+                           int resolution) {
+    return *cached(snapshot, depth_key(bricks, light, resolution), [&] {
         LightDepthGrid grid = fitted_grid(bricks, light, resolution);
         if (grid.size.x > 0) fill_grid(bricks, grid);
         return grid;
@@ -102,7 +102,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
         return depth;
     }
     if (filled || method != LightTransmittance::grid)
-        depth.grid = kept_grid(snapshot, bricks, light, resolution);
+        depth.grid = cached_grid(snapshot, bricks, light, resolution);
     else
         depth.grid = fitted_grid(bricks, light, resolution);
     if (method == LightTransmittance::average) {

@@ -67,7 +67,7 @@ namespace tyndall {
 HWY_EXPORT(fill_corners);
 
 namespace {
-constexpr float most_growth = 8; // of the slices' thickness from first to last
+constexpr float max_growth = 8; // of the slices' thickness from first to last
 
 // Planar depths between which the view's rays cross the bounds.
 Interval<float> seen_depths(const View& view, const Box& bounds) {
@@ -92,7 +92,7 @@ LightDepthFroxels fitted_froxels(const View& view, const Box& bounds, int resolu
     const Camera& camera = froxels.camera = view.camera;
     froxels.near = seen.low, froxels.far = seen.high;
     const bool ortho = camera.ortho_height > 0;
-    const float growth = ortho ? 1 : std::clamp(seen.high / std::max(seen.low, 1e-6f * seen.high), 1.0f, most_growth);
+    const float growth = ortho ? 1 : std::clamp(seen.high / std::max(seen.low, 1e-6f * seen.high), 1.0f, max_growth);
     froxels.first = 2 / (1 + growth);
 
     // Square cells, as many as fit the longer side, and one more beyond each edge.

@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int64_t most_corners = 64 << 20;   // of 4 bytes: 256 MB
-constexpr float most_across = 65536;         // corners along one axis
+constexpr int64_t max_corners = 64 << 20;    // of 4 bytes: 256 MB
+constexpr float max_across = 65536;          // corners along one axis
 constexpr float widest_cone = 70 * pi / 180; // half angle up to which perspective columns serve a spot
 constexpr float widest_view = 60 * pi / 180; // ... and a point light that has the fog to one side
 
@@ -155,9 +155,9 @@ void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
     for (;; cell *= 2.0f) {
         const vec3 low = glm::floor(fit.low / cell + slack), high = glm::ceil(fit.high / cell - slack);
         const vec3 corners = glm::max(high - low, vec3(1)) + 1.0f;
-        if (max_component(corners) > most_across) continue;
+        if (max_component(corners) > max_across) continue;
         grid.size = ivec3(corners);
-        if (int64_t{grid.size.x} * grid.size.y * grid.size.z > most_corners) continue;
+        if (int64_t{grid.size.x} * grid.size.y * grid.size.z > max_corners) continue;
         grid.scale = 1.0f / cell;
         grid.offset = -low;
         return;

@@ -20,7 +20,8 @@ HWY_INLINE Range range_of(const Floats& value, const Mask16& active, int size) {
     const float last = static_cast<float>(size - 1);
     const Floats low = select(active, value, infinity), high = select(active, value, -infinity);
     auto least = low.part[0], most = high.part[0];
-    for (size_t i = 1; i < parts; ++i) least = hn::Min(least, low.part[i]), most = hn::Max(most, high.part[i]);
+    for (size_t i = 1; i < vectors_per_packet; ++i)
+        least = hn::Min(least, low.part[i]), most = hn::Max(most, high.part[i]);
     const float from = hn::GetLane(hn::MinOfLanes(FloatTag(), least));
     const float to = hn::GetLane(hn::MaxOfLanes(FloatTag(), most));
     const int low_cell = std::max(std::min(static_cast<int>(std::clamp(from, 0.0f, last)), size - 2), 0);

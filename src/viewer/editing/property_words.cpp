@@ -106,7 +106,7 @@ vec3 direction_from(const SunPlace& place) {
 const char* kind_name(const MediumSource& medium) {
     switch (medium.kind) {
     case MediumKind::homogeneous:
-        return "even fog";
+        return "homogeneous fog";
     case MediumKind::height:
         return "height fog";
     case MediumKind::noise:

@@ -30,6 +30,6 @@ struct SunPlace {
 SunPlace sun_place(vec3 direction);         // the way the light travels, of any length
 vec3 direction_from(const SunPlace& place); // of unit length
 
-// Of lights and fog, for people: "spot", "sun", "even fog".
+// Of lights and fog, for people: "spot", "sun", "homogeneous fog".
 const char* kind_name(const MediumSource& medium);
 }

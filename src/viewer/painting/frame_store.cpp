@@ -1,7 +1,7 @@
 #include "viewer/painting/frame_store.h"
 
 #include "base/error.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ uint64_t resident_bytes() {
 
 uint64_t usual_store_bytes() { return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes() / 4; }
 
-FrameStore::FrameStore(uint64_t most_bytes) : most_bytes_(most_bytes) {}
+FrameStore::FrameStore(uint64_t max_bytes) : max_bytes_(max_bytes) {}
 FrameStore::~FrameStore() = default;
 
 size_t FrameStore::size() const { return frames_.size(); }
@@ -37,20 +37,20 @@ void FrameStore::begin(const std::shared_ptr<const Scene>& scene, MissingFrame m
 void FrameStore::clear() { frames_.clear(), ahead_.reset(); }
 
 void FrameStore::put(const Snapshot& snapshot) {
-    if (!snapshot.kept || snapshot.scene != scene_.get()) return;
+    if (!snapshot.cache || snapshot.scene != scene_.get()) return;
     if (frames_.empty()) bytes_before_ = resident_bytes();
     const bool is_there = frames_.contains(snapshot.frame);
-    if (!is_there && resident_bytes() >= bytes_before_ + most_bytes_) return;
+    if (!is_there && resident_bytes() >= bytes_before_ + max_bytes_) return;
     Snapshot& stored = frames_[snapshot.frame];
     stored = snapshot;
-    stored.kept_before = nullptr;
+    stored.cache_before = nullptr;
 }
 
 std::optional<Snapshot> FrameStore::take(int frame, double& seconds) {
     std::optional<Snapshot> found;
     if (const auto stored = frames_.find(frame); stored != frames_.end()) {
         found = stored->second;
-        found->kept_before = std::exchange(found->kept, std::make_shared<Kept>());
+        found->cache_before = std::exchange(found->cache, std::make_shared<FrameCache>());
     } else if (ahead_ && ahead_->frame == frame) {
         found = std::exchange(ahead_, std::nullopt);
         seconds += ahead_seconds_;

@@ -14,7 +14,7 @@ uint64_t usual_store_bytes();
 
 class FrameStore {
 public:
-    explicit FrameStore(uint64_t most_bytes = usual_store_bytes());
+    explicit FrameStore(uint64_t max_bytes = usual_store_bytes());
     ~FrameStore();
 
     // Forgets everything that is not of this scene and policy.
@@ -41,6 +41,6 @@ private:
     std::map<int, Snapshot> frames_;
     std::optional<Snapshot> ahead_;
     double ahead_seconds_ = 0;
-    uint64_t most_bytes_ = 0, bytes_before_ = 0; // resident before the first frame
+    uint64_t max_bytes_ = 0, bytes_before_ = 0; // resident before the first frame
 };
 }

@@ -4,9 +4,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double late = 1.15;        // of the time wanted
-constexpr double in_time = 0.85;     // of it, as expected of a larger picture
-constexpr double least_share = 0.25; // of the time wanted that pixels always get
+constexpr double late = 1.15;      // of the time wanted
+constexpr double in_time = 0.85;   // of it, as expected of a larger picture
+constexpr double min_share = 0.25; // of the time wanted that pixels always get
 constexpr int pictures_to_bar = 60;
 
 double area(int level) {
@@ -22,7 +22,7 @@ void measured(Pace& pace, double seconds, double fixed) {
 
     // Down to what fits; the level that did not is left alone for a while.
     if (seconds > late * pace.wanted && level < last) {
-        const double time = std::max(pace.wanted - fixed, least_share * pace.wanted);
+        const double time = std::max(pace.wanted - fixed, min_share * pace.wanted);
         int lower = level;
         while (lower < last && pixels * area(lower) / area(level) > time) ++lower;
         if (lower != level) {
@@ -31,7 +31,7 @@ void measured(Pace& pace, double seconds, double fixed) {
         }
     }
     if (level == 0 || (pace.pictures_barred > 0 && level - 1 <= pace.barred)) return;
-    const double time = std::max(in_time * pace.wanted - fixed, in_time * least_share * pace.wanted);
+    const double time = std::max(in_time * pace.wanted - fixed, in_time * min_share * pace.wanted);
     if (pixels * area(level - 1) / area(level) < time) --pace.level;
 }
 }

@@ -4,7 +4,7 @@
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "viewer/painting/painter_show.h"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ void load(Painter& painter, const Request& request) {
     painter.reference.rounds.prepared = nullptr;
     const bool same_scene = painter.scene == request.scene, same_edits = painter.edited == request.edited;
     const bool same_files = painter.request.missing == request.missing;
-    if (same_scene && same_edits && same_files && painter.snapshot.frame == request.frame && painter.snapshot.kept) {
-        painter.snapshot.kept_before = std::exchange(painter.snapshot.kept, std::make_shared<Kept>());
+    if (same_scene && same_edits && same_files && painter.snapshot.frame == request.frame && painter.snapshot.cache) {
+        painter.snapshot.cache_before = std::exchange(painter.snapshot.cache, std::make_shared<FrameCache>());
         painter.snapshot.notes.clear();
     } else {
         if (!same_scene) painter.history = {};
@@ -98,7 +98,7 @@ Turn next_turn(const Painter& painter, const Request& request) {
     Turn turn = wants_reference(request) ? Turn::reference : Turn::mode;
     int fewest = std::numeric_limits<int>::max();
     const auto consider = [&](Turn whose, const Rounds& rounds) {
-        if (rounds.samples < request.most_samples && rounds.rounds < fewest) turn = whose, fewest = rounds.rounds;
+        if (rounds.samples < request.max_samples && rounds.rounds < fewest) turn = whose, fewest = rounds.rounds;
     };
     consider(Turn::mode, painter.rounds[0]);
     if (mode_beside(request)) consider(Turn::beside, painter.rounds[1]);

@@ -56,7 +56,7 @@ const Mode* mode_beside(const Request& request) {
 
 bool is_finished(const Painter& painter, const Request& request) {
     if (asks_for_volume(painter, request)) return false;
-    const int wanted = request.most_samples;
+    const int wanted = request.max_samples;
     if (asks_for_ray(request, painter.ray.get())) return false;
     if (painter.rounds[0].samples < wanted || (mode_beside(request) && painter.rounds[1].samples < wanted))
         return false;

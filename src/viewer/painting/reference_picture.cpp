@@ -5,7 +5,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/candidates.h"
 #include "render/frame/layers.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "viewer/painting/request.h"
 #include "viewer/state/setting_groups.h"
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double worth_saying = 5e-4; // of a bias
 
 std::string bits_of(const Camera& camera) {
-    KeptKey key;
+    CacheKey key;
     key.add(camera.position).add(camera.right).add(camera.up).add(camera.forward);
     key.add(camera.vertical_fov).add(camera.ortho_height).add(camera.near).add(camera.far);
     return key.bits;
@@ -79,7 +79,7 @@ void begin_reference(ReferencePicture& reference, const Request& request) {
 }
 
 bool is_finished(const ReferencePicture& reference, const Request& request) {
-    return reference.rounds.samples >= request.most_samples && !reference.exact.color.empty();
+    return reference.rounds.samples >= request.max_samples && !reference.exact.color.empty();
 }
 
 namespace {
@@ -106,7 +106,7 @@ void make_exact(ReferencePicture& reference, const Request& request, const Snaps
 void paint_reference(ReferencePicture& reference, const Request& request, const Snapshot& snapshot, const Rounds& like,
                      std::atomic<bool>& cancel) {
     Rounds& rounds = reference.rounds;
-    if (rounds.samples >= request.most_samples) return make_exact(reference, request, snapshot, cancel);
+    if (rounds.samples >= request.max_samples) return make_exact(reference, request, snapshot, cancel);
     const int samples = round_samples(rounds, request, &like);
     Round round = render_round(rounds, main_mode(), request, reference.settings, snapshot, samples, cancel);
     if (rounds.rounds == 0) reference.look = {round.layers.color, round.layers.inscatter};

@@ -44,7 +44,7 @@ struct Request {
     Shown shown;
     std::optional<ivec2> explain; // a pixel whose ray is asked about
     std::optional<VolumeQuestion> volume;
-    int most_samples = 64;            // per pixel, after which a picture is finished
+    int max_samples = 64;             // per pixel, after which a picture is finished
     double wanted_seconds = 1.0 / 30; // of quick pictures
 };
 

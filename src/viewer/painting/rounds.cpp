@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double longest_round = 0.4; // seconds; the picture is renewed at least as often
-constexpr int most_round_samples = 8;
+constexpr int max_round_samples = 8;
 
 // Into the mean of one half.
 void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half_samples) {
@@ -69,19 +69,19 @@ void add_round(Round round, const Request& request, Rounds& rounds) {
     else
         blend_layers(rounds.layers, round.layers,
                      static_cast<float>(samples) / static_cast<float>(rounds.samples + samples));
-    if (rounds.rounds > 0 || request.most_samples == 1) rounds.samples += samples;
+    if (rounds.rounds > 0 || request.max_samples == 1) rounds.samples += samples;
     ++rounds.rounds;
     rounds.made.push_back(samples);
 }
 
 int round_samples(const Rounds& rounds, const Request& request, const Rounds* like) {
     if (rounds.rounds == 0) return 1; // one sample alone lies in the middle of its pixel
-    const int left = request.most_samples - rounds.samples;
+    const int left = request.max_samples - rounds.samples;
     const size_t number = static_cast<size_t>(rounds.rounds);
     if (like && number < like->made.size()) return std::min(like->made[number], left);
     if (rounds.samples == 0) return std::min(request.settings.pixel.samples, left);
     const double in_time = std::max(longest_round / std::max(rounds.sample_seconds, 1e-6), 2.0);
-    const int samples = std::min(std::clamp(rounds.samples, 4, most_round_samples), static_cast<int>(in_time));
+    const int samples = std::min(std::clamp(rounds.samples, 4, max_round_samples), static_cast<int>(in_time));
     return left - samples < 2 ? left : samples;
 }
 }

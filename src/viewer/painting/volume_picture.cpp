@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int most_cells = 256, most_layers = 128; // of a picture's side, and behind each other
+constexpr int max_cells = 256, max_layers = 128; // of a picture's side, and behind each other
 constexpr int lanes = 16;
 
 // Names of the two axes across an axis: to the right and upwards.
@@ -77,7 +77,7 @@ Image<float> density_of(const Medium& medium, VolumePicture& shown) {
         layers = {low + shown.question.position * size};
         shown.place = layers[0];
     } else {
-        const int count = cells_along(medium, shown.box, axis, most_layers);
+        const int count = cells_along(medium, shown.box, axis, max_layers);
         for (int i = 0; i < count; ++i)
             layers.push_back(low + size * (static_cast<float>(i) + 0.5f) / static_cast<float>(count));
     }
@@ -86,7 +86,7 @@ Image<float> density_of(const Medium& medium, VolumePicture& shown) {
     const vec2 sides(shown.box.high[shown.right] - shown.box.low[shown.right],
                      shown.box.high[shown.up] - shown.box.low[shown.up]);
     const int longer = sides.x >= sides.y ? 0 : 1;
-    const int most = cells_along(medium, shown.box, longer == 0 ? shown.right : shown.up, most_cells);
+    const int most = cells_along(medium, shown.box, longer == 0 ? shown.right : shown.up, max_cells);
     const ivec2 cells = glm::max(ivec2(glm::round(static_cast<float>(most) * sides / sides[longer])), ivec2(1));
     Image<float> values(cells);
     parallel_ranges(cells.y, 4, [&](int64_t begin, int64_t end) {

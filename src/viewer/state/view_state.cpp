@@ -135,7 +135,7 @@ Request request_of(const ViewState& state, bool moving) {
     if (state.explain && inside(*state.explain)) request.explain = state.explain;
     if (state.volume_shown) request.volume = state.volume;
     request.shown.exposure += state.scene->exposure.at(seconds_of(state));
-    request.most_samples = state.most_samples;
+    request.max_samples = state.max_samples;
     request.wanted_seconds = 1 / state.wanted_rate;
     return request;
 }

@@ -39,7 +39,7 @@ struct ViewState {
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     ivec2 size{0}; // 0 = the scene's
-    int most_samples = 64;
+    int max_samples = 64;
     double wanted_rate = 30; // quick pictures per second
     Shown shown;             // exposure on top of the scene's
 

@@ -32,7 +32,7 @@ struct BrickPool {
     float highest = 0;        // largest value anywhere
     bool crowded = false;     // hardly a brick is empty: a ray inside `local_bounds` meets fog almost all the way
     double mass = 0;          // integral of the density over index space
-    float mean = 0;           // over `bounds`: even fog of this density there has the same mass
+    float mean = 0;           // over `bounds`: homogeneous fog of this density there has the same mass
     float mean_in_bricks = 0; // over the bricks that are not empty
     vec3 voxel_size{0};       // world lengths of the index axes
 

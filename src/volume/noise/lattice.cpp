@@ -37,7 +37,7 @@ NoiseOctave placed_octave(double frequency, uint32_t seed, double turn, int spee
     NoiseOctave octave;
     octave.frequency = static_cast<float>(frequency);
     octave.seed = mixed(seed);
-    // Whole cells are split off in double, so that a field carried far away is as smooth as one at home.
+    // Whole cells are split off in double, so that a field throughput far away is as smooth as one at home.
     for (int axis = 0; axis < 3; ++axis) {
         const double shift = (mixed(seed + 0x9e3779b9u * (axis + 1)) >> 8) * 0x1p-24;
         const double position = local_origin[axis] * frequency + shift;

@@ -33,10 +33,10 @@ struct NoiseSum {
     bool billow = false;
 };
 
-// A moment of a moving noise field. Two layers that are born, carried and die in turn loop without a seam.
+// A moment of a moving noise field. Two layers that are born, throughput and die in turn loop without a seam.
 struct NoiseLayer {
     double turn = 0;       // 0 <= turn < 1
-    dvec3 displacement{0}; // metres the field has been carried
+    dvec3 displacement{0}; // metres the field has been throughput
     float weight = 1;
     uint32_t salt = 0; // tells the lattices of layers apart
 };

@@ -86,10 +86,10 @@ Interval<double> next_stretch(const FogPieces& fog, const std::vector<int>& curr
 }
 
 // Lays the pieces of all media over each other.
-void merge_media(double most_depth, FogPieces& fog) {
+void merge_media(double max_depth, FogPieces& fog) {
     static thread_local std::vector<int> current;
     current.assign(fog.media, 0);
-    for (double at = 0; fog.depth < most_depth;) {
+    for (double at = 0; fog.depth < max_depth;) {
         const Interval<double> next = next_stretch(fog, current, at);
         if (next.low == none) return;
         at = next.high;
@@ -151,7 +151,7 @@ double FogPieces::depth_at(size_t piece, double t) const {
     return sum;
 }
 
-void find_fog(const Ray& ray, std::span<const Medium> media, double least_transmittance, FogPieces& fog) {
+void find_fog(const Ray& ray, std::span<const Medium> media, double min_transmittance, FogPieces& fog) {
     fog.pieces.clear(), fog.parts.clear(), fog.extinction.clear();
     fog.depth = 0;
     fog.media = media.size();
@@ -163,6 +163,6 @@ void find_fog(const Ray& ray, std::span<const Medium> media, double least_transm
         fog.densities[m].clear();
         if (grey_extinction(media[m].optics) > 0) append_density(ray, media[m], t_end, fog.densities[m]);
     }
-    merge_media(std::min(opaque_depth, -std::log(least_transmittance)), fog);
+    merge_media(std::min(opaque_depth, -std::log(min_transmittance)), fog);
 }
 }

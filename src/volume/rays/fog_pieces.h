@@ -1,5 +1,5 @@
 // All fog along a ray in closed form, piece by piece: in every voxel cell trilinear density is a cubic along the ray,
-// height fog is an exponential, even fog a constant. Densities and optical depths are exact at every point.
+// height fog is an exponential, homogeneous fog a constant. Densities and optical depths are exact at every point.
 #pragma once
 #include "base/math.h"
 
@@ -23,7 +23,7 @@ struct DensityPiece {
 // Appends the pieces of a ray's 0..t_end in which the medium has density, ascending and disjoint.
 void append_density(const Ray& ray, const Medium& medium, double t_end, std::vector<DensityPiece>& pieces);
 
-// Stretches on which the density of every medium is one DensityPiece.
+// PathPacket on which the density of every medium is one DensityPiece.
 struct FogPieces {
     struct Piece {
         double low = 0, high = 0;
@@ -44,5 +44,5 @@ struct FogPieces {
 
 // Replaces `fog` by the pieces of the ray 0..t_max. Left out is what lies beyond 10000 km, behind optical depth 64 of
 // fog in closed form, or where the transmittance has sunk below the least one.
-void find_fog(const Ray& ray, std::span<const Medium> media, double least_transmittance, FogPieces& fog);
+void find_fog(const Ray& ray, std::span<const Medium> media, double min_transmittance, FogPieces& fog);
 }

@@ -88,10 +88,10 @@ struct Written {
 class Writers {
 public:
     Writers(BakeReport& report, Progress& progress)
-        : report_(report), progress_(progress), most_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
+        : report_(report), progress_(progress), max_(static_cast<size_t>(std::clamp(thread_count() / 2, 1, 4))) {}
 
     void start(std::filesystem::path file, int frame, VdbImage image) {
-        while (pending_.size() >= most_) finish_one();
+        while (pending_.size() >= max_) finish_one();
         // One thread means one: the frame is then written when its turn to finish comes.
         const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
         pending_.push_back(std::async(when, [file = std::move(file), frame, image = std::move(image)] {
@@ -125,7 +125,7 @@ private:
 
     BakeReport& report_;
     Progress& progress_;
-    size_t most_;
+    size_t max_;
     std::deque<std::future<Written>> pending_;
 };
 }

@@ -17,8 +17,8 @@ double turn_at(const FogRecipe& recipe, double seconds, double speed) {
     return wrapped_turn(turns_per_loop(recipe, speed) * loop_phase(recipe, seconds));
 }
 
-// Pure carriage repeats only if the fog repeats in space, every wind · period metres. So two unlike layers are carried
-// half a period apart, each at the wind's own speed and without weight at the moment it jumps back.
+// Pure carriage repeats only if the fog repeats in space, every wind · period metres. So two unlike layers are
+// throughput half a period apart, each at the wind's own speed and without weight at the moment it jumps back.
 std::vector<NoiseLayer> layers(const FogRecipe& recipe, double seconds) {
     const double turn = turn_at(recipe, seconds, recipe.noise.evolve);
     const dvec3 wind(recipe.wind);

@@ -54,7 +54,7 @@ HWY_INLINE Floats needed_noise(const FogField& field, const Floats& shape_distan
 
 HWY_INLINE Vec3s displacement(const FogField& field, const Vec3s& p) {
     Vec3s result;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const VectorOfThree curl = noise_curl(field.swirl, p.x.part[i], p.y.part[i], p.z.part[i]);
         result.x.part[i] = curl.x, result.y.part[i] = curl.y, result.z.part[i] = curl.z;
     }
@@ -106,7 +106,7 @@ HWY_INLINE Weighing weighing(const FogField& field, const Vec3s& p) {
     const Floats distance = field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, p);
     Weighing result;
     result.scale = envelope(field, p, p.y, distance);
-    const Mask16 open = result.scale >= least_density;
+    const Mask16 open = result.scale >= min_density;
     result.open = any(open);
     result.needed = needed_noise(field, distance);
     result.wanted = select(open, result.needed, infinity);
@@ -117,7 +117,7 @@ HWY_INLINE Floats density_of(const FogField& field, const Floats& noise, const W
     const Floats excess = 0.5f * (noise - weigh.needed);
     Floats density = clamp01(excess * field.gain) * weigh.scale;
     if (field.soft_edge > 0) density = density * smoothstep01(excess * (1 / field.soft_edge));
-    return zero_unless(density >= least_density, density);
+    return zero_unless(density >= min_density, density);
 }
 
 // Densities at sixteen points. `finished` counts the points that needed every octave.
@@ -126,7 +126,7 @@ HWY_INLINE Floats fog_density(const FogField& field, const Vec3s& p, int& finish
     if (!weigh.open) return 0.0f;
     const Vec3s q = field.swirl_gain == 0 ? p : p + displacement(field, p);
     Floats noise;
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         noise.part[i] =
             sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], weigh.wanted.part[i], finished);
     return density_of(field, noise, weigh);
@@ -138,7 +138,7 @@ HWY_INLINE void fog_column(const FogField& field, const float* x, const Floats& 
     Weighing weigh[8];
     Floats noise[8];
     for (int i = 0; i < 8; ++i) weigh[i] = weighing(field, {x[i], y, z});
-    for (size_t part = 0; part < parts; ++part) {
+    for (size_t part = 0; part < vectors_per_packet; ++part) {
         FloatVec wanted[8], totals[8];
         for (int i = 0; i < 8; ++i) wanted[i] = weigh[i].wanted.part[part];
         sums_along_column(field.noise, x, y.part[part], z.part[part], wanted, totals, finished);
@@ -156,7 +156,7 @@ HWY_INLINE Mask16 may_hold_fog(const FogField& field, const Vec3s& low, const Ve
     const Floats distance =
         field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, nearest(field.shape_center)) * 0.9999f;
     const Floats scale = envelope(field, nearest(vec3(0)), low.y, distance);
-    const Mask16 open = scale * 1.0001f >= least_density;
+    const Mask16 open = scale * 1.0001f >= min_density;
     if (!any(open)) return open;
 
     Vec3s grown_low = low, grown_high = high;
@@ -168,7 +168,7 @@ HWY_INLINE Mask16 may_hold_fog(const FogField& field, const Vec3s& low, const Ve
         grown_low = low + moved - around, grown_high = high + moved + around;
     }
     Floats bound;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         const Boxes boxes{{{grown_low.x.part[i], grown_high.x.part[i]},
                            {grown_low.y.part[i], grown_high.y.part[i]},
                            {grown_low.z.part[i], grown_high.z.part[i]}}};

@@ -1,5 +1,5 @@
-// A fog recipe: noise, remapped to density, shaped by height, carried by wind and stirred by swirl; a pure function of
-// point and time. Baked to VDB files, or grown in memory when a scene uses it directly.
+// A fog recipe: noise, remapped to density, shaped by height, throughput by wind and stirred by swirl; a pure function
+// of point and time. Baked to VDB files, or grown in memory when a scene uses it directly.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
 #include "volume/noise/noise.h"
@@ -45,7 +45,7 @@ struct FogRecipe {
 };
 
 // Densities below this are 0: half floats lose their digits there.
-inline constexpr float least_density = 1.0f / 16384;
+inline constexpr float min_density = 1.0f / 16384;
 
 // Throws Error (refused, unreadable) naming file and field.
 FogRecipe read_recipe(const std::filesystem::path& file);

@@ -30,7 +30,7 @@ template<class Body> auto guarded(ExitCode code, const std::string& where, const
     }
 }
 
-constexpr size_t most_tiles = size_t{1} << 26; // a few bytes in a file can stand for thousands of them
+constexpr size_t max_tiles = size_t{1} << 26; // a few bytes in a file can stand for thousands of them
 
 ivec3 point(const openvdb::Coord& coord) { return {coord.x(), coord.y(), coord.z()}; }
 

@@ -100,9 +100,9 @@ void append_tiles(const std::vector<Tile>& from, const ActiveBox& box, std::vect
 // A background other than 0 also fills the root cells inside the active box that the file does not mention.
 std::vector<Tile> background_tiles(DecodedTree& tree, const ActiveBox& box, const std::string& where) {
     constexpr int cell = 4096;
-    constexpr int64_t most_cells = 1 << 15;
+    constexpr int64_t max_cells = 1 << 15;
     const ivec3 first = box.low >> 12, last = box.high >> 12, size = last - first + 1;
-    if (int64_t{size.x} * size.y * size.z > most_cells)
+    if (int64_t{size.x} * size.y * size.z > max_cells)
         refuse(where, "has a background other than 0 and voxels too far apart to fill it in between");
     const auto before = [](ivec3 a, ivec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
     std::ranges::sort(tree.root_nodes, before);

@@ -19,7 +19,7 @@ constexpr size_t leaves_at_once = 256; // a chunk of work; the pieces of a file 
 constexpr float largest_float = std::numeric_limits<float>::max();
 
 // Mask, kind of inactive values, length of the chunk, values, and what blosc may add to those it cannot pack.
-constexpr size_t most_bytes(bool half) { return sizeof(VoxelMask) + 1 + 8 + 512 * (half ? 2 : 4) + 16; }
+constexpr size_t max_bytes(bool half) { return sizeof(VoxelMask) + 1 + 8 + 512 * (half ? 2 : 4) + 16; }
 
 // The values of the voxels in a mask, closed up. Returns their number.
 size_t pack(const Leaf& leaf, const VoxelMask& mask, float* to) {
@@ -91,7 +91,7 @@ EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint3
     result.pieces.resize((count + leaves_at_once - 1) / leaves_at_once);
 
     // Every piece has a place as large as it can become: nothing is moved later, and untouched pages cost nothing.
-    const size_t room = most_bytes(half);
+    const size_t room = max_bytes(half);
     result.memory = std::make_unique_for_overwrite<char[]>(count * room);
     parallel_for(static_cast<int64_t>(result.pieces.size()), [&](int64_t i) {
         const size_t first = static_cast<size_t>(i) * leaves_at_once, last = std::min(first + leaves_at_once, count);

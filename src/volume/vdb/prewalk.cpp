@@ -9,7 +9,7 @@
 namespace tyndall {
 namespace {
 constexpr int64_t magic = 0x56444220;
-constexpr uint64_t most_text = 4096, most_items = 4096, most_metadata = 16 << 20, most_grids = 1024;
+constexpr uint64_t max_text = 4096, max_items = 4096, max_metadata = 16 << 20, max_grids = 1024;
 
 // What lies in the place of a volume often enough to deserve its own hint.
 void check_magic(ByteCursor& file) {
@@ -53,7 +53,7 @@ bool read_value(ByteCursor& file, const std::string& name, const std::string& ty
         type.size() == 5 && (type.starts_with("vec") || type.starts_with("mat")) && type[3] >= '2' && type[3] <= '4';
     const size_t count = component_count(type);
     if (type == "string") {
-        if (size > most_metadata) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+        if (size > max_metadata) file.complain("metadata " + name + " has a size of " + std::to_string(size));
         text = file.bytes(size, "metadata " + name);
     } else if (type == "bool") {
         if (size != 1) file.complain("metadata " + name + " has a size of " + std::to_string(size));
@@ -75,15 +75,15 @@ bool read_value(ByteCursor& file, const std::string& name, const std::string& ty
 
 VdbMetadata read_metadata(ByteCursor& file) {
     const auto count = file.value<uint32_t>("the number of metadata");
-    if (count > most_items) file.complain("announces " + std::to_string(count) + " metadata");
+    if (count > max_items) file.complain("announces " + std::to_string(count) + " metadata");
     VdbMetadata metadata;
     const uint64_t start = file.position();
     for (uint32_t i = 0; i < count; ++i) {
-        std::string name = file.text(most_text, "a metadata name"), value;
-        const std::string type = file.text(most_text, "the type of metadata " + name);
+        std::string name = file.text(max_text, "a metadata name"), value;
+        const std::string type = file.text(max_text, "the type of metadata " + name);
         if (read_value(file, name, type, value)) metadata.emplace_back(std::move(name), std::move(value));
-        if (file.position() - start > most_metadata && type != "__delayedload")
-            file.complain("holds more than " + std::to_string(most_metadata >> 20) + " MB of metadata");
+        if (file.position() - start > max_metadata && type != "__delayedload")
+            file.complain("holds more than " + std::to_string(max_metadata >> 20) + " MB of metadata");
     }
     return metadata;
 }
@@ -138,11 +138,11 @@ void check_offsets(ByteCursor& file, const Offsets& offsets, bool instance) {
 
 VdbGridEntry read_grid(ByteCursor& file, bool has_offsets) {
     VdbGridEntry grid;
-    grid.unique_name = file.text(most_text, "a grid name");
+    grid.unique_name = file.text(max_text, "a grid name");
     grid.name = grid.unique_name.substr(0, grid.unique_name.find('\x1e'));
     file.where += ": grid \"" + printable(grid.name, 80) + "\"";
-    split_type(file.text(most_text, "the grid type"), grid);
-    grid.parent = file.text(most_text, "the name of the shared grid");
+    split_type(file.text(max_text, "the grid type"), grid);
+    grid.parent = file.text(max_text, "the name of the shared grid");
     const bool instance = !grid.parent.empty();
 
     const auto offsets = file.value<Offsets>("the offsets");
@@ -205,7 +205,7 @@ VdbDirectory read_directory(ByteCursor& file) {
     directory.metadata = read_metadata(file);
     const auto count = file.value<int32_t>("the number of grids");
     if (count == 0) refuse(file.where, "holds no grids");
-    if (count < 0 || count > static_cast<int32_t>(most_grids))
+    if (count < 0 || count > static_cast<int32_t>(max_grids))
         file.complain("announces " + std::to_string(count) + " grids");
 
     const std::string where = file.where;

@@ -197,12 +197,12 @@ template<size_t Bits> void TreeWalk::read_values(const Mask<Bits>& active) {
 
 // A length before the bytes, when they are compressed: negative for bytes that would not shrink.
 void TreeWalk::read_chunk(uint64_t bytes) {
-    constexpr uint64_t most_overhead = 16;
+    constexpr uint64_t max_overhead = 16;
     if (!(compression_ & (vdb_zip | vdb_blosc))) return file_.skip(bytes, "the values of a node");
     const auto length = file_.value<int64_t>("the length of a chunk");
     const auto size = static_cast<uint64_t>(length);
     const bool raw = length <= 0;
-    if (raw ? 0 - size != bytes : size > bytes + most_overhead)
+    if (raw ? 0 - size != bytes : size > bytes + max_overhead)
         file_.complain("a chunk of " + std::to_string(bytes) + " bytes of values has a length of " +
                        std::to_string(length));
     if (!raw && (compression_ & vdb_blosc)) return check_blosc_header(size, bytes);

@@ -115,7 +115,7 @@ TEST(Frames, ShortestSpelling) {
 }
 
 // Least length over every way to cut the list into single frames and even runs.
-size_t least_length(const std::vector<int>& frames) {
+size_t min_length(const std::vector<int>& frames) {
     const auto length = [](int64_t value) { return std::to_string(value).size(); };
     std::vector<size_t> best(frames.size() + 1, SIZE_MAX);
     best[0] = 0;
@@ -143,7 +143,7 @@ TEST(Frames, RandomListsComeBackFromAShortestSpelling) {
         }
         const std::string text = format_frames(frames);
         EXPECT_EQ(parse_frames(text), frames) << text;
-        EXPECT_EQ(text.size(), least_length(frames)) << text;
+        EXPECT_EQ(text.size(), min_length(frames)) << text;
     }
 }
 

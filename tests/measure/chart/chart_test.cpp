@@ -43,7 +43,7 @@ Chart small_chart() {
     Chart chart;
     chart.size = chart.sequence_size = size;
     chart.job.render.scene_file = "a/scene.json";
-    chart.modes = {{"march", "", Accuracy::single_scattering, {}}, {"billboard", "", Accuracy::look, {}}};
+    chart.modes = {{"march", "", Accuracy::single_scattering, {}}, {"billboard", "", Accuracy::artistic, {}}};
     chart.points = {point_at("march", 1, 0.01, 0.15), point_at("march", 2, 0.05, 0.04), point_at("march", 3, 0.2, 0.06),
                     point_at("billboard", 1, 0.002, 2)};
     chart.points[3].gain = 0.5, chart.points[3].fitted = chart.points[3].errors, chart.points[3].fitted.error = 0.9;
@@ -53,8 +53,8 @@ Chart small_chart() {
 }
 
 TEST(ChartErrors, TakeTheWorseOfPictureAndFogLight) {
-    const Yardstick yardstick = make_yardstick(exact_reference(2, 0.5f), false);
-    const ChartErrors errors = chart_errors(yardstick, {flat(2.2f), flat(0.6f)});
+    const ReferenceMetrics reference_metrics = make_yardstick(exact_reference(2, 0.5f), false);
+    const ChartErrors errors = chart_errors(reference_metrics, {flat(2.2f), flat(0.6f)});
     EXPECT_NEAR(errors.rmse, 0.1, 1e-6);
     EXPECT_NEAR(errors.inscatter_rmse, 0.2, 1e-6);
     EXPECT_EQ(errors.error, errors.inscatter_rmse);
@@ -79,24 +79,24 @@ TEST(ChartErrors, DoNotCountTheNoiseOfTheReference) {
 TEST(ChartErrors, LeaveOutWhatLightsHaveNoPartIn) {
     Reference reference = exact_reference(3, 1);
     reference.unlit[0] = reference.unlit[1] = {flat(2), flat(0.25f)};
-    const Yardstick yardstick = make_yardstick(reference, true);
-    const ChartErrors errors = chart_errors(yardstick, {flat(1), flat(0.75f)});
+    const ReferenceMetrics reference_metrics = make_yardstick(reference, true);
+    const ChartErrors errors = chart_errors(reference_metrics, {flat(1), flat(0.75f)});
     EXPECT_EQ(errors.error, 0);
     EXPECT_LT(errors.flip, 1e-6); // of the whole picture
-    EXPECT_EQ(whole(yardstick, flat(1)).pixels[0], vec3(3));
+    EXPECT_EQ(whole(reference_metrics, flat(1)).pixels[0], vec3(3));
 }
 
 TEST(ChartErrors, FitOneGainToTheFogLight) {
-    const Yardstick yardstick = make_yardstick(exact_reference(1, 0.5f), false);
+    const ReferenceMetrics reference_metrics = make_yardstick(exact_reference(1, 0.5f), false);
     const ColorLayers look{flat(2.5f), flat(2)}; // surfaces of 0.5, fog light four times too strong
-    const double gain = fitted_gain(yardstick, look);
+    const double gain = fitted_gain(reference_metrics, look);
     EXPECT_NEAR(gain, 0.25, 1e-7);
-    EXPECT_NEAR(chart_errors(yardstick, with_gain(look, gain)).error, 0, 1e-6);
-    EXPECT_EQ(fitted_gain(yardstick, {flat(1), flat(0)}), 1);
+    EXPECT_NEAR(chart_errors(reference_metrics, with_gain(look, gain)).error, 0, 1e-6);
+    EXPECT_EQ(fitted_gain(reference_metrics, {flat(1), flat(0)}), 1);
 }
 
 TEST(ChartFlicker, CountsChangesThatTheReferenceLacks) {
-    std::vector<Yardstick> frames;
+    std::vector<ReferenceMetrics> frames;
     std::vector<ColorLayers> steady, flickering;
     for (int t = 0; t < 4; ++t) {
         const float now = 1 + 0.25f * static_cast<float>(t); // the scene itself grows brighter: mean 1.375

@@ -33,17 +33,17 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
     FileHashes files;
     ReferenceSamples exact, quick;
     exact.count = 32, exact.unlit = quick.unlit = false, quick.noise = noise;
-    const Yardstick yardstick = make_yardstick(make_reference(small.shot(), exact, files), false);
+    const ReferenceMetrics reference_metrics = make_yardstick(make_reference(small.shot(), exact, files), false);
     const auto halves = make_reference(small.shot(), quick, files).halves;
 
     // The halves tell their own noise, and it is the one asked for: bounds hold with 97.5 %.
-    const double mean = yardstick.mean;
+    const double mean = reference_metrics.mean;
     EXPECT_LT(measure_errors(halves[0].color, halves[1].color).rmse / 2 / mean, 1.3 * noise);
 
-    // Noise of the mean over all pixels, and of the yardstick's: four standard deviations.
-    const ChartErrors errors = chart_errors(yardstick, mean_of(halves));
+    // Noise of the mean over all pixels, and of the reference_metrics's: four standard deviations.
+    const ChartErrors errors = chart_errors(reference_metrics, mean_of(halves));
     const double pixels = picture.x * picture.y,
-                 own = measure_errors(yardstick.halves[0].color, yardstick.halves[1].color).rmse / 2;
+                 own = measure_errors(reference_metrics.halves[0].color, reference_metrics.halves[1].color).rmse / 2;
     const double deviation = std::sqrt((noise * noise + own * own / (mean * mean)) / pixels);
     EXPECT_LT(std::abs(errors.bias), 4 * deviation);
     EXPECT_LT(std::abs(errors.inscatter_bias), 4 * deviation);

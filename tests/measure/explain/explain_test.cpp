@@ -37,7 +37,7 @@ Mesh plate() { return named(quad({-1, 1, -5}, {2, 0, 0}, {0, 0, 2}), "plate"); }
 // Ends the ray at 10 m.
 Mesh wall() { return named(quad({-50, -50, -10}, {100, 0, 0}, {0, 100, 0}), "wall"); }
 
-Medium hall() { return even_medium(0.2f, {{-20, -20, -20}, {20, 20, 20}}); }
+Medium hall() { return homogeneous_medium(0.2f, {{-20, -20, -20}, {20, 20, 20}}); }
 
 RayStory told(const Snapshot& snapshot, std::vector<const Mode*> asked = {}, const View& view = axis_view(),
               ivec2 pixel = middle) {
@@ -58,7 +58,7 @@ void expect_near(vec3 a, vec3 b, double share) {
 
 TEST(Explain, FogIsThatOfBeerAndLambert) {
     const float sigma = 0.3f;
-    const RayStory story = told(snapshot_of({even_medium(sigma, {{-1, -1, -8}, {1, 1, -2}})}, {}));
+    const RayStory story = told(snapshot_of({homogeneous_medium(sigma, {{-1, -1, -8}, {1, 1, -2}})}, {}));
     ASSERT_FALSE(story.steps.empty());
     EXPECT_NEAR(story.steps.front().low, 2, 1e-6);
     EXPECT_NEAR(story.steps.back().high, 8, 1e-6);
@@ -77,7 +77,8 @@ TEST(Explain, FogIsThatOfBeerAndLambert) {
 }
 
 TEST(Explain, AmbientLightHasItsClosedForm) {
-    const RayStory story = told(snapshot_of({even_medium(0.3f, {{-1, -1, -8}, {1, 1, -2}})}, {}, vec3(0.5f, 1, 2)));
+    const RayStory story =
+        told(snapshot_of({homogeneous_medium(0.3f, {{-1, -1, -8}, {1, 1, -2}})}, {}, vec3(0.5f, 1, 2)));
     expect_near(story.glow, vec3(0.5f, 1, 2) * static_cast<float>(1 - std::exp(-1.8)), 1e-5);
     expect_near(story.reference.inscatter, story.glow, 1e-5);
 }

@@ -112,8 +112,8 @@ TEST(Comparison, SequenceOfTwoFrames) {
     EXPECT_DOUBLE_EQ(all.mse->value, 0.5);
     EXPECT_EQ(all.layers.size(), 1u);
     // A layer or estimate that one frame lacks is none of the sequence.
-    const Comparison uneven[] = {good, compare(picture(test.beauty), picture(reference.beauty), viewing)};
-    all = pooled(uneven);
+    const Comparison heterogeneous[] = {good, compare(picture(test.beauty), picture(reference.beauty), viewing)};
+    all = pooled(heterogeneous);
     EXPECT_TRUE(all.layers.empty());
     EXPECT_FALSE(all.mse);
 }

@@ -38,7 +38,7 @@ Plan plan_of(const Snapshot& snapshot, double error) {
 
 TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
     const Snapshot snapshot =
-        snapshot_of({even_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
+        snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.01);
     for (const char* name :
          {"shadows", "changing density", "direction of scattering", "emission", "ambient light in fog"}) {
@@ -53,7 +53,7 @@ TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
 TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
     const float extinction = 1e-4f;
     const Snapshot snapshot =
-        snapshot_of({even_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
+        snapshot_of({homogeneous_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     EXPECT_NEAR(thickest_line(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.05);
     for (const char* name : {"dimming of light on its way", "fog before surfaces"}) {
@@ -69,24 +69,26 @@ TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
     Settings all;
     all.fluence.orders = all_orders;
     for (const float extinction : {1e-4f, 1.0f}) {
-        const std::vector<Term> terms = terms_of(
-            small_view(),
-            snapshot_of({even_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), all,
-            0.05);
+        const std::vector<Term> terms = terms_of(small_view(),
+                                                 snapshot_of({homogeneous_medium(extinction, room)},
+                                                             {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}),
+                                                 all, 0.05);
         const Term& term = term_named(terms, "light scattered again");
         EXPECT_EQ(term.needed, extinction > 0.1f);
         EXPECT_EQ(without_needless(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
     }
 }
 
-TEST(Terms, EndlessFogHasNoThickestLine) { EXPECT_EQ(thickest_line(snapshot_of({even_medium(0.1f)}, {})), infinity); }
+TEST(Terms, EndlessFogHasNoThickestLine) {
+    EXPECT_EQ(thickest_line(snapshot_of({homogeneous_medium(0.1f)}, {})), infinity);
+}
 
 // Light in the middle of thick fog: what is lost on the way is the same measured and in closed form at every point of
 // the picture's middle; here only that it is large, and known to be.
 TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
     const Phase forward{PhaseKind::henyey_greenstein, 0.8f};
     const Stage stage =
-        stage_of({even_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+        stage_of({homogeneous_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
                  {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const std::vector<Term> terms = terms_of(small_view(), stage.snapshot, Settings{}, 0.02);
     for (const char* name : {"shadows", "dimming of light on its way", "direction of scattering"}) {
@@ -106,8 +108,8 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
     View view = small_view();
     view.camera.ortho_height = 2, view.filter = PixelFilter::center;
     const Phase phase{PhaseKind::henyey_greenstein, 0.3f};
-    const Snapshot snapshot =
-        snapshot_of({even_medium(0.001f, Box{vec3(-10, -10, -1), vec3(10, 10, 1)}, phase)}, {sun_light({1, 0, -1})});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.001f, Box{vec3(-10, -10, -1), vec3(10, 10, 1)}, phase)},
+                                          {sun_light({1, 0, -1})});
     const std::vector<Term> terms = terms_of(view, snapshot, Settings{}, 1e-3);
     const double seen = phase_value_of<double>(phase, glm::dot(glm::normalize(vec3(1, 0, -1)), vec3(0, 0, 1)));
     const double expected = std::abs(1 / (4 * std::numbers::pi * seen) - 1);
@@ -115,8 +117,8 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
 }
 
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
-    const Plan plan =
-        plan_of(snapshot_of({even_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), 0.02);
+    const Plan plan = plan_of(
+        snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), 0.02);
     EXPECT_TRUE(plan.chosen.gets_there());
     EXPECT_LE(plan.chosen.error, 0.02);
     const auto cone = std::ranges::find(plan.standings, "cone", [](const Standing& s) { return s.mode->name; });
@@ -125,12 +127,13 @@ TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
 }
 
 TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
-    const Stage stage = stage_of({even_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
-                                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const Stage stage =
+        stage_of({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const Plan plan = plan_of(stage.snapshot, 0.05);
     EXPECT_TRUE(plan.chosen.gets_there());
     for (const Standing& standing : plan.standings) {
-        if (standing.mode->accuracy == Accuracy::look) {
+        if (standing.mode->accuracy == Accuracy::artistic) {
             EXPECT_FALSE(standing.best) << standing.mode->name;
             EXPECT_FALSE(standing.why.empty());
         }

@@ -9,7 +9,7 @@
 #include "trace/view.h"
 
 #include "base/parallel.h"
-#include "modes/fog_picture.h"
+#include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
@@ -57,8 +57,8 @@ ScatterFunction without_parts(ScatterFunction scatter) {
     };
 }
 
-// A plain march in four steps through even fog and sun light: each step's light and transmittance are taken where it
-// ends, or in its middle and integrated.
+// A plain march in four steps through homogeneous fog and sun light: each step's light and transmittance are taken
+// where it ends, or in its middle and integrated.
 template<bool at_end> ScatterFunction plain_march(const View&, const Snapshot& snapshot, const Settings&, History*) {
     return [snapshot](const RayBatch& batch, std::span<Scatter> results) {
         constexpr int steps = at_end ? 4 : 256;
@@ -366,7 +366,7 @@ TEST(MutationCheck, HistoryThatDoesNotFollowTheEye) {
     expect_caught("uncovered", broken("shadow-map", [](const View& view, const Snapshot& snapshot,
                                                        const Settings& settings, History* history) {
                       if (history && history->picture) {
-                          auto standing = std::make_shared<FogPicture>(*history->picture);
+                          auto standing = std::make_shared<FogBuffer>(*history->picture);
                           standing->view.camera = view.camera;
                           history->picture = standing;
                       }

@@ -33,7 +33,8 @@ struct HoleInWall {
         add_mesh(scene, quad({0, 1.5f, 0.5f}, up, 3.5f * along));
         add_mesh(scene, quad({0, 0, -4}, {6, 0, 0}, 8.0f * along));
         add_mesh(scene, quad({0, 6, -4}, {6, 0, 0}, 8.0f * along));
-        snapshot = snapshot_of({even_medium(0.2f, {vec3(0, 0, -4), vec3(6, 6, 4)})}, {sun_light({1, -1, 0}, 10)});
+        snapshot =
+            snapshot_of({homogeneous_medium(0.2f, {vec3(0, 0, -4), vec3(6, 6, 4)})}, {sun_light({1, -1, 0}, 10)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -122,7 +123,8 @@ struct OpenPosts {
     OpenPosts() {
         add_mesh(scene, quad({-10, 0, -10}, {20, 0, 0}, {0, 0, 20}));
         for (const float z : {-3.5f, -0.5f, 2.5f}) add_mesh(scene, quad({0, 0, z}, {0, 4, 0}, {0, 0, 1}));
-        snapshot = snapshot_of({even_medium(0.02f, {vec3(-10, 0, -10), vec3(10, 8, 10)})}, {sun_light({1, -1, 0}, 10)});
+        snapshot =
+            snapshot_of({homogeneous_medium(0.02f, {vec3(-10, 0, -10), vec3(10, 8, 10)})}, {sun_light({1, -1, 0}, 10)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -210,7 +212,7 @@ TEST(Billboard, NamesItsLimitations) {
     const Mode& mode = find_mode("billboard");
     EXPECT_TRUE(says(mode.limitations(view_of({1, 1, 0}, {3, 1, 0}, {160, 90}), hole.snapshot, {}),
                      limitation::camera_in_card));
-    Snapshot open = snapshot_of({even_medium(0.2f)}, {sun_light({0, -1, 0})});
+    Snapshot open = snapshot_of({homogeneous_medium(0.2f)}, {sun_light({0, -1, 0})});
     EXPECT_TRUE(says(mode.limitations({}, open, {}), limitation::no_opening));
 }
 }

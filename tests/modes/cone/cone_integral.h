@@ -1,5 +1,5 @@
-// The light of one light in even fog along a ray, by adaptive quadrature in double of the equation as it is written
-// down: the truth for the `cone` mode.
+// The light of one light in homogeneous fog along a ray, by adaptive quadrature in double of the equation as it is
+// written down: the truth for the `cone` mode.
 #pragma once
 #include "modes/settings.h"
 #include "scene/light.h"

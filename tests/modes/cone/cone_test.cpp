@@ -50,7 +50,7 @@ vec3 random_vector(RandomStream& random, float size) {
 
 Medium random_medium(RandomStream& random, int kind, vec3 place) {
     const float extinction = std::pow(10.0f, -2 + 2 * random.next()), g = 1.2f * random.next() - 0.6f;
-    Medium medium = even_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g});
+    Medium medium = homogeneous_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g});
     const vec3 half = 2.0f + 3.0f * vec3(random.next(), random.next(), random.next());
     const vec3 middle = place + random_vector(random, 2);
     if (kind > 0) medium.bounds = medium.world_bounds = Box{middle - half, middle + half};
@@ -124,7 +124,7 @@ std::vector<double> errors(int scenes, int rays, int nodes) {
 
 // 999 of 1000 rays within 1e-4, with the most nodes and with as many as by default; all finite.
 void expect_exact(int scenes, int rays) {
-    for (const int nodes : {most_gauss_nodes, ConeSettings{}.nodes}) {
+    for (const int nodes : {max_gauss_nodes, ConeSettings{}.nodes}) {
         const std::vector<double> sorted = errors(scenes, rays, nodes);
         EXPECT_LE(sorted[static_cast<size_t>(0.999 * static_cast<double>(sorted.size()))], 1e-4) << nodes << " nodes";
         EXPECT_TRUE(std::isfinite(sorted.back()));
@@ -138,7 +138,7 @@ TEST(Cone, WithoutExtinctionIsTheArcTangent) {
     // ∫ dt/|o + t d - l|² over 0..D = (atan((D+b)/s) - atan(b/s))/s.
     const float extinction = 1e-6f;
     const vec3 light(0.4f, 1.1f, -3);
-    const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {point_light(light)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction)}, {point_light(light)});
     for (const vec3 target : {vec3(0, 0, -5), vec3(0.3f, 1, -3), vec3(0.39f, 1.09f, -2.99f), vec3(5, 2, 7)}) {
         const Ray ray = towards({0, 0.5f, 1}, target, 9);
         const dvec3 q = dvec3(ray.origin) - dvec3(light), d = glm::normalize(dvec3(ray.direction));
@@ -150,18 +150,18 @@ TEST(Cone, WithoutExtinctionIsTheArcTangent) {
 
 TEST(Cone, NothingBehindTheApexAndNothingAtZeroAngle) {
     const Ray behind{{-4, 0, 1}, {1, 0, 0}, 8}, across{{-4, 0, -1}, {1, 0, 0}, 8};
-    const Snapshot narrow = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 5, 20)});
+    const Snapshot narrow = snapshot_of({homogeneous_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 5, 20)});
     EXPECT_EQ(coned(narrow, behind).radiance.x, 0);
     EXPECT_GT(coned(narrow, across).radiance.x, 0);
     EXPECT_EQ(coned(narrow, {{0, 0, 0.5f}, {0, 0, 1}, 8}).radiance.x, 0); // away along the axis
-    const Snapshot none = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 0, 0)});
+    const Snapshot none = snapshot_of({homogeneous_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 0, 0)});
     EXPECT_EQ(coned(none, across).radiance.x, 0);
     EXPECT_EQ(coned(none, {{0, 0, 4}, {0, 0, -1}, 8}).radiance.x, 0);
 }
 
 TEST(Cone, NinetyDegreesIsHalfOfAPointLight) {
-    const Snapshot half = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 90, 90)});
-    const Snapshot point = snapshot_of({even_medium(0.3f)}, {point_light(vec3(0))});
+    const Snapshot half = snapshot_of({homogeneous_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 90, 90)});
+    const Snapshot point = snapshot_of({homogeneous_medium(0.3f)}, {point_light(vec3(0))});
     // From z = -2 to the plane z = 0, and on behind it.
     const Ray beyond = towards({-1, 0.4f, -2}, {1, 0.2f, 2}, 6);
     const Ray until{beyond.origin, beyond.direction, 2 / beyond.direction.z};
@@ -172,7 +172,7 @@ TEST(Cone, TheLensOnlyCutsAway) {
     // A lens of 0.2 m in a cone of 45 degrees: no light before 0.2 m along the axis, the same light behind.
     Settings lens;
     lens.of<ConeSettings>().near_radius = 0.2f;
-    const Snapshot snapshot = snapshot_of({even_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 30, 45)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 30, 45)});
     const Ray near{{-4, 0, -0.19f}, {1, 0, 0}, 8}, far{{-4, 0, -0.21f}, {1, 0, 0}, 8};
     EXPECT_EQ(coned(snapshot, near, lens).radiance.x, 0);
     EXPECT_EQ(coned(snapshot, far, lens).radiance.x, coned(snapshot, far).radiance.x);
@@ -187,7 +187,7 @@ TEST(Cone, StaysSmoothThroughTheLight) {
     for (const float radius : {0.0f, 0.05f}) {
         Light light = point_light(vec3(0));
         light.radius = radius;
-        const Snapshot snapshot = snapshot_of({even_medium(0.3f)}, {light});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(0.3f)}, {light});
         const float at = coned(snapshot, towards({0, 0, 3}, {1e-7f, 0, 0}, 6)).radiance.x;
         const float beside = coned(snapshot, towards({0, 0, 3}, {2e-7f, 0, 0}, 6)).radiance.x;
         const float through = coned(snapshot, {{0, 0, 3}, {0, 0, -1}, 6}).radiance.x;
@@ -198,8 +198,8 @@ TEST(Cone, StaysSmoothThroughTheLight) {
 
 TEST(Cone, AmbientLightAndEmissionOfOverlappingMedia) {
     // Constant glow per extinction c_m on overlapping slabs: piecewise c (1 - e^-τ).
-    Medium first = even_medium(0.5f, {vec3(-1), vec3(1)}),
-           second = even_medium(1.5f, {vec3(-1, -1, -1), vec3(1, 1, 0)});
+    Medium first = homogeneous_medium(0.5f, {vec3(-1), vec3(1)}),
+           second = homogeneous_medium(1.5f, {vec3(-1, -1, -1), vec3(1, 1, 0)});
     first.optics.albedo = vec3(0.5f), second.optics.emission = vec3(3), second.optics.albedo = vec3(0);
     const Snapshot snapshot = snapshot_of({first, second}, {}, vec3(2));
     const Scatter result = coned(snapshot, {{0, 0, 5}, {0, 0, -1}, 20});
@@ -211,7 +211,7 @@ TEST(Cone, AmbientLightAndEmissionOfOverlappingMedia) {
 TEST(Cone, FollowsTheReferenceInEvenFogUnderALampAndASun) {
     const Light lamp = spot({0.3f, 2, -1}, {0.1f, -1, 0.1f}, 15, 25, 20);
     const Box box{vec3(-3, -1, -3), vec3(3, 3, 3)};
-    Snapshot snapshot = snapshot_of({even_medium(0.4f, box, {PhaseKind::henyey_greenstein, 0.5f})},
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.4f, box, {PhaseKind::henyey_greenstein, 0.5f})},
                                     {lamp, sun_light({0.5f, -1, 0.2f})}, vec3(0.02f));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.8f, 0.7f), snapshot.lights[0].volume_scale = 1.5f;
     std::vector<Ray> rays;
@@ -234,7 +234,7 @@ TEST(Cone, FollowsTheReferenceInEvenFogUnderALampAndASun) {
 }
 
 TEST(Cone, EveryControlDoesWhatItSays) {
-    const Snapshot snapshot = snapshot_of({even_medium(0.4f)}, {spot({0, 2, 0}, {0, -1, 0}, 10, 20)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.4f)}, {spot({0, 2, 0}, {0, -1, 0}, 10, 20)});
     const Ray ray{{-3, 0, 0}, {1, 0, 0}, 8};
     const float plain = coned(snapshot, ray).radiance.x;
     const auto with = [&](auto change) {
@@ -272,7 +272,7 @@ TEST(Cone, NamesWhatItDoesNotSee) {
 }
 
 TEST(GaussLegendre, IsExactForPolynomials) {
-    for (int n = 1; n <= most_gauss_nodes; ++n)
+    for (int n = 1; n <= max_gauss_nodes; ++n)
         for (const int power : {0, 1, 2 * n - 1}) {
             double sum = 0;
             for (const QuadratureNode& node : gauss_legendre(n)) sum += node.weight * std::pow(node.at, power);

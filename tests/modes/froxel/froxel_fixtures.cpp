@@ -6,7 +6,7 @@
 
 namespace tyndall::test {
 Stage half_shadowed_fog() {
-    return stage_of({even_medium(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun_light({0.3f, -1, 0.1f}, 2)},
+    return stage_of({homogeneous_medium(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun_light({0.3f, -1, 0.1f}, 2)},
                     {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
 }
 

@@ -22,7 +22,8 @@ Settings with(const std::vector<std::string>& assignments) {
 TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
     // Sun across the view, not dimmed on its way: L = p E (1 - e^-σt), T = e^-σt, also in the middle of slices.
     const float extinction = 0.15f;
-    const Snapshot snapshot = snapshot_of({even_medium(extinction, {vec3(-60), vec3(60)})}, {sun_light({0, -1, 0}, 2)});
+    const Snapshot snapshot =
+        snapshot_of({homogeneous_medium(extinction, {vec3(-60), vec3(60)})}, {sun_light({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 25}, {0, 0, 0});
     for (const std::string& way : ways) {
         const ScatterFunction scatter = froxels(view, snapshot, with({way, "terms.light=off"}));
@@ -40,7 +41,8 @@ TEST(Froxel, EvenFogMatchesItsClosedFormAtEveryDepth) {
 
 TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
     // L = (albedo · ambient + j/σ) (1 - e^-σs) through a box of depth s = 4 seen from outside, straight on.
-    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-50, -50, -4), vec3(50, 50, 0)})}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot =
+        snapshot_of({homogeneous_medium(0.5f, {vec3(-50, -50, -4), vec3(50, 50, 0)})}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(1, 0, 2);
     const View view = view_of({0, 0, 6}, {0, 0, 0}, {65, 37});
     const Scatter result = scattered(froxels(view, snapshot, {}), {{{0, 0, 6}, {0, 0, -1}, 100}})[0];
@@ -52,7 +54,7 @@ TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
 }
 
 TEST(Froxel, FogWithoutEndIsFollowedBehindTheScene) {
-    const Snapshot snapshot = snapshot_of({even_medium(0.02f)}, {sun_light({0, -1, 0}, 2)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.02f)}, {sun_light({0, -1, 0}, 2)});
     const View view = view_of({0, 0, 12}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, snapshot, with({"terms.light=off"}));
     for (const float t : {5.0f, 20.0f, 24.0f, 60.0f, 300.0f, 600.0f}) {
@@ -67,7 +69,7 @@ TEST(Froxel, FogWithoutEndIsFollowedBehindTheScene) {
 TEST(Froxel, ADarkRoomStaysDark) {
     // A closed room of thin walls in fog that is everywhere, under a sun of 100 000 lux.
     Mesh room = box_of({-3, 0, -4}, {3, 3, 4});
-    const std::vector<Medium> fog{even_medium(0.1f, {vec3(-20), vec3(20)})};
+    const std::vector<Medium> fog{homogeneous_medium(0.1f, {vec3(-20), vec3(20)})};
     const Stage stage = stage_of(fog, {sun_light({0.4f, -1, 0.3f}, 1e5f)}, {room});
     const View inside = view_of({1.5f, 1.2f, 3.5f}, {-1, 1.4f, -4});
     const View outside = view_of({1.5f, 1.2f, 15}, {-1, 1.4f, 6});
@@ -114,7 +116,7 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
     for (int i = 0; i < 6; ++i) {
         Light lamp = point_light({0.1f * static_cast<float>(i), 0.1f, 0.3f});
         lamp.radius = 0.15f;
-        const Snapshot snapshot = snapshot_of({even_medium(0.2f, {vec3(-3), vec3(3)})}, {lamp});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(0.2f, {vec3(-3), vec3(3)})}, {lamp});
         const std::vector<Ray> rays = picture_rays(view, snapshot);
         const double truth = mean_of(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
@@ -130,9 +132,9 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
 }
 
 TEST(Froxel, StretchesBehindGlassContinueTheRay) {
-    const Stage stage =
-        stage_of({even_medium(0.3f, {vec3(-6), vec3(6)})}, {sun_light({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
-                 {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
+    const Stage stage = stage_of({homogeneous_medium(0.3f, {vec3(-6), vec3(6)})},
+                                 {sun_light({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
+                                 {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
     const View view = view_of({0, 0, 5}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, stage.snapshot, {});
     for (const vec2 pixel : {vec2(30, 12), vec2(50, 30), vec2(3, 3)})
@@ -151,7 +153,7 @@ Stage busy_stage() {
     Medium banks = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 0.6f);
     Light soft = point_light({1.4f, 1.2f, 0.4f}, 3);
     soft.radius = 0.1f;
-    return stage_of({even_medium(0.2f, {vec3(-1), vec3(2)}), banks}, {sun_light({0.4f, -1, -0.3f}, 1), soft},
+    return stage_of({homogeneous_medium(0.2f, {vec3(-1), vec3(2)}), banks}, {sun_light({0.4f, -1, -0.3f}, 1), soft},
                     {box_of({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
                     vec3(0.1f));
 }

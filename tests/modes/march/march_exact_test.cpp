@@ -25,7 +25,8 @@ TEST(MarchExact, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
     // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
     const float extinction = 1.5f, height = 0.3f;
-    const Stage stage = stage_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const Stage stage =
+        stage_of({homogeneous_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
     const Scatter result = marched(stage.snapshot, exact_settings(), {{2, height, 0.5f}, {-1, 0, 0}, 10});
     const double lit = 1 - double(0.4f - 50 + 50);
     const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
@@ -37,7 +38,7 @@ TEST(MarchExact, SlantedSunThroughASlitMatchesQuadrature) {
     // A slit of 0.2 in a roof at y = 1; the sun's direction has x/y = 1/2, so light at height 0 comes from x + 1/2.
     const Light light = sun_light({-0.5f, -1, 0}, 2);
     const Stage stage =
-        stage_of({even_medium(0.8f)}, {light},
+        stage_of({homogeneous_medium(0.8f)}, {light},
                  {quad({-40, 1, -40}, {40, 0, 0}, {0, 0, 80}), quad({0.25f, 1, -40}, {40, 0, 0}, {0, 0, 80})});
     Settings settings = exact_settings();
     settings.terms.light = LightTransmittance::off; // the sun's way through fog without end is black
@@ -50,8 +51,8 @@ TEST(MarchExact, PointLightPastAnEdgeMatchesQuadrature) {
     // The lamp hangs 2 m above the ray at x = 1, the shade's edge at x = 0.5 and half the height: it throws x < 0.
     for (const float g : {0.0f, 0.6f, -0.9f}) {
         const Light light = point_light({1, 2, 0}, 7);
-        const Stage stage =
-            stage_of({even_medium(0.3f, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light}, {shade(0.5f, 1)});
+        const Stage stage = stage_of({homogeneous_medium(0.3f, everywhere(), {PhaseKind::henyey_greenstein, g})},
+                                     {light}, {shade(0.5f, 1)});
         const Ray ray{{-2, 0, 0}, {1, 0, 0}, 8};
         const double s = double(0.3f), gg = g;
         const auto integrand = [&](double t) {
@@ -66,7 +67,7 @@ TEST(MarchExact, PointLightPastAnEdgeMatchesQuadrature) {
 TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
     Light light = spot_light({0, 3, 0}, {0, -1, 0}, 40, 0.15f, 0.4f);
     light.range = 3.2f;
-    const Stage stage = stage_of({even_medium(0.2f)}, {light}, {shade(-0.25f, 1.5f)}); // throws x < -0.5
+    const Stage stage = stage_of({homogeneous_medium(0.2f)}, {light}, {shade(-0.25f, 1.5f)}); // throws x < -0.5
     const Ray ray{{-4, 0, 0}, {1, 0, 0}, 8};
     const double inner = std::cos(double(0.15f)), outer = std::cos(double(0.4f)), range = light.range;
     const auto integrand = [&](double t) {
@@ -84,7 +85,7 @@ TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
 TEST(MarchExact, RayThroughTheLightItself) {
     // Inside 0.1 mm the inverse square law is held: s/(4π)·(2·∫ from 1e-4 + 2·1e-4/1e-8), with e^(-s(t+r)) in thin fog.
     const double s = 1e-3f, reach = smallest_radius;
-    const Stage stage = stage_of({even_medium(1e-3f)}, {point_light({0, 0, 0})}, {});
+    const Stage stage = stage_of({homogeneous_medium(1e-3f)}, {point_light({0, 0, 0})}, {});
     const double expected = s / four_pi * (2 * (1 / reach - 1.0 / 2) + 2 / reach) * std::exp(-s * 2);
     const Scatter result = marched(stage.snapshot, exact_settings(), {{-2, 0, 0}, {1, 0, 0}, 4});
     EXPECT_NEAR(result.radiance.x / expected, 1, 1e-5); // e^-st is not quite constant over what matters
@@ -118,7 +119,7 @@ TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
 
 TEST(MarchExact, GlowNeedsNoLight) {
     // Ambient light and emission under a closed roof: (a·A + e/s)(1 - e^-s) for each medium, by its share of both.
-    std::vector<Medium> media{even_medium(2, unit_box), even_medium(1, unit_box)};
+    std::vector<Medium> media{homogeneous_medium(2, unit_box), homogeneous_medium(1, unit_box)};
     media[0].optics.albedo = vec3(0.5f), media[1].optics.emission = vec3(0.25f);
     Stage stage = stage_of(media, {sun_light({0, -1, 0})}, {shade(50, 2)}, vec3(1, 2, 0));
     const vec3 radiance = marched(stage.snapshot, exact_settings(), {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).radiance;
@@ -151,7 +152,7 @@ TEST(MarchExact, GridFogMatchesMidpointSums) {
             }
             if (total == 0) continue;
             for (const Light& light : stage.snapshot.lights) {
-                const Arrival at = arrival(light, point);
+                const LightSample at = arrival(light, point);
                 const Ray shadow{point, at.to_light, 0.9999f * at.distance};
                 if (at.irradiance.x == 0 || stage.snapshot.occluders->transmission(shadow, 0) == 0) continue;
                 const double dimmed = std::exp(-optical_depth(media, {point, at.to_light, at.distance}));
@@ -164,7 +165,7 @@ TEST(MarchExact, GridFogMatchesMidpointSums) {
             highest = std::max(highest, (expected.x - before.x) / dt);
         }
         const Scatter result = marched(stage.snapshot, exact_settings(), ray);
-        // Half a step at each edge of light, few as they are, and at the two borders of the even fog.
+        // Half a step at each edge of light, few as they are, and at the two borders of the homogeneous fog.
         EXPECT_NEAR(result.radiance.x, expected.x, 4 * dt / 2 * highest);
         EXPECT_NEAR(result.radiance.z, expected.z, 4 * dt / 2 * highest);
         EXPECT_NEAR(result.transmittance / std::exp(-depth), 1, dt * 0.5);
@@ -207,14 +208,14 @@ TEST(MarchExact, ASmallDenseGridDrawsItsShadowInWideHaze) {
     // Kilometres of haze under a striped grid of a metre: its shadow on the ray has to be found and resolved.
     const auto stripes = [](vec3 p) { return 0.5f + 0.5f * std::sin(40 * p.x); };
     std::vector<Medium> media{medium_of(unit_volume(32, stripes), 8),
-                              even_medium(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
+                              homogeneous_medium(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
     Light lamp = point_light({0.5f, 3, 0.5f}, 5);
     for (const Light& light : {sun_light({0.2f, -1, 0}), lamp}) {
         const Ray ray{{-850, -1, 0.5f}, {1, 0, 0}, 1700};
         const Snapshot snapshot = snapshot_of(media, {light});
         const auto integrand = [&](double t) {
             const vec3 point(static_cast<float>(t - 850), -1, 0.5f);
-            const Arrival at = arrival(light, point);
+            const LightSample at = arrival(light, point);
             return double(1e-3f) / four_pi * at.irradiance.x *
                    std::exp(-double(1e-3f) * t - optical_depth(media, {point, at.to_light, at.distance}));
         };
@@ -233,7 +234,7 @@ TEST(MarchExact, SheetsOfAlphaLetTheirShareThrough) {
     Mesh sheet = shade(50, 2);
     sheet.material = 0; // half transparent
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_medium(1, unit_box)};
+    const std::vector<Medium> fog{homogeneous_medium(1, unit_box)};
     const float open = marched(stage_of(fog, {sun_light({0, -1, 0})}, {}).snapshot, exact_settings(), ray).radiance.x;
     const Stage under = stage_of(fog, {sun_light({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, exact_settings(), ray).radiance.x / open, 0.5, 1e-6);
@@ -246,7 +247,7 @@ TEST(MarchExact, LightsWithoutShadowsAndTheEndOfTheMarch) {
     Light light = sun_light({0, -1, 0});
     light.shadows = false;
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_medium(6, unit_box)};
+    const std::vector<Medium> fog{homogeneous_medium(6, unit_box)};
     const Stage under = stage_of(fog, {light}, {shade(50, 2)});
     const float expected = marched(snapshot_of(fog, {light}), exact_settings(), ray).radiance.x;
     EXPECT_GT(expected, 0);

@@ -21,7 +21,7 @@ TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
     // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
     const float height = 0.3f;
-    const Stage stage = stage_of({even_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const Stage stage = stage_of({homogeneous_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
     const Scatter result = marched(stage.snapshot, settings_for(Quality::preview), {{2, height, 0.5f}, {-1, 0, 0}, 10});
     const double lit = 1 - double(0.4f - 50 + 50);
     const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
@@ -72,7 +72,7 @@ TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
     Mesh sheet = shade(50, 2);
     sheet.material = 0; // half transparent
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_medium(1, unit_box)};
+    const std::vector<Medium> fog{homogeneous_medium(1, unit_box)};
     const float open = marched(stage_of(fog, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
     const Stage under = stage_of(fog, {sun_light({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, sliced_settings(), ray).radiance.x / open, 0.5, 1e-4); // 512 steps
@@ -84,11 +84,12 @@ TEST(MarchSlices, SurfacesWithAlphaAreSampledBesideOpaqueOnes) {
     // An opaque and a half transparent sheet over parts of the ray: lit by 0, a half and all of the light.
     Mesh half = quad({0.2f, 2, -50}, {0.5f, 0, 0}, {0, 0, 100});
     half.material = 0;
-    const Stage stage = stage_of({even_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {shade(0.2f, 1.5f), half});
+    const Stage stage =
+        stage_of({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {shade(0.2f, 1.5f), half});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    const float open =
-        marched(stage_of({even_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray)
-            .radiance.x;
+    const float open = marched(stage_of({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {}).snapshot,
+                               sliced_settings(), ray)
+                           .radiance.x;
     EXPECT_NEAR(marched(stage.snapshot, sliced_settings(), ray).radiance.x / open, 0.3 + 0.25, 2.0 / 512);
 }
 
@@ -96,7 +97,7 @@ TEST(MarchSlices, LightsWithoutShadowsPassThroughSurfaces) {
     Light light = sun_light({0, -1, 0});
     light.shadows = false;
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
-    const std::vector<Medium> fog{even_medium(6, unit_box)};
+    const std::vector<Medium> fog{homogeneous_medium(6, unit_box)};
     const Stage under = stage_of(fog, {light}, {shade(50, 2)});
     const float expected = marched(snapshot_of(fog, {light}), sliced_settings(), ray).radiance.x;
     EXPECT_GT(expected, 0);

@@ -43,7 +43,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     // 256² directions of the disc.
     Light light = sun_light({0.2f, -1, 0});
     light.angle = 0.1f;
-    const Stage stage = stage_of({even_medium(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
+    const Stage stage = stage_of({homogeneous_medium(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     double mean = 0;
     constexpr int n = 256;
@@ -66,7 +66,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
 TEST_P(SoftLights, SoftLampAgreesWithShadowRaysToItsBall) {
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.1f;
-    const Stage stage = stage_of({even_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
+    const Stage stage = stage_of({homogeneous_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings rays = exact_settings();
     rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256;
@@ -82,7 +82,7 @@ TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
     // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.2f;
-    const Stage stage = stage_of({even_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
+    const Stage stage = stage_of({homogeneous_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings many = settings();
     many.terms.light_points = 8;

@@ -21,7 +21,7 @@ TEST(March, BeerLambertSlabIsExactForAnyStepCount) {
         for (const float share : {1.0f, 0.5f, 0.1f, 1.0f / 37, 1.0f / 512}) {
             Settings settings;
             settings.march.step_share = share, settings.march.step_depth = 10, settings.march.min_transmittance = 0;
-            const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {});
+            const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction, unit_box)}, {});
             const Ray ray{{0.3f, 0.4f, 3}, {0, 0, -1}, 10};
             EXPECT_NEAR(marched(snapshot, settings, ray).transmittance / std::exp(-extinction), 1, 1e-5) << share;
         }
@@ -29,7 +29,7 @@ TEST(March, BeerLambertSlabIsExactForAnyStepCount) {
 
 TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
     // Constant source: L = ambient · albedo · (1 - T), for any number of steps.
-    Snapshot snapshot = snapshot_of({even_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot = snapshot_of({homogeneous_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     Settings settings;
     settings.march.min_transmittance = 0;
@@ -42,7 +42,7 @@ TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
 
 TEST(March, EmissionAbsorptionMatchesClosedForm) {
     // j = 1, sigma = 0.5, s = 3: (j/sigma)(1 - exp(-sigma s)) = 1.553739680.
-    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
     snapshot.media[0].optics.albedo = vec3(0), snapshot.media[0].optics.emission = vec3(1);
     Settings settings;
     settings.march.min_transmittance = 0;
@@ -53,7 +53,7 @@ TEST(March, SunInEvenFogMatchesClosedForm) {
     // Sun straight down on the unit box, level view ray at height y: light path 1-y, so
     // L = w p E exp(-s(1-y)) (1 - exp(-s x)).
     const float extinction = 1.5f, height = 0.3f;
-    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
     const Ray ray{{0.5f, height, 2}, {0, 0, -1}, 10};
     const double expected = 3 / (4 * M_PI) * std::exp(-extinction * (1 - height)) * (1 - std::exp(-extinction));
     for (const Quality quality : {Quality::preview, Quality::final, Quality::reference})
@@ -64,7 +64,7 @@ TEST(March, SlantedSunInEvenFogMatchesClosedForm) {
     // Light path grows along the ray: integrate the closed integrand (algorithm: Beer-Lambert both ways).
     const float extinction = 2;
     const vec3 direction = glm::normalize(vec3(-0.4f, -0.8f, 0.2f));
-    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light(direction)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction, unit_box)}, {sun_light(direction)});
     const Ray ray{{0.2f, 0.3f, 2}, {0, 0, -1}, 10};
     const auto integrand = [&](double t) {
         const vec3 point = ray.at(static_cast<float>(t));
@@ -82,7 +82,7 @@ class PointLightInEvenFog : public testing::TestWithParam<Airlight> {};
 
 TEST_P(PointLightInEvenFog, MatchesTheAirlightIntegral) {
     const auto [extinction, h, a, expected] = GetParam();
-    const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {point_light({0, h, -a})});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction)}, {point_light({0, h, -a})});
     const float far = a + 60 / extinction;
     EXPECT_NEAR(marched(snapshot, sampled_settings(), {{0, 0, 0}, {0, 0, -1}, far}).radiance.x / expected, 1, 1e-3);
 }
@@ -95,10 +95,10 @@ TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
         Light light = spot_light({0.3f, 0.7f, -2}, {-0.2f, -1, 0.1f}, 5, 0.3f, 0.6f);
         const float extinction = 0.6f;
         const Snapshot snapshot =
-            snapshot_of({even_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light});
+            snapshot_of({homogeneous_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g})}, {light});
         const Ray ray{{0, 0, 0}, {0, 0, -1}, 6};
         const auto integrand = [&](double t) {
-            const Arrival at = arrival(light, ray.at(static_cast<float>(t)));
+            const LightSample at = arrival(light, ray.at(static_cast<float>(t)));
             const double p = phase_value({PhaseKind::henyey_greenstein, g}, glm::dot(at.to_light, ray.direction));
             return extinction * p * at.irradiance.x * std::exp(-extinction * (t + at.distance));
         };
@@ -120,8 +120,8 @@ TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
     const float g = 0.6f;
     Settings settings = sampled_settings();
     settings.terms.light = LightTransmittance::off;
-    const Snapshot snapshot = snapshot_of({even_medium(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})},
-                                          {sun_light({0, 0, 1})});
+    const Snapshot snapshot = snapshot_of(
+        {homogeneous_medium(0.1f, {vec3(-1), vec3(1)}, {PhaseKind::henyey_greenstein, g})}, {sun_light({0, 0, 1})});
     const float towards = marched(snapshot, settings, {{0, 0, 3}, {0, 0, -1}, 10}).radiance.x;
     const float away = marched(snapshot, settings, {{0, 0, -3}, {0, 0, 1}, 10}).radiance.x;
     EXPECT_NEAR(towards / away / std::pow((1 + g) / (1 - g), 3), 1, 1e-4);
@@ -130,7 +130,7 @@ TEST(March, ForwardScatteringIsBrighterTowardsTheSun) {
 TEST(March, ConstantGridEqualsEvenFog) {
     const Light light = sun_light({0.3f, -1, -0.2f});
     const Snapshot grid = snapshot_of({medium_of(unit_volume(64, [](vec3) { return 1.0f; }), 2)}, {light});
-    const Snapshot even = snapshot_of({even_medium(2, unit_box)}, {light});
+    const Snapshot even = snapshot_of({homogeneous_medium(2, unit_box)}, {light});
     for (const vec3 origin : {vec3(0.5f, 0.5f, 3), vec3(0.21f, 0.77f, 3), vec3(0.83f, 0.36f, 3)}) {
         const Ray ray{origin, glm::normalize(vec3(0.02f, -0.03f, -1)), 10};
         const Scatter a = marched(grid, sampled_settings(), ray), b = marched(even, sampled_settings(), ray);
@@ -184,7 +184,7 @@ TEST(March, ErrorFallsWithTheSteps) {
 TEST(March, FogWithoutEndKeepsShortStepsInTheScene) {
     // A spot's beam crosses the ray within 4 m of 2 km of thin fog: the preview has to find it.
     Light light = spot_light({0, 2, -3}, {0, -1, 0}, 50, 0.1f, 0.2f);
-    Snapshot snapshot = snapshot_of({even_medium(0.01f)}, {light});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.01f)}, {light});
     snapshot.bounds = {vec3(-3, -1, -6), vec3(3, 3, 1)};
     const Ray ray{{0, 0, 0}, {0, 0, -1}, 2000};
     const float exact = marched(snapshot, exact_settings(), ray).radiance.x;
@@ -210,7 +210,7 @@ TEST(March, NoFogIsClearAndNoLightIsBlack) {
     const Ray ray{{0, 0, 3}, {0, 0, -1}, 10};
     EXPECT_EQ(marched(snapshot_of({}, {sun_light({0, -1, 0})}), {}, ray).transmittance, 1);
     EXPECT_EQ(marched(snapshot_of({}, {sun_light({0, -1, 0})}), {}, ray).radiance, vec3(0));
-    EXPECT_EQ(marched(snapshot_of({even_medium(1, unit_box)}, {}), {}, ray).radiance, vec3(0));
+    EXPECT_EQ(marched(snapshot_of({homogeneous_medium(1, unit_box)}, {}), {}, ray).radiance, vec3(0));
 }
 }
 }

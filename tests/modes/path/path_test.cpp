@@ -52,9 +52,9 @@ Medium noise_grid(float extinction, Phase phase) {
 TEST(Path, WhiteFurnaceIsWhite) {
     // Albedo 1 in even surroundings: every ray sees radiance 1, whatever the fog.
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
-    for (const Medium& medium :
-         {even_medium(3, unit_box, forward_phase(0.8f)), even_medium(3, unit_box, {PhaseKind::rayleigh, 0}),
-          noise_grid(8, forward_phase(-0.5f)), noise_grid(2, isotropic)}) {
+    for (const Medium& medium : {homogeneous_medium(3, unit_box, forward_phase(0.8f)),
+                                 homogeneous_medium(3, unit_box, {PhaseKind::rayleigh, 0}),
+                                 noise_grid(8, forward_phase(-0.5f)), noise_grid(2, isotropic)}) {
         Snapshot snapshot = snapshot_of({medium}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 512), 1, 0.005);
@@ -65,7 +65,7 @@ TEST(Path, NightlyWhiteFurnaceIsWhiteToTwoPerMille) {
     const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1))};
     for (const float g : {-0.5f, 0.0f, 0.8f}) {
         Snapshot snapshot = snapshot_of(
-            {noise_grid(6, forward_phase(g)), even_medium(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
+            {noise_grid(6, forward_phase(g)), homogeneous_medium(1, unit_box, {PhaseKind::rayleigh, 0})}, {}, vec3(1));
         snapshot.background.color = vec3(1);
         expect_close(traced(snapshot, ray, 8192), 1, 0.002);
     }
@@ -75,7 +75,7 @@ TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
     Scene scene;
     scene.materials = {lambert(vec3(1))};
     add_mesh(scene, box_of(vec3(0.2f), vec3(0.6f), 0));
-    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.6f)), even_medium(1, unit_box)}, {}, vec3(1));
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.6f)), homogeneous_medium(1, unit_box)}, {}, vec3(1));
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 512), 1, 0.006);
@@ -86,7 +86,7 @@ TEST(Path, GlowingFurnaceIsEven) {
     Scene scene;
     scene.materials = {lambert(vec3(0.6f, 0.3f, 0), vec3(0.4f, 0.7f, 1))};
     add_mesh(scene, box_of(vec3(-1), vec3(2), 0));
-    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.5f)), even_medium(0.3f, unit_box)}, {});
+    Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.5f)), homogeneous_medium(0.3f, unit_box)}, {});
     add_surfaces(scene, snapshot);
     expect_close(traced(snapshot, {{0.4f, 0.45f, 1.5f}, glm::normalize(vec3(0.1f, 0, -1))}, 512), 1, 0.01);
 }
@@ -100,7 +100,7 @@ struct SlabCase {
 class PathSlab : public testing::TestWithParam<SlabCase> {};
 
 RayEstimate slab_share(const SlabCase& c, bool reflected, int samples) {
-    Medium fog = with_albedo(even_medium(c.depth, slab, forward_phase(c.g)), vec3(c.albedo));
+    Medium fog = with_albedo(homogeneous_medium(c.depth, slab, forward_phase(c.g)), vec3(c.albedo));
     static Scene scene; // a black floor under the slab and the camera keeps light from below away
     if (scene.meshes.empty()) {
         scene.materials = {lambert(vec3(0))};
@@ -137,7 +137,7 @@ TEST(Path, RadianceOfASunlitSlabAsPublished) {
     for (const auto& row : rows) {
         const float sine = static_cast<float>(std::sqrt(1 - row.mu0 * row.mu0));
         const Light light = sun_light({sine, -static_cast<float>(row.mu0), 0}, static_cast<float>(pi / row.mu0));
-        const Snapshot snapshot = snapshot_of({with_albedo(even_medium(2, slab), vec3(0.8f))}, {light});
+        const Snapshot snapshot = snapshot_of({with_albedo(homogeneous_medium(2, slab), vec3(0.8f))}, {light});
         const vec3 down = glm::normalize(vec3(0, -0.5f, std::sqrt(0.75f)));
         expect_close(traced(snapshot, {vec3(0, 3, 0), down}, 1024), row.above, 0.01, "above");
         expect_close(traced(snapshot, {vec3(0, -2, 0), vec3(0, 0.5f, down.z)}, 1024), row.below, 0.01, "below");
@@ -149,7 +149,8 @@ TEST(Path, OneOrderIsTheClosedFormOfSingleScattering) {
     const double albedo = 0.9, depth = 2, mu0 = 1, mu = 0.5;
     const double factor = albedo / (4 * (mu + mu0)) * (1 - std::exp(-depth * (1 / mu + 1 / mu0)));
     EXPECT_NEAR(factor, 0.149628187, 1e-8);
-    const Snapshot snapshot = snapshot_of({with_albedo(even_medium(2, slab), vec3(0.9f))}, {sun_light({0, -1, 0}, pi)});
+    const Snapshot snapshot =
+        snapshot_of({with_albedo(homogeneous_medium(2, slab), vec3(0.9f))}, {sun_light({0, -1, 0}, pi)});
     const Ray ray{{0, 3, 0}, glm::normalize(vec3(0, -0.5f, std::sqrt(0.75f)))};
     expect_close(traced(snapshot, ray, 512, 1), factor, 0.005);
 }
@@ -160,13 +161,13 @@ TEST(Path, PointLightInEvenFogIsTheAirlightIntegral) {
     } rows[] = {
         {1, 1, 1, 0.01745864f}, {0.1f, 1, 5, 0.01151431f}, {0.5f, 0.1f, 2, 0.40195407f}, {2, 0.5f, 0.5f, 0.06983456f}};
     for (const auto& row : rows) {
-        const Snapshot snapshot = snapshot_of({even_medium(row.extinction)}, {point_light({0, row.h, -row.a})});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(row.extinction)}, {point_light({0, row.h, -row.a})});
         expect_close(traced(snapshot, {{0, 0, 0}, {0, 0, -1}}, 1024, 1), row.expected, 0.01);
     }
 }
 
 TEST(Path, EmissionAbsorptionIsItsClosedForm) {
-    Snapshot snapshot = snapshot_of({with_albedo(even_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
+    Snapshot snapshot = snapshot_of({with_albedo(homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
     snapshot.media[0].optics.emission = vec3(1);
     expect_close(traced(snapshot, {{0, 0, 5}, {0, 0, -1}, 20}, 1024), 1.553739680, 0.005);
 }
@@ -176,7 +177,7 @@ TEST(Path, SurfaceUnderFogIsItsClosedForm) {
     Scene scene;
     scene.materials = {lambert({0.8f, 0.4f, 0.2f})};
     add_mesh(scene, floor_of(-0.5f, 100, 0));
-    Snapshot snapshot = snapshot_of({even_medium(0.7f, slab)}, {sun_light({std::sqrt(0.75f), -0.5f, 0}, 3)});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.7f, slab)}, {sun_light({std::sqrt(0.75f), -0.5f, 0}, 3)});
     add_surfaces(scene, snapshot);
     const RayEstimate got = estimate_ray(path_mode(snapshot, 1), {{0, 4, 0}, {0, -1, 0}}, 64, surface_light);
     expect_close(got, dvec3(0.8, 0.4, 0.2) * (3 * 0.5 / M_PI * std::exp(-0.7 * 2 - 0.7)), 0.001);
@@ -223,7 +224,7 @@ TEST(Path, BlendSurfacesLetTheirShareThrough) {
     scene.materials[0].base_color = vec3(0);
     add_mesh(scene, quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, 0));
     add_mesh(scene, quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, 0));
-    Snapshot snapshot = snapshot_of({even_medium(0.5f, {vec3(-2), vec3(2)})}, {});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, {vec3(-2), vec3(2)})}, {});
     add_surfaces(scene, snapshot);
     snapshot.background.color = vec3(1);
     const Ray ray{{0.1f, 0.2f, 5}, {0, 0, -1}};
@@ -238,7 +239,7 @@ TEST(Path, GridOfOneValueIsEvenFog) {
     const Ray ray{{0.4f, 0.45f, 3}, glm::normalize(vec3(0.02f, 0.05f, -1))};
     const SparseVolume full = unit_volume(32, [](vec3) { return 0.5f; });
     Medium grid = with_albedo(medium_of(full, 4), vec3(0.9f));
-    const Medium even = with_albedo(even_medium(2, grid.bricks->bounds), vec3(0.9f));
+    const Medium even = with_albedo(homogeneous_medium(2, grid.bricks->bounds), vec3(0.9f));
     const Light light = sun_light({0.3f, -1, -0.2f});
     const RayEstimate a = traced(snapshot_of({grid}, {light}), ray, 1024),
                       b = traced(snapshot_of({even}, {light}), ray, 1024);
@@ -255,7 +256,7 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
     banks.optics.albedo = vec3(0.9f, 0.6f, 0.3f);
     Light spot = spot_light({0.5f, 2, 0.5f}, {0, -1, 0}, 4, 0.2f, 0.5f);
     spot.volume_scale = 2;
-    Snapshot snapshot = snapshot_of({banks, even_medium(0.2f, {vec3(-1), vec3(2)})},
+    Snapshot snapshot = snapshot_of({banks, homogeneous_medium(0.2f, {vec3(-1), vec3(2)})},
                                     {sun_light({0.3f, -1, -0.2f}, 2), spot, point_light({0.2f, 0.3f, 0.4f}, 0.1f)});
     add_surfaces(scene, snapshot);
     Settings fine = exact_settings();
@@ -272,7 +273,7 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
 
 TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
     // Level ray in height fog under a sun overhead: even along the ray. Light path above y: s e^-y.
-    Medium fog = even_medium(0.2f);
+    Medium fog = homogeneous_medium(0.2f);
     fog.kind = DensityKind::height, fog.height_falloff = 1;
     Snapshot snapshot = snapshot_of({fog}, {sun_light({0, -1, 0}, 3)});
     snapshot.bounds = Box{};
@@ -284,10 +285,10 @@ TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
 }
 
 TEST(Path, MistFarBelowALevelSunTakesNothing) {
-    Medium mist = even_medium(0.2f);
+    Medium mist = homogeneous_medium(0.2f);
     mist.kind = DensityKind::height, mist.height_falloff = 1;
     const Box high{vec3(-1, 199, -1), vec3(1, 201, 1)};
-    const Snapshot snapshot = snapshot_of({mist, even_medium(0.5f, high)}, {sun_light({1, 0, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({mist, homogeneous_medium(0.5f, high)}, {sun_light({1, 0, 0}, 3)});
     const double expected = 3 / (4 * M_PI) * std::exp(-0.5) * (1 - std::exp(-1.0));
     expect_close(traced(snapshot, {{0, 200, 4}, {0, 0, -1}}, 256, 1), expected, 0.01);
 }
@@ -297,7 +298,7 @@ TEST(Path, ThickPlumesWithGapsHideNothingBehindThem) {
     const SparseVolume walls = unit_volume(32, [](vec3 p) { return p.x > 0.4f && p.x < 0.6f ? 0.0f : 1.0f; });
     Medium plume = with_albedo(medium_of(walls, 400), vec3(0));
     const Box behind{vec3(-1, -1, -3), vec3(2, 2, -1)};
-    const Snapshot snapshot = snapshot_of({plume, even_medium(0.2f, behind)}, {sun_light({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({plume, homogeneous_medium(0.2f, behind)}, {sun_light({0, -1, 0}, 3)});
     const double expected = 3 / (4 * M_PI) * std::exp(-0.2 * 1.5) * (1 - std::exp(-0.4));
     expect_close(traced(snapshot, {{0.5f, 0.5f, 4}, {0, 0, -1}}, 256, 1), expected, 0.03);
 }

@@ -1,8 +1,8 @@
 // The radial blur: what it must leave alone, how it fades, and that its sum does not depend on how many samples it has.
 #include "modes/mode.h"
-#include "modes/picture_share.h"
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
@@ -35,7 +35,7 @@ double mean(const Image<vec3>& image) {
 
 // A sun at an angle to the right of a camera that looks along -z.
 Snapshot sun_at(float angle) {
-    return snapshot_of({even_medium(0.1f, Box{vec3(-50), vec3(50)})},
+    return snapshot_of({homogeneous_medium(0.1f, Box{vec3(-50), vec3(50)})},
                        {sun_light(-vec3(std::sin(angle), 0, -std::cos(angle)))});
 }
 
@@ -48,7 +48,7 @@ TEST(RadialBlur, LeavesThePictureAloneWhenTheLightIsBehind) {
     }
     // A lamp behind, and one at the eye.
     for (const vec3 place : {vec3(0, 0, 3), vec3(0)}) {
-        const Snapshot lamp = snapshot_of({even_medium(0.1f)}, {point_light(place)});
+        const Snapshot lamp = snapshot_of({homogeneous_medium(0.1f)}, {point_light(place)});
         EXPECT_EQ(mean(blur(view, lamp, Settings{}).radiance), 0);
     }
 }
@@ -90,7 +90,7 @@ TEST(RadialBlur, SumsAsPublished) {
     RadialBlurSettings& blur_settings = settings.of<RadialBlurSettings>();
     blur_settings.source = BlurSource::highlights, blur_settings.threshold = 0;
     blur_settings.decay = 0.9f, blur_settings.weight = 2, blur_settings.exposure = 0.5f;
-    blur_settings.picture = PictureShare::full;
+    blur_settings.resolution = Resolution::full;
     double sum = 0;
     for (int i = 0; i < 32; ++i) sum += std::pow(0.9, i) / 32;
     for (const int samples : {32, 7, 100}) {
@@ -117,7 +117,7 @@ TEST(RadialBlur, ItsDiscIsRound) {
     for (const ivec2 size : {ivec2(200, 100), ivec2(100, 200), ivec2(150, 150)}) {
         const View view = view_towards({0, 0, -1}, size);
         Settings settings;
-        settings.of<RadialBlurSettings>().size = 0.4f, settings.of<RadialBlurSettings>().picture = PictureShare::full;
+        settings.of<RadialBlurSettings>().size = 0.4f, settings.of<RadialBlurSettings>().resolution = Resolution::full;
         settings.of<RadialBlurSettings>().samples = 256;
         View still = view;
         still.jitter = Jitter::none;
@@ -134,7 +134,7 @@ TEST(RadialBlur, LightsAddUp) {
     View view = view_towards({0, 0, -1}, {48, 27});
     view.per_light = true;
     const Snapshot both =
-        snapshot_of({even_medium(0.1f)}, {sun_light({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
+        snapshot_of({homogeneous_medium(0.1f)}, {sun_light({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
     const Addition addition = blur(view, both, Settings{});
     ASSERT_EQ(addition.per_light.size(), 2u);
     for (size_t i = 0; i < addition.radiance.pixels.size(); ++i) {

@@ -51,14 +51,14 @@ std::vector<Ray> picture_rays(int side = 16) {
     return rays;
 }
 
-// The unit box of even fog, half of it in the shadow of a plate above.
+// The unit box of homogeneous fog, half of it in the shadow of a plate above.
 struct HalfShadowed {
     Scene scene;
     Snapshot snapshot;
 
     explicit HalfShadowed(Light light, float extinction = 0.8f) {
         add_mesh(scene, quad({-2, 1.2f, -2}, {1.8f, 0, 0}, {1.5f, 0, 5}));
-        snapshot = snapshot_of({even_medium(extinction, unit_box)}, {std::move(light)});
+        snapshot = snapshot_of({homogeneous_medium(extinction, unit_box)}, {std::move(light)});
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         snapshot.bounds.grow(snapshot.occluders->bounds());
@@ -73,7 +73,7 @@ Light lamp_above() {
 TEST(ShadowMapMarch, SunInEvenFogMatchesClosedFormAtEveryDepth) {
     // Sun straight down, level ray at height y: L = w p E e^(-s(1-y)) (1 - e^(-s x)), for any number of steps.
     const float extinction = 1.5f, height = 0.3f;
-    const Snapshot snapshot = snapshot_of({even_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction, unit_box)}, {sun_light({0, -1, 0}, 3)});
     for (const float depth : {0.01f, 0.1f, 0.37f, 0.8f, 1.0f, 2.0f}) {
         const double x = std::min(depth, 1.0f);
         const double expected = 3 / (4 * M_PI) * std::exp(-extinction * (1 - height)) * (1 - std::exp(-extinction * x));
@@ -97,10 +97,10 @@ TEST(ShadowMapMarch, LocalLightsInEvenFogMatchQuadratureAtEveryDepth) {
             for (const float depth : {1.9f, 2.1f, 3.0f, 6.0f}) {
                 Settings settings;
                 settings.of<ShadowMapSettings>().spacing = spacing;
-                const Snapshot snapshot = snapshot_of({even_medium(extinction)}, {light});
+                const Snapshot snapshot = snapshot_of({homogeneous_medium(extinction)}, {light});
                 const Ray ray{{0, 0, 0}, {0, 0, -1}, depth};
                 const auto integrand = [&](double t) {
-                    const Arrival at = arrival(light, ray.at(static_cast<float>(t)));
+                    const LightSample at = arrival(light, ray.at(static_cast<float>(t)));
                     return extinction / (4 * M_PI) * at.irradiance.x * std::exp(-extinction * (t + at.distance));
                 };
                 const double expected = integral(integrand, 0, depth);
@@ -110,7 +110,7 @@ TEST(ShadowMapMarch, LocalLightsInEvenFogMatchQuadratureAtEveryDepth) {
 }
 
 TEST(ShadowMapMarch, RayThroughALightIsFinite) {
-    const Snapshot snapshot = snapshot_of({even_medium(0.5f)}, {point_light({0, 0, -2})});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f)}, {point_light({0, 0, -2})});
     for (const float off : {0.0f, 1e-6f, 1e-3f}) {
         const Scatter result = run(snapshot, Settings{}, {{off, 0, 0}, {0, 0, -1}, 5});
         EXPECT_TRUE(is_finite(result.radiance)) << off;
@@ -119,7 +119,7 @@ TEST(ShadowMapMarch, RayThroughALightIsFinite) {
 }
 
 TEST(ShadowMapMarch, FogThatEmitsAndAmbientLightAreTheirClosedForms) {
-    Snapshot snapshot = snapshot_of({even_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
+    Snapshot snapshot = snapshot_of({homogeneous_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
     snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(0.4f);
     const Scatter result = run(snapshot, Settings{}, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10});
     const double covered = 1 - std::exp(-2.0);
@@ -211,7 +211,7 @@ TEST(ShadowMapMarch, TwoHalfDensityCopiesEqualOne) {
 }
 
 TEST(ShadowMapMarch, StyleDimsTheFogsOwnLightOnly) {
-    const Snapshot snapshot = snapshot_of({even_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)});
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
     Settings settings;
     settings.style.view_depth = 0.25f, settings.style.light_depth = 0.5f;
@@ -227,7 +227,7 @@ TEST(ShadowMapMarch, StyleDimsTheFogsOwnLightOnly) {
 TEST(ShadowMapMarch, FogWithoutEndKeepsStepsInTheScene) {
     const HalfShadowed box(lamp_above());
     Snapshot endless = box.snapshot;
-    endless.media = {even_medium(0.01f)};
+    endless.media = {homogeneous_medium(0.01f)};
     Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 2000};
     const float exact = run("march", endless, exact_settings(), {ray})[0].radiance.x;
     EXPECT_NEAR(run(endless, Settings{}, ray).radiance.x / exact, 1, 0.02);

@@ -1,5 +1,5 @@
 // Fog between shadow volumes, against closed forms and the deterministic reference.
-#include "integrate/lit_fog.h"
+#include "integrate/single_scattering.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "modes/shadow_volume/limitations.h"
@@ -77,8 +77,8 @@ const Camera cameras[] = {look_at({2.5f, 1.5f, 5}, {0, 1.5f, 0}, {0, 1, 0}, 0.9f
 TEST(ShadowVolume, SunUnderARoofByHand) {
     // Without light-side dimming (the sun is level with the roof's end of the fog) half the path is lit.
     const Box thin{vec3(-4, -0.001f, -1), vec3(4, 0.001f, 1)};
-    const Stage stage =
-        stage_of({even_medium(0.5f, thin)}, {sun_light({0, -1, 0}, 3)}, {quad({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
+    const Stage stage = stage_of({homogeneous_medium(0.5f, thin)}, {sun_light({0, -1, 0}, 3)},
+                                 {quad({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
     Picture picture;
     picture.rays.assign(16, {{-4, 0, 0}, {1, 0, 0}, 8});
     picture.view.camera = look_at({-4, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1);
@@ -93,7 +93,7 @@ TEST(ShadowVolume, SunUnderARoofByHand) {
 TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
     for (const Light& light : all_lights()) {
         const Stage stage =
-            stage_of({even_medium(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
+            stage_of({homogeneous_medium(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
         for (const Camera& camera : cameras) {
             const Picture picture = picture_of(camera, stage.snapshot, 20);
             const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
@@ -109,10 +109,10 @@ TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
 }
 
 TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
-    Medium height = even_medium(0.4f, room);
+    Medium height = homogeneous_medium(0.4f, room);
     height.kind = DensityKind::height, height.height_base = 0.5f, height.height_falloff = 0.8f;
     height.optics.emission = vec3(0.02f, 0.01f, 0);
-    Medium other = even_medium(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
+    Medium other = homogeneous_medium(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
     other.optics.albedo = vec3(0.9f, 0.5f, 0.2f);
     const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
@@ -121,7 +121,7 @@ TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
 }
 
 TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
-    const Stage stage = stage_of({even_medium(0.3f, room)}, all_lights(), furniture());
+    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
     Camera flat = cameras[0];
     flat.ortho_height = 4;
     const Picture picture = picture_of(flat, stage.snapshot, 20);
@@ -160,7 +160,7 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     }
     EXPECT_LT(before, 0.01); // what the light's grid of 128 cells leaves
     Settings even;
-    even.of<ShadowVolumeSettings>().fog = ShadowFog::even;
+    even.of<ShadowVolumeSettings>().fog = ShadowFog::homogeneous;
     EXPECT_EQ(drawn("shadow-volume", picture, stage.snapshot, even)[500].validity, 0);
     const Limitations said = find_mode("shadow-volume").limitations(picture.view, stage.snapshot, even);
     EXPECT_TRUE(says(said, limitation::drawn_as_homogeneous));
@@ -168,7 +168,7 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
 
 TEST(ShadowVolume, EndlessFogAndFarEnds) {
     const Stage stage =
-        stage_of({even_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
+        stage_of({homogeneous_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
     Picture picture = picture_of(cameras[0], stage.snapshot, 1e6f);
     for (const Scatter& result : drawn("shadow-volume", picture, stage.snapshot, {})) {
         EXPECT_TRUE(is_finite(result.radiance));
@@ -176,7 +176,7 @@ TEST(ShadowVolume, EndlessFogAndFarEnds) {
     }
     // Closed form: an isotropic sun that nothing dims.
     Light light = sun_light({0, 0, -1}, 2);
-    Medium fog = even_medium(1e-4f);
+    Medium fog = homogeneous_medium(1e-4f);
     fog.bounds = fog.world_bounds = {vec3(-1e6f, -1e6f, -1), vec3(1e6f, 1e6f, 1)};
     Picture level;
     level.view.camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
@@ -186,7 +186,7 @@ TEST(ShadowVolume, EndlessFogAndFarEnds) {
 }
 
 TEST(ShadowVolume, ShellsAreALookAndSaySo) {
-    const Stage stage = stage_of({even_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture());
+    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, brighter;
     shells.of<ShadowVolumeSettings>().draw = brighter.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -204,7 +204,8 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
 
 TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     const vec3 ambient(0.1f, 0.2f, 0.3f);
-    const Stage stage = stage_of({even_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
+    const Stage stage =
+        stage_of({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, measured;
     shells.of<ShadowVolumeSettings>().draw = measured.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -223,7 +224,7 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
 TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
     Light soft = sun_light({0, -1, 0});
     soft.angle = 0.01f;
-    Stage stage = stage_of({even_medium(0.1f, room)}, {soft}, furniture());
+    Stage stage = stage_of({homogeneous_medium(0.1f, room)}, {soft}, furniture());
     const auto said = [](const Snapshot& snapshot) {
         return find_mode("shadow-volume").limitations(View{}, snapshot, {});
     };
@@ -237,7 +238,7 @@ TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
 }
 
 TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
-    const Stage stage = stage_of({even_medium(0.3f, room)}, all_lights(), furniture());
+    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     const std::vector<Scatter> alone = drawn("shadow-volume", picture, stage.snapshot, {});
     const ScatterFunction scatter = find_mode("shadow-volume").prepare(picture.view, stage.snapshot, {}, nullptr);

@@ -52,8 +52,8 @@ Mode bright_beside(vec3 place) {
 TEST(Pilot, TakesTilesAllOverThePictureAndThoseWithALamp) {
     const View view = view_of({640, 360});
     Light beside = point_light({9, 0, 0}), before = point_light({0.3f, -0.7f, 0});
-    const Pilot pilot = pilot_of(view, snapshot_of({even_medium(0.1f, room)}, {beside, before}));
-    EXPECT_EQ(pilot.corners.size(), size_t{most_pilot_tiles});
+    const Pilot pilot = pilot_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {beside, before}));
+    EXPECT_EQ(pilot.corners.size(), size_t{max_pilot_tiles});
     EXPECT_EQ(pilot.tiles, 160 * 90);
     ASSERT_EQ(pilot.lamp_tiles, 1u) << "the other one is out of the picture";
     const ivec2 lamp(*pixel_of(view.camera, view.size, before.position));
@@ -64,7 +64,8 @@ TEST(Pilot, TakesTilesAllOverThePictureAndThoseWithALamp) {
 }
 
 TEST(Pilot, ATinyPictureIsFollowedWhole) {
-    const Pilot pilot = pilot_of(view_of({3, 2}), snapshot_of({even_medium(0.1f, room)}, {point_light({0, 0, 0})}));
+    const Pilot pilot =
+        pilot_of(view_of({3, 2}), snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})}));
     EXPECT_EQ(pilot.corners.size(), 1u);
     EXPECT_EQ(pilot.lamp_tiles, 0u) << "no tile is left that others could stand for";
 }
@@ -73,7 +74,7 @@ TEST(Pilot, ATinyPictureIsFollowedWhole) {
 TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
     const View view = view_of({160, 90});
     const vec3 place(0.3f, -0.7f, 0);
-    const Snapshot snapshot = snapshot_of({even_medium(0.1f, room)}, {point_light(place)});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)});
     const Pilot pilot = pilot_of(view, snapshot);
     const Settings settings = truth_of(Settings{});
     const Measured right = measure(pilot, find_mode("march"), snapshot, settings, plain, steady_seconds);
@@ -96,7 +97,7 @@ TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
 
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.
 TEST(Goal, AFrameIsHeldAgainstTermsThatAnotherDidNotNeed) {
-    Medium fog = even_medium(0.1f, room);
+    Medium fog = homogeneous_medium(0.1f, room);
     fog.optics.emission = vec3(0.02f);
     const Snapshot snapshot = snapshot_of({fog}, {point_light({0, 5, 0}, 20)});
     Settings settings;

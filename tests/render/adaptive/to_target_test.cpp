@@ -98,9 +98,9 @@ TEST(ToTarget, StopsWhereTheFirstRoundIsEnough) {
 
 TEST(ToTarget, SaysWhenItWasMissed) {
     const Result result = to_target(plain_view({2, 2}, 4), 1e-4);
-    EXPECT_EQ(result.stats.samples, most_target_samples);
+    EXPECT_EQ(result.stats.samples, max_target_samples);
     EXPECT_GT(result.stats.noise->bound, 1e-4);
-    EXPECT_NEAR(result.stats.noise->error, true_error(most_target_samples), 0.2 * true_error(most_target_samples));
+    EXPECT_NEAR(result.stats.noise->error, true_error(max_target_samples), 0.2 * true_error(max_target_samples));
 }
 
 TEST(ToTarget, HasTheSameBitsForAnyThreadCount) {

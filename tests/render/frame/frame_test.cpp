@@ -40,7 +40,7 @@ TEST(Frame, CompositesFogBetweenTransparentSurfaces) {
     Scene scene;
     add_plane(scene, -2, 50, first, 0.5f);
     add_plane(scene, -5, 50, second, 0.25f);
-    Snapshot snapshot = snapshot_of(scene, {even_medium(extinction, {vec3(-50), vec3(50, 50, 10)})});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(extinction, {vec3(-50), vec3(50, 50, 10)})});
     snapshot.media[0].bounds.low.z = snapshot.media[0].world_bounds.low.z = -9;
     snapshot.background.color = behind;
 
@@ -63,7 +63,7 @@ TEST(Frame, OpaqueSurfacesHideWhatIsBehind) {
     Scene scene;
     add_plane(scene, -4, 50, vec3(2));
     add_plane(scene, -6, 50, vec3(9));
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.1f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.1f)});
     snapshot.background.color = vec3(5);
     const Layers layers = rendered(mode_of(prepare_glow), plain_view({4, 4}, 1, 1.0f), snapshot);
     const float t = std::exp(-0.4f);
@@ -86,7 +86,7 @@ TEST(Frame, ShowsTheBackgroundWithoutCoveringIt) {
 
 TEST(Frame, FogWithoutEndHidesTheBackground) {
     const Scene scene;
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.02f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.02f)});
     snapshot.background.color = vec3(100);
     const Layers layers = rendered(mode_of(prepare_glow), plain_view({4, 4}, 1), snapshot);
     expect_near(layers.color.at(2, 2), glow, 1e-6f);
@@ -120,7 +120,7 @@ TEST(Frame, KeepsBetweenNearAndFar) {
     add_plane(scene, -1, 50, vec3(1, 0, 0));
     add_plane(scene, -4, 50, vec3(0, 1, 0));
     add_plane(scene, -9, 50, vec3(0, 0, 1));
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.1f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.1f)});
     View view = plain_view({4, 4}, 1);
     view.camera.near = 2;
     Layers layers = rendered(mode_of(prepare_nothing), view, snapshot);
@@ -170,7 +170,7 @@ TEST(Frame, HasTheSameBitsForAnyThreadCountAndCrop) {
     Scene scene;
     add_plane(scene, -2, 0.6f, vec3(1), 0.5f);
     add_plane(scene, -3, 1.0f, vec3(2, 1, 0));
-    const Snapshot snapshot = snapshot_of(scene, {even_medium(0.2f)});
+    const Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.2f)});
     View view = plain_view({75, 46}, 3); // tiles are cut at the right and lower edge
     view.filter = PixelFilter::blackman_harris, view.filter_radius = 1.5f, view.seed = 11, view.frame = 7;
     const Mode mode = mode_of(prepare_everything);
@@ -287,7 +287,7 @@ TEST(Frame, SplitsTheLightByName) {
     }
     add_plane(scene, -3, 50, vec3(0));
     scene.materials[0].base_color = vec3(0.8f);
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.2f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.2f)});
     for (const char* name : {"key", "key", "rim"}) {
         Light light;
         light.name = name, light.kind = LightKind::sun, light.direction = vec3(0, 0, -1);

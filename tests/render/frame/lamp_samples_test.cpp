@@ -29,7 +29,7 @@ ScatterFunction prepare_lamp_glow(const View& view, const Snapshot&, const Setti
 
 // A lamp straight ahead: in the middle of the picture, where four pixels meet.
 Snapshot lamp_scene(const Scene& scene, LightKind kind = LightKind::point) {
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.1f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.1f)});
     snapshot.lights.emplace_back();
     snapshot.lights[0].kind = kind, snapshot.lights[0].position = {0, 0, -5};
     return snapshot;

@@ -26,7 +26,7 @@ TEST(Noise, RunningMeanMatchesHandComputation) {
 }
 
 namespace {
-Layers even_layers(ivec2 size, float color, float variance, float fog, float fog_variance) {
+Layers homogeneous_layers(ivec2 size, float color, float variance, float fog, float fog_variance) {
     Layers layers;
     layers.color = Image<vec3>(size, vec3(color)), layers.variance = Image<vec3>(size, vec3(variance));
     layers.inscatter = Image<vec3>(size, vec3(fog)), layers.inscatter_variance = Image<vec3>(size, vec3(fog_variance));
@@ -35,25 +35,25 @@ Layers even_layers(ivec2 size, float color, float variance, float fog, float fog
 }
 
 TEST(Noise, IsTheStandardErrorOverTheMeanOfTheWorseLayer) {
-    Noise noise = noise_of(even_layers({32, 32}, 2, 0.04f, 1, 0.0025f), 63);
+    Noise noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.0025f), 63);
     EXPECT_NEAR(noise.error, 0.1, 1e-7);
     // No tile differs: the bound is that of the variance of normal numbers.
     EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / (63 * 1024))), 1e-7);
-    noise = noise_of(even_layers({32, 32}, 2, 0.04f, 1, 0.09f), 63);
+    noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.09f), 63);
     EXPECT_NEAR(noise.error, 0.3, 1e-7);
-    noise = noise_of(even_layers({5, 3}, 2, 0.04f, 0, 0), 63);
+    noise = noise_of(homogeneous_layers({5, 3}, 2, 0.04f, 0, 0), 63);
     EXPECT_NEAR(noise.error, 0.1, 1e-7);
-    noise = noise_of(even_layers({1, 1}, 2, 0.04f, 0, 0), 63);
+    noise = noise_of(homogeneous_layers({1, 1}, 2, 0.04f, 0, 0), 63);
     EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / 63)), 1e-7);
-    noise = noise_of(even_layers({4, 4}, 0, 0, 0, 0), 63);
+    noise = noise_of(homogeneous_layers({4, 4}, 0, 0, 0, 0), 63);
     EXPECT_EQ(noise.error, 0);
     EXPECT_EQ(noise.bound, 0);
-    EXPECT_TRUE(std::isinf(noise_of(even_layers({4, 4}, 0, 1, 0, 0), 63).error));
+    EXPECT_TRUE(std::isinf(noise_of(homogeneous_layers({4, 4}, 0, 1, 0, 0), 63).error));
 }
 
 TEST(Noise, IsLessSureWhereTilesDiffer) {
     // 16 tiles of 8×8 pixels, half with variance 1 and half with 3: mean 2, standard error √(16/15)/√16.
-    Layers layers = even_layers({32, 32}, 1, 1, 0, 0);
+    Layers layers = homogeneous_layers({32, 32}, 1, 1, 0, 0);
     for (int y = 16; y < 32; ++y)
         for (int x = 0; x < 32; ++x) layers.variance.at(x, y) = vec3(3);
     const Noise noise = noise_of(layers, 63);

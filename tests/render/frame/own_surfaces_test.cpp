@@ -51,7 +51,7 @@ ScatterFunction prepare_follow(const View&, const Snapshot& snapshot, const Sett
     return [&snapshot](const RayBatch& batch, std::span<Scatter> results) {
         const size_t lights = batch.per_light.size() / results.size();
         for (size_t i = 0; i < results.size(); ++i) {
-            results[i] = followed(snapshot, batch.rays[i], batch.near[i]);
+            results[i] = followed(snapshot, batch.rays[i], batch.clip_near[i]);
             for (size_t l = 0; l < lights; ++l)
                 batch.per_light[i * lights + l] =
                     static_cast<float>(l + 1) / 3 * (results[i].radiance + results[i].surface);
@@ -70,7 +70,7 @@ Scene layered_scene() {
 }
 
 Snapshot layered_snapshot(const Scene& scene) {
-    Snapshot snapshot = snapshot_of(scene, {even_medium(0.3f, {vec3(-50, -50, -9), vec3(50, 50, 10)})});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.3f, {vec3(-50, -50, -9), vec3(50, 50, 10)})});
     snapshot.background.color = vec3(0.7f, 0.2f, 0.1f);
     return snapshot;
 }
@@ -154,7 +154,7 @@ ScatterFunction prepare_record(const View&, const Snapshot&, const Settings&, Hi
     return [](const RayBatch& batch, std::span<Scatter> results) {
         const std::lock_guard lock(seen_mutex);
         seen_rays.insert(seen_rays.end(), batch.rays.begin(), batch.rays.end());
-        seen_near.insert(seen_near.end(), batch.near.begin(), batch.near.end());
+        seen_near.insert(seen_near.end(), batch.clip_near.begin(), batch.clip_near.end());
         std::ranges::fill(results, Scatter{});
     };
 }

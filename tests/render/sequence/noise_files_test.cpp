@@ -138,7 +138,7 @@ TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
         EXPECT_EQ(json.number_or("target_error", 0), 1e-4);
         EXPECT_EQ(json.number_or("missed", 0), 1);
         const Json& frame = json.find("frames")->items[0];
-        EXPECT_EQ(frame.number_or("samples", 0), most_target_samples);
+        EXPECT_EQ(frame.number_or("samples", 0), max_target_samples);
         EXPECT_GT(frame.number_or("error_bound", 0), frame.number_or("achieved_error", 1));
         EXPECT_GT(frame.number_or("achieved_error", 0), 1e-4);
     }

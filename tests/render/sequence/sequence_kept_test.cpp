@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/scratch.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "volume/medium.h"
 
 #include <gtest/gtest.h>
@@ -78,19 +78,19 @@ RenderReport run(const Scene& scene, const RenderRequest& job, const Mode& mode,
 
 // A thing that counts how often it was made and how many of it there are.
 struct Counted {
-    static inline std::atomic<int> made = 0, alive = 0, most_alive = 0;
-    Counted() { ++made, most_alive = std::max<int>(most_alive, ++alive); }
+    static inline std::atomic<int> made = 0, alive = 0, max_alive = 0;
+    Counted() { ++made, max_alive = std::max<int>(max_alive, ++alive); }
     Counted(Counted&&) noexcept { ++alive; }
     ~Counted() { --alive; }
-    static void reset() { made = 0, most_alive = 0; }
+    static void reset() { made = 0, max_alive = 0; }
 };
 
 bool each_frame_anew = false;
 std::atomic<int> prepared = 0;
 ScatterFunction prepare_counted(const View&, const Snapshot& snapshot, const Settings&, History*) {
     ++prepared;
-    const KeptKey key = KeptKey().add(snapshot.occluders).add(each_frame_anew ? snapshot.seconds : 0.0);
-    kept(snapshot, key, [] { return Counted(); });
+    const CacheKey key = CacheKey().add(snapshot.occluders).add(each_frame_anew ? snapshot.seconds : 0.0);
+    cached(snapshot, key, [] { return Counted(); });
     return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
 }
 
@@ -175,7 +175,7 @@ TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
     Counted::reset();
     run(scene, job, mode_of(prepare_counted));
     EXPECT_EQ(Counted::made, 12);
-    EXPECT_LE(Counted::most_alive, 2);
+    EXPECT_LE(Counted::max_alive, 2);
     EXPECT_EQ(Counted::alive, 0);
 }
 

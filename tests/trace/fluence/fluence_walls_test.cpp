@@ -26,7 +26,7 @@ double mean_fluence(const FluenceGrid& grid, const Box& box) {
 }
 
 Snapshot with_surfaces(Scene& scene, const Box& fog, vec3 sun_direction, float extinction = 0.5f) {
-    Snapshot snapshot = snapshot_of({even_medium(extinction, fog)}, {sun_light(sun_direction)});
+    Snapshot snapshot = snapshot_of({homogeneous_medium(extinction, fog)}, {sun_light(sun_direction)});
     add_surfaces(scene, snapshot);
     return snapshot;
 }
@@ -37,7 +37,7 @@ TEST(FluenceRim, ALayerBetweenTheCellsIsAsBrightAsOneOnThem) {
     const float cell = 2.0f / twice.resolution;
     const auto brightness = [&](float low) {
         const Box layer{vec3(-1, low, -1), vec3(1, low + 2 * cell, 1)};
-        const Snapshot snapshot = snapshot_of({even_medium(1, layer)}, {sun_light({0.2f, -1, 0})});
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(1, layer)}, {sun_light({0.2f, -1, 0})});
         return mean_fluence(make_fluence(snapshot, twice), layer);
     };
     const double on_cells = brightness(2 * cell);

@@ -52,8 +52,8 @@ const Box around{vec3(-3, -2, -4), vec3(5, 6, 3)};
 TEST(LightDepth, HomogeneousFogIsExact) {
     const mat4 turned = glm::rotate(glm::scale(glm::translate(mat4(1), vec3(1, 2, -1)), vec3(1, 2, 0.5f)), 0.7f,
                                     glm::normalize(vec3(1, 2, 3)));
-    const std::vector<Medium> media = {placed(even_medium(0.3f, {vec3(-1), vec3(1.5f, 1, 2)}), turned),
-                                       even_medium(0.2f, {vec3(-2, 0, -3), vec3(2, 1, 1)})};
+    const std::vector<Medium> media = {placed(homogeneous_medium(0.3f, {vec3(-1), vec3(1.5f, 1, 2)}), turned),
+                                       homogeneous_medium(0.2f, {vec3(-2, 0, -3), vec3(2, 1, 1)})};
     expect_exact(media, sun_light(vec3(0.3f, -1, 0.2f)), around);
     expect_exact(media, sun_light(vec3(0, -1, 0)), around);
     expect_exact(media, point_light(vec3(0.5f, 3, -1)), around);
@@ -62,7 +62,7 @@ TEST(LightDepth, HomogeneousFogIsExact) {
 }
 
 TEST(LightDepth, FogWithoutEndIsExactForLocalLightsAndHidesTheSun) {
-    const std::vector<Medium> media = {even_medium(0.3f)};
+    const std::vector<Medium> media = {homogeneous_medium(0.3f)};
     expect_exact(media, point_light(vec3(9, 3, -1)), around);
     const Snapshot snapshot = snapshot_of(media);
     const LightDepth depth = make_light_depth(snapshot, sun_light(vec3(0, -1, 0)), LightTransmittance::grid, 16);
@@ -123,7 +123,7 @@ TEST(LightDepth, GridKnowsBeforeBesideAndBehind) {
 
 TEST(LightDepth, OffAverageAndInactive) {
     const Snapshot snapshot =
-        snapshot_of({medium_of(constant_box(16, 1), 0.25f), even_medium(0.1f, {vec3(0), vec3(10)})});
+        snapshot_of({medium_of(constant_box(16, 1), 0.25f), homogeneous_medium(0.1f, {vec3(0), vec3(10)})});
     const Light light = sun_light(vec3(0, -1, 0));
     EXPECT_EQ(depth_at(make_light_depth(snapshot, light, LightTransmittance::off, 32), vec3(5)), 0);
 
@@ -152,7 +152,7 @@ TEST(LightDepth, OffAverageAndInactive) {
 
 TEST(LightDepth, MarchedIsExact) {
     const std::vector<Medium> media = {medium_of(volume_of(ivec3(0), ivec3(30, 20, 17), exact_noise), 0.05f),
-                                       even_medium(0.01f, {vec3(0), vec3(10)})};
+                                       homogeneous_medium(0.01f, {vec3(0), vec3(10)})};
     const Snapshot snapshot = snapshot_of(media);
     for (const Light& light : {sun_light(vec3(0.3f, -1, 0.2f)), with_radius(point_light(vec3(9, 8, 7)), 0.5f),
                                spot_light(vec3(9, 40, 7), {0, -40, 2}, 1, 0, 0.4f)}) {

@@ -18,7 +18,7 @@ std::atomic<bool> never_cancelled = false;
 ViewState small_state() {
     ViewState state;
     take_scene(state, small_scene());
-    state.most_samples = 4;
+    state.max_samples = 4;
     return state;
 }
 

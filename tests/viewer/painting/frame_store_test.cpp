@@ -1,5 +1,5 @@
 #include "scene/scene.h"
-#include "trace/kept.h"
+#include "trace/frame_cache.h"
 #include "viewer/editing/missing_frames.h"
 #include "viewer/painting/painting.h"
 #include "viewer/state/view_state.h"
@@ -55,14 +55,14 @@ TEST(FrameStore, FramesThatWereLeftAreTakenUpWithAllThatWasMadeForThem) {
     FrameStore store(uint64_t{1} << 40);
     store.begin(scene, MissingFrame::error);
     const Snapshot one = at_frame(scene, 1);
-    const auto made = kept(one, KeptKey().add(7), [] { return 42; });
+    const auto made = cached(one, CacheKey().add(7), [] { return 42; });
     store.put(one);
     double seconds = 0;
     EXPECT_FALSE(store.take(2, seconds));
     const auto again = store.take(1, seconds);
     ASSERT_TRUE(again);
     EXPECT_EQ(again->media[0].bricks, one.media[0].bricks);
-    EXPECT_EQ(kept(*again, KeptKey().add(7), [] { return 43; }), made);
+    EXPECT_EQ(cached(*again, CacheKey().add(7), [] { return 43; }), made);
     EXPECT_EQ(seconds, 0);
 }
 

@@ -41,14 +41,14 @@ TEST(Painter, StillPicturesBecomeBetterUntilTheyAreFinished) {
         EXPECT_EQ(pictures[i].finished, i + 1 == pictures.size());
     }
     EXPECT_EQ(pictures[1].samples, 1);
-    EXPECT_EQ(pictures.back().samples, request.most_samples);
+    EXPECT_EQ(pictures.back().samples, request.max_samples);
     EXPECT_FALSE(paint(painter, request, never));
 }
 
 TEST(Painter, TheRoundOfTheSettingsSamplesIsThePictureOfRender) {
     Painter painter;
     Request request = request_for(small_scene());
-    request.most_samples = request.settings.pixel.samples;
+    request.max_samples = request.settings.pixel.samples;
     for (const char* mode : {"march", "froxel", "path", "radial-blur", "cone"}) {
         ++request.revision;
         request.mode = mode;
@@ -60,14 +60,14 @@ TEST(Painter, TheRoundOfTheSettingsSamplesIsThePictureOfRender) {
 TEST(Painter, TwoModesShareThePictureAtTheWipe) {
     Painter painter;
     Request request = request_for(small_scene());
-    request.most_samples = request.settings.pixel.samples;
+    request.max_samples = request.settings.pixel.samples;
     request.beside = "cone", request.shown.wipe = 0.25f;
     const ShownPicture both = paint_all(painter, request).back();
     EXPECT_EQ(both.beside, "cone");
-    EXPECT_EQ(both.samples, request.most_samples);
+    EXPECT_EQ(both.samples, request.max_samples);
     Request other = request;
     other.mode = "cone";
-    const auto left = rendered(request, request.most_samples), right = rendered(other, request.most_samples);
+    const auto left = rendered(request, request.max_samples), right = rendered(other, request.max_samples);
     ASSERT_NE(left.pixels, right.pixels);
     const auto is_composed = [&](const Image<glm::u8vec4>& codes, int split) {
         for (int y = 0; y < codes.size.y; ++y)
@@ -94,7 +94,7 @@ TEST(Painter, MovingPicturesAreQuickAndOneForEachRequest) {
     EXPECT_EQ(picture->wanted, request.size);
     EXPECT_FALSE(paint(painter, request, never));
     request.moving = false;
-    EXPECT_EQ(paint_all(painter, request).back().samples, request.most_samples);
+    EXPECT_EQ(paint_all(painter, request).back().samples, request.max_samples);
 }
 
 TEST(Painter, ExposureShowsTheSameSamplesAnew) {
@@ -146,7 +146,7 @@ TEST(Painter, CancelledWorkComesToNothing) {
     std::atomic<bool> now = true;
     const Request request = request_for(small_scene());
     EXPECT_FALSE(paint(painter, request, now));
-    EXPECT_EQ(paint_all(painter, request).back().samples, request.most_samples);
+    EXPECT_EQ(paint_all(painter, request).back().samples, request.max_samples);
 }
 
 TEST(Painter, APictureThatNeverBeganIsNotShownAnew) {
@@ -166,7 +166,7 @@ TEST(Painter, APictureThatNeverBeganIsNotShownAnew) {
 TEST(Painter, AStillPictureThatHasBegunIsNotReplacedByAQuickOne) {
     Painter painter;
     Request request = request_for(small_scene());
-    request.mode = "froxel", request.beside = "shadow-map", request.most_samples = 8;
+    request.mode = "froxel", request.beside = "shadow-map", request.max_samples = 8;
     painter.paces["froxel"].level = 3; // quick pictures are small
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(paint(painter, request, never));
     Request moving = request;

@@ -90,7 +90,7 @@ TEST_P(RandomRequests, EveryPictureFitsItsRequest) {
     Chance chance{GetParam()};
     ViewState state;
     take_scene(state, small_scene());
-    state.most_samples = 6;
+    state.max_samples = 6;
     Painter painter;
     int pictures = 0, whole = 0;
     for (int i = 0; i < 150; ++i) {

@@ -12,7 +12,7 @@ namespace {
 Request ray_request() {
     flush_denormals();
     Request request = request_for(small_scene(), "cone");
-    request.most_samples = 2, request.explain = ivec2(32, 20);
+    request.max_samples = 2, request.explain = ivec2(32, 20);
     return request;
 }
 }

@@ -13,7 +13,7 @@ namespace {
 Request error_request(const char* mode) {
     flush_denormals();
     Request request = request_for(small_scene(), mode);
-    request.most_samples = request.settings.pixel.samples;
+    request.max_samples = request.settings.pixel.samples;
     request.shown.layer = ShownLayer::error;
     return request;
 }
@@ -91,7 +91,7 @@ TEST(ReferencePicture, FiguresAreThoseOfComparingTwoRenders) {
     EXPECT_GT(picture.errors->worst, 0);
     EXPECT_EQ(picture.errors->bias, color.bias / color.mean_reference);
     ASSERT_TRUE(picture.reference);
-    EXPECT_EQ(picture.reference->samples, request.most_samples);
+    EXPECT_EQ(picture.reference->samples, request.max_samples);
     EXPECT_LT(picture.reference->noise, 0) << "one round tells nothing of the noise";
     EXPECT_EQ(picture.codes.pixels, error_codes(test, truth).pixels);
 }
@@ -100,7 +100,7 @@ TEST(ReferencePicture, AMarchOfFinalQualityIsOffByTheStepToTheExactOne) {
     Painter painter;
     Request request = error_request("march");
     request.settings = settings_for(Quality::final);
-    request.settings.pixel.samples = 2, request.most_samples = 7; // over several rounds
+    request.settings.pixel.samples = 2, request.max_samples = 7; // over several rounds
     std::optional<ErrorFigures> before;
     ShownPicture picture;
     while (auto next = paint(painter, request, never)) {

@@ -38,7 +38,7 @@ TEST(RenderThread, TheNewestRequestIsFinished) {
     const auto picture = finished(thread, 20);
     ASSERT_TRUE(picture && picture->finished);
     EXPECT_EQ(picture->frame, 2);
-    EXPECT_EQ(picture->samples, request.most_samples);
+    EXPECT_EQ(picture->samples, request.max_samples);
     EXPECT_TRUE(comes([&] { return thread.idle(); }));
     EXPECT_GT(news, 0);
 }
@@ -46,7 +46,7 @@ TEST(RenderThread, TheNewestRequestIsFinished) {
 TEST(RenderThread, PostingNeverWaits) {
     RenderThread thread;
     Request request = request_for(small_scene(), "path");
-    request.size = {640, 400}, request.most_samples = 1 << 20; // takes for ever
+    request.size = {640, 400}, request.max_samples = 1 << 20; // takes for ever
     thread.post(request);
     EXPECT_TRUE(comes([&] { return thread.take_picture() != nullptr; }));
     double longest = 0;

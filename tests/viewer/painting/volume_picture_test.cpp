@@ -115,7 +115,7 @@ TEST(VolumePicture, ComesWithThePictureAndFollowsTheQuestion) {
     flush_denormals();
     Painter painter;
     Request request = request_for(small_scene(), "cone");
-    request.most_samples = 1, request.volume = VolumeQuestion{};
+    request.max_samples = 1, request.volume = VolumeQuestion{};
     const auto first = paint(painter, request, never);
     ASSERT_TRUE(first && first->volume);
     EXPECT_EQ(first->volume->question.axis, 2);

@@ -169,7 +169,7 @@ TEST(ViewState, ScriptsDoJobsOneAfterTheOther) {
 
 TEST(ViewState, ScriptsDoNotWaitForWhatNeverComes) {
     ViewState state = state_with_scene();
-    state.most_samples = 8;
+    state.max_samples = 8;
     ScriptPlayer samples{parse_script("wait samples 9", "c.txt")}, idle{parse_script("wait idle", "c.txt")};
     error_text(ExitCode::usage, [&] { next_action(samples, state, {}); });
     apply(state, parse_action("play"));

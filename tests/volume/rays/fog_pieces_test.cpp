@@ -43,7 +43,7 @@ TEST(FogPieces, SteepAndLevelHeightFogStaysFinite) {
 }
 
 TEST(FogPieces, LeavesOutWhatNobodySees) {
-    Medium fog = even_medium(1);
+    Medium fog = homogeneous_medium(1);
     FogPieces pieces;
     find_fog({{0, 0, 0}, {1, 0, 0}, 1e9f}, {&fog, 1}, 0, pieces);
     EXPECT_NEAR(pieces.depth, 64, 1e-9);
@@ -81,8 +81,8 @@ TEST(FogPieces, MediaLieOverEachOther) {
     // A grid, a tilted box and height fog: at every point the extinctions add up, and so do the depths.
     const Medium media[] = {
         medium_of(volume_of(ivec3(0), ivec3(11), exact_noise), 0.4f),
-        placed(even_medium(0.3f, {vec3(2), vec3(9)}), glm::rotate(mat4(1), 0.4f, glm::normalize(vec3(1, 2, 3)))),
-        height_fog(0.2f, 4, 3, {vec3(-2), vec3(20, 9, 20)}), even_medium(0)};
+        placed(homogeneous_medium(0.3f, {vec3(2), vec3(9)}), glm::rotate(mat4(1), 0.4f, glm::normalize(vec3(1, 2, 3)))),
+        height_fog(0.2f, 4, 3, {vec3(-2), vec3(20, 9, 20)}), homogeneous_medium(0)};
     for (uint32_t i = 0; i < 200; ++i) {
         const Ray ray = ray_between(random_point(vec3(-4), vec3(16), i, 3), random_point(vec3(-4), vec3(16), i, 4));
         FogPieces pieces;

@@ -11,26 +11,26 @@ const Ray forward{vec3(0), vec3(0, 0, -1), infinity};
 
 TEST(FogReach, IsNothingWithoutFog) {
     EXPECT_EQ(fog_reach({}, forward), 0);
-    const std::vector behind{even_medium(1, {vec3(-1, -1, 5), vec3(1, 1, 9)})};
+    const std::vector behind{homogeneous_medium(1, {vec3(-1, -1, 5), vec3(1, 1, 9)})};
     EXPECT_EQ(fog_reach(behind, forward), 0);
 }
 
 TEST(FogReach, EndsWhereBoundedFogEnds) {
-    const std::vector media{even_medium(1, {vec3(-1, -1, -9), vec3(1, 1, -5)}),
-                            even_medium(1, {vec3(-1, -1, -4), vec3(1, 1, -2)})};
+    const std::vector media{homogeneous_medium(1, {vec3(-1, -1, -9), vec3(1, 1, -5)}),
+                            homogeneous_medium(1, {vec3(-1, -1, -4), vec3(1, 1, -2)})};
     EXPECT_FLOAT_EQ(fog_reach(media, forward), 9);
     EXPECT_FLOAT_EQ(fog_reach(media, {vec3(0), vec3(0, 0, -1), 7}), 7);
 }
 
 TEST(FogReach, FollowsEndlessFogToOpticalDepth20) {
     for (const float extinction : {1e-6f, 0.01f, 1.0f, 30.0f}) {
-        const std::vector media{even_medium(extinction)};
+        const std::vector media{homogeneous_medium(extinction)};
         const double depth = double{fog_reach(media, forward)} * extinction;
         EXPECT_GE(depth, 20 * (1 - 1e-6)) << extinction;
         EXPECT_LE(depth, extinction > 20 ? 30 * 1.1 : 20 * 1.1) << extinction;
     }
     // Fog so thin that it takes more than the horizon of 1e9 m.
-    EXPECT_EQ(fog_reach(std::vector{even_medium(1e-12f)}, forward), 1e9f);
+    EXPECT_EQ(fog_reach(std::vector{homogeneous_medium(1e-12f)}, forward), 1e9f);
 }
 
 TEST(FogReach, LosesLessThanAMillionthOfFogThatThinsOut) {

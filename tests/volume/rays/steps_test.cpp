@@ -57,7 +57,7 @@ Ray ray_through(const Box& box, uint32_t i) {
 }
 
 TEST(Steps, HomogeneousSlabIsExactAtAnyCount) {
-    const Medium slab = even_medium(0.7f, {vec3(-100, 1, -100), vec3(100, 4, 100)});
+    const Medium slab = homogeneous_medium(0.7f, {vec3(-100, 1, -100), vec3(100, 4, 100)});
     const Ray ray{vec3(0.3f, 9, 0), glm::normalize(vec3(0.2f, -1, 0.1f))};
     const double exact = optical_depth(slab, ray);
     for (const float depth : {100.0f, 1.0f, 0.3f, 0.05f, 0.002f}) {
@@ -102,7 +102,8 @@ TEST(Steps, BrickDepthConverges) {
 }
 
 TEST(Steps, CoverAllFog) {
-    const std::vector<Medium> media{medium_of(islands(), 0.5f), even_medium(0.2f, {vec3(-9, 0, 0), vec3(-4, 9, 9)}),
+    const std::vector<Medium> media{medium_of(islands(), 0.5f),
+                                    homogeneous_medium(0.2f, {vec3(-9, 0, 0), vec3(-4, 9, 9)}),
                                     height_fog(0.1f, -2, 0.7f, {vec3(0, -4, 0), vec3(9, 3, 9)})};
     Box box = media[0].bricks->bounds;
     box.grow(media[1].bounds), box.grow(media[2].bounds);
@@ -164,7 +165,7 @@ TEST(Steps, ConstantFogHasNoVoxelLimit) {
     volume.tiles.push_back({ivec3(0), ivec3(255), 0.5f});
     const Ray inside = ray_between(vec3(20), vec3(200, 220, 230));
     EXPECT_EQ(steps_of(inside, medium_of(volume), rule).size(), 1u);
-    EXPECT_EQ(steps_of(inside, even_medium(3), rule).size(), 1u);
+    EXPECT_EQ(steps_of(inside, homogeneous_medium(3), rule).size(), 1u);
 }
 
 TEST(Steps, HalvingTheRuleHalvesTheSteps) {
@@ -182,8 +183,8 @@ TEST(Steps, HalvingTheRuleHalvesTheSteps) {
 
 TEST(Steps, EqualShareOfTheBounds) {
     // Thin and thick halves: 10 m at 0.1/m and 10 m at 1/m, the step following the density, no sliver between them.
-    const std::vector<Medium> media{even_medium(0.1f, {vec3(0), vec3(10, 1, 1)}),
-                                    even_medium(1, {vec3(10, 0, 0), vec3(20, 1, 1)})};
+    const std::vector<Medium> media{homogeneous_medium(0.1f, {vec3(0), vec3(10, 1, 1)}),
+                                    homogeneous_medium(1, {vec3(10, 0, 0), vec3(20, 1, 1)})};
     StepRule rule;
     rule.optical_depth = 0.25f, rule.length = 100;
     const std::vector<Step> steps = steps_of(Ray{vec3(-5, 0.5f, 0.5f), vec3(1, 0, 0)}, media, rule);
@@ -198,8 +199,9 @@ TEST(Steps, EqualShareOfTheBounds) {
 }
 
 TEST(Steps, AddExtinctionsOfOverlappingMedia) {
-    const std::vector<Medium> media{even_medium(0.1f), even_medium(0.3f, {vec3(2, -1, -1), vec3(4, 1, 1)}),
-                                    even_medium(0.6f, {vec3(3, -1, -1), vec3(6, 1, 1)})};
+    const std::vector<Medium> media{homogeneous_medium(0.1f),
+                                    homogeneous_medium(0.3f, {vec3(2, -1, -1), vec3(4, 1, 1)}),
+                                    homogeneous_medium(0.6f, {vec3(3, -1, -1), vec3(6, 1, 1)})};
     StepRule rule;
     rule.optical_depth = 1e-3f, rule.length = 100;
     const auto steps = steps_of(Ray{vec3(0), vec3(1, 0, 0), 10}, media, rule);
@@ -208,7 +210,7 @@ TEST(Steps, AddExtinctionsOfOverlappingMedia) {
 }
 
 TEST(Steps, ShrinkTowardsLocalLights) {
-    const Medium fog = even_medium(0.01f);
+    const Medium fog = homogeneous_medium(0.01f);
     const vec3 lights[] = {vec3(10, 0.5f, 0), vec3(30, 0, 0.01f)};
     StepRule rule;
     rule.length = 5, rule.near_points = lights, rule.near_ratio = 0.25f, rule.optical_depth = 10;
@@ -228,7 +230,7 @@ TEST(Steps, ShrinkTowardsLocalLights) {
 
 // Two beams that overlap, one that is wider than its steps are anyway, and one outside the fog.
 TEST(Steps, BeamsGetStepsOfTheirOwn) {
-    const Medium fog = even_medium(0.01f, {vec3(0, -1, -1), vec3(20, 1, 1)});
+    const Medium fog = homogeneous_medium(0.01f, {vec3(0, -1, -1), vec3(20, 1, 1)});
     const Step beams[] = {{3, 3.2f}, {3.1f, 3.5f}, {4, 16}, {30, 31}};
     StepRule rule;
     rule.length = 1, rule.optical_depth = 10, rule.beams = beams, rule.beam_steps = 8;
@@ -251,7 +253,7 @@ TEST(Steps, RayThroughALightStaysFinite) {
     const vec3 light(7, 0, 0);
     StepRule rule;
     rule.length = 1e6f, rule.near_points = std::span(&light, 1), rule.near_ratio = 0.1f;
-    const auto steps = steps_of(Ray{vec3(0), vec3(1, 0, 0), 14}, even_medium(1e-3f), rule);
+    const auto steps = steps_of(Ray{vec3(0), vec3(1, 0, 0), 14}, homogeneous_medium(1e-3f), rule);
     EXPECT_LT(steps.size(), 1000u);
     EXPECT_GT(steps.size(), 100u);
 }
@@ -274,7 +276,7 @@ TEST(Steps, NeverMoreThanAllowed) {
 }
 
 TEST(Steps, FogWithoutEndIsCutWhereItIsOpaque) {
-    const auto even = steps_of(Ray{vec3(0), vec3(1, 0, 0)}, even_medium(0.5f));
+    const auto even = steps_of(Ray{vec3(0), vec3(1, 0, 0)}, homogeneous_medium(0.5f));
     EXPECT_NEAR(even.back().high, 128, 1e-3);
     const Medium fog = height_fog(0.5f, 0, 3);
     EXPECT_NEAR(steps_of(Ray{vec3(0, 9, 0), vec3(0, -1, 0)}, fog).back().high, 9 + 128 - 4, 4);
@@ -286,7 +288,7 @@ TEST(Steps, FogWithoutEndIsCutWhereItIsOpaque) {
 }
 
 TEST(Steps, FogThatOnlyGlowsHasStepsAndWhatDoesNeitherHasNone) {
-    Medium fog = even_medium(0, {vec3(-1), vec3(1)});
+    Medium fog = homogeneous_medium(0, {vec3(-1), vec3(1)});
     const Ray ray{vec3(-3, 0, 0), vec3(1, 0, 0)};
     EXPECT_TRUE(steps_of(ray, fog).empty());
     fog.optics.emission = vec3(1);
@@ -298,7 +300,7 @@ TEST(Steps, FogThatOnlyGlowsHasStepsAndWhatDoesNeitherHasNone) {
 
 TEST(Steps, AxisParallelAndDegenerateRays) {
     const std::vector<Medium> media{medium_of(volume_of(ivec3(0), ivec3(23), exact_noise)),
-                                    even_medium(1, {vec3(0), vec3(23)})};
+                                    homogeneous_medium(1, {vec3(0), vec3(23)})};
     std::vector<Step> steps;
     for (uint32_t i = 0; i < 20000; ++i) {
         vec3 origin = glm::round(random_point(vec3(-2), vec3(26), i, 0));

@@ -20,7 +20,7 @@ TEST(RecipeDensity, IsTheRemapOfTheNoise) {
     for (size_t i = 0; i < points.size(); ++i) {
         const float above = (noise[i] + 1) / 2 - recipe.threshold;
         const float expected = glm::clamp(above * recipe.gain, 0.0f, 1.0f) * smoothstep(above / recipe.soft_edge);
-        ASSERT_NEAR(density[i], expected < least_density ? 0 : expected, 1e-4) << i;
+        ASSERT_NEAR(density[i], expected < min_density ? 0 : expected, 1e-4) << i;
         clear += density[i] == 0, full += density[i] == 1;
     }
     EXPECT_GT(clear, 100);
@@ -68,7 +68,7 @@ TEST(RecipeDensity, FadesAtTheBorderAndEndsAtTheBounds) {
         const vec3 inside = glm::min(p - recipe.bounds.low, recipe.bounds.high - p);
         const bool in = inside.x >= 0 && inside.y >= 0 && inside.z >= 0;
         const float expected = in ? smoothstep(inside.x / 0.5f) * smoothstep(inside.z / 0.25f) : 0;
-        ASSERT_NEAR(density[i], expected < least_density ? 0 : expected, 1e-5) << i;
+        ASSERT_NEAR(density[i], expected < min_density ? 0 : expected, 1e-5) << i;
     }
 }
 
@@ -81,7 +81,7 @@ TEST(RecipeDensity, AnEllipsoidFillsItsBoundsAndNoMore) {
         const vec3 p = points.at(i) - vec3(1, 0.5f, 0);
         const vec3 share = p / vec3(2, p.y < 0 ? 0.5f : 1.5f, 2);
         const float expected = smoothstep((1 - glm::dot(share, share)) * 5);
-        ASSERT_NEAR(density[i], expected < least_density ? 0 : expected, 2e-5) << i;
+        ASSERT_NEAR(density[i], expected < min_density ? 0 : expected, 2e-5) << i;
     }
     // Strength moves the threshold: all fog in the middle, none near the surface.
     recipe.threshold = 0.5f, recipe.shape_strength = 0.5f;

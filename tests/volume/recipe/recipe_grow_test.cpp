@@ -55,7 +55,7 @@ Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, Gro
     return result;
 }
 
-void expect_no_hole(int recipes, float across, uint32_t seed, int64_t least_leaves) {
+void expect_no_hole(int recipes, float across, uint32_t seed, int64_t min_leaves) {
     std::mt19937 random(seed);
     int64_t leaves = 0, full = 0;
     for (int i = 0; i < recipes; ++i) {
@@ -68,7 +68,7 @@ void expect_no_hole(int recipes, float across, uint32_t seed, int64_t least_leav
         ASSERT_EQ(report.kept, found.full_leaves);
         leaves += found.leaves, full += found.full_leaves;
     }
-    EXPECT_GE(leaves, least_leaves);
+    EXPECT_GE(leaves, min_leaves);
     EXPECT_GT(full, leaves / 50) << "hardly any fog was tested";
     EXPECT_LT(full, leaves * 9 / 10) << "hardly any empty leaf was tested";
 }
@@ -123,7 +123,7 @@ TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
         bool any = false;
         for (int i = 0; i < 512; ++i) {
             const float value = leaf.values[i];
-            ASSERT_TRUE(value == 0 || (value >= least_density && value <= 1)) << value;
+            ASSERT_TRUE(value == 0 || (value >= min_density && value <= 1)) << value;
             if (value == 0) continue;
             any = true, ++voxels;
             const ivec3 at = o + ivec3(i / 64, i / 8 % 8, i % 8);

@@ -72,7 +72,7 @@ TEST(RecipeLoop, KeepsItsContrast) {
 }
 
 TEST(RecipeLoop, WindKeepsItsSpeed) {
-    // Fog looks most like itself a moment ago where the wind has carried it.
+    // Fog looks most like itself a moment ago where the wind has throughput it.
     FogRecipe recipe;
     recipe.bounds = {vec3(-10), vec3(10)};
     recipe.noise = {.octaves = 3, .scale = 1};

@@ -31,7 +31,7 @@ std::vector<dvec3> hull_of(std::span<const ShadowSlice> slices, std::span<const 
     return hull;
 }
 
-double least_of(const std::vector<dvec3>& hull, dvec3 normal) {
+double min_of(const std::vector<dvec3>& hull, dvec3 normal) {
     double least = std::numeric_limits<double>::infinity();
     for (const dvec3 point : hull) least = std::min(least, glm::dot(normal, point) - slack(point));
     return least;
@@ -81,7 +81,8 @@ ShadowFan make_fan(const ShadowSlice& s) {
 
 // The half spaces of the middle ray, moved until they hold all rays, and the outermost of the planes through the line
 // from the rays' origin to the light.
-ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points) {
+ShadowSlices coherent_slices(const ShadowSlices& slices, std::span<const Ray> rays,
+                             std::span<const LightPoint> points) {
     ShadowSlices found;
     found.corners = slices.corners;
     if (slices.nodes.empty()) return found;
@@ -92,7 +93,7 @@ ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, st
     const ShadowSlice& middle = all[all.size() / 2];
     ShadowFan fan = make_fan(middle);
     for (int i = 0; i < 6; ++i)
-        if (normal_of(fan, i) != dvec3(0)) fan.least[i] = least_of(hull, normal_of(fan, i));
+        if (normal_of(fan, i) != dvec3(0)) fan.least[i] = min_of(hull, normal_of(fan, i));
 
     const dvec3 to_light = middle.light_x * middle.x + middle.light_y * middle.y;
     const dvec3 side = glm::cross(middle.normal, to_light);
@@ -100,8 +101,7 @@ ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, st
         std::ranges::minmax(all, {}, [&](const ShadowSlice& slice) { return glm::dot(slice.normal, side); });
     for (int i = 0; i < 2; ++i) {
         const dvec3 normal = i == 0 ? low.normal : high.normal;
-        const double from = least_of(hull, normal), back = least_of(hull, -normal),
-                     here = glm::dot(normal, middle.origin);
+        const double from = min_of(hull, normal), back = min_of(hull, -normal), here = glm::dot(normal, middle.origin);
         if (from - here > back + here)
             set(fan, 6 + i, normal, from);
         else

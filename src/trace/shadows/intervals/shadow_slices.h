@@ -34,14 +34,14 @@ ShadowSlices make_shadow_slices(const std::vector<ShadowTriangle>& triangles); /
 
 // The triangles that may cast shadows on some of the rays, each with its own point of the light: for rays of one origin
 // close to each other a quicker start for find_lit(), with the same answers. At least one ray.
-ShadowSlices near_rays(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points);
+ShadowSlices coherent_slices(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points);
 
 // Replaces `lit` by the stretches of the ray 0..t_max, ascending, from which the point of the light is seen. Like
 // shadow rays, the slices look 0.9999 of the way to the point, and nothing inside the light's ball casts shadows.
 void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Interval<double>>& lit);
 
 // The same for up to 16 rays, each with its own point of one light; quick for rays close to each other after
-// near_rays().
+// coherent_slices().
 void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points,
               std::vector<Interval<double>> (&lit)[16]);
 }

@@ -1,8 +1,8 @@
 // Where the orthographic pictures of a sun lie.
 #include "trace/occlusion/occluders.h"
-#include "trace/seen_space.h"
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/snapshot.h"
+#include "trace/view_frustum.h"
 #include "volume/bricks/brick_walk.h"
 #include "volume/medium.h"
 

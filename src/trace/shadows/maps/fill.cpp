@@ -2,13 +2,13 @@
 #include "base/parallel.h"
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
-#include "trace/seen_space.h"
 #include "trace/shadows/maps/shadow_blocks.h"
 #include "trace/snapshot.h"
+#include "trace/view_frustum.h"
 
 namespace tyndall {
 namespace {
-constexpr int most_sheets = 64; // BLEND surfaces passed by one ray
+constexpr int max_sheets = 64; // BLEND surfaces passed by one ray
 
 struct Filling {
     const Light& light;
@@ -16,7 +16,7 @@ struct Filling {
     ShadowMap& map;
     mat3 map_to_world;
     bool has_alpha;
-    SeenSpace seen;
+    ViewFrustum seen;
     float start = 0;           // w at which the rays of a sun begin, before all surfaces
     float nearest = 0;         // distance from a local light at which surfaces begin
     float smallest_cosine = 0; // to the axis, of texels that the light reaches
@@ -39,7 +39,7 @@ Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face,
 // Depths of rays that met a sheet more transparent than opaque: from behind it on, one sheet after the other.
 float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, float depth) {
     Hits hits;
-    for (int sheet = 0; sheet < most_sheets; ++sheet) {
+    for (int sheet = 0; sheet < max_sheets; ++sheet) {
         occluders.closest({&ray, 1}, t_min, hits);
         if (hits.instance[0] < 0) return infinity;
         if (occluders.surface(ray, hits, 0).alpha >= 0.5f) return depth + hits.t[0];
@@ -94,7 +94,7 @@ void fill_block(const Filling& filling, const ShadowPicture& picture, size_t fac
 void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& light, ShadowMap& map) {
     const Occluders& occluders = *snapshot.occluders;
     Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha(), {}};
-    filling.seen = seen_space(view, snapshot, map.position);
+    filling.seen = view_frustum(view, snapshot, map.position);
     filling.smallest_cosine = -2;
     if (map.kind == LightKind::sun) {
         const Box box = occluders.bounds();

@@ -7,7 +7,7 @@
 namespace tyndall {
 namespace {
 constexpr float rounding = 2e-6f; // more than look-ups round, and than what they move surfaces away
-constexpr float most_across = 2;  // widths of a block across a box
+constexpr float max_across = 2;   // widths of a block across a box
 
 ivec2 blocks_of(ivec2 texels) { return (texels + block_side - 1) / block_side; }
 size_t area(ivec2 size) { return static_cast<size_t>(size.x) * static_cast<size_t>(size.y); }
@@ -42,7 +42,7 @@ void fill_larger(const DepthRange* fine, ivec2 fine_count, DepthRange* coarse) {
 // Range of all texels that reach into a rectangle of texel numbers, which lies in the picture.
 DepthRange range_in(const ShadowMap& map, const ShadowPicture& picture, vec2 low, vec2 high) {
     // Of the level whose blocks are at least half as wide as the rectangle, three by three hold it.
-    const float share = std::max(high.x - low.x, high.y - low.y) / (most_across * block_side);
+    const float share = std::max(high.x - low.x, high.y - low.y) / (max_across * block_side);
     const int exponent = static_cast<int>(std::bit_cast<uint32_t>(share) >> 23) - 126; // share <= 2^exponent
     const int level = std::clamp(exponent, 0, picture.levels - 1);
     const DepthRange* blocks = map.blocks.data() + picture.first_block[static_cast<size_t>(level)];
@@ -67,7 +67,7 @@ void make_blocks(ShadowMap& map) {
         for (picture.levels = 0;; count = (count + 1) / 2) {
             picture.first_block[static_cast<size_t>(picture.levels++)] = total;
             total += area(count);
-            if (area(count) <= 1 || picture.levels == most_levels) break;
+            if (area(count) <= 1 || picture.levels == max_levels) break;
         }
     }
     map.blocks.resize(total);

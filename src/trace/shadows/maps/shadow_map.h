@@ -21,7 +21,7 @@ struct View;
 
 inline constexpr float shadow_guard = 2; // texels around a filtered look-up on each side that a picture has to spare
 
-inline constexpr int most_levels = 12; // of blocks: 8192 texels, in blocks of 4 to 8192
+inline constexpr int max_levels = 12; // of blocks: 8192 texels, in blocks of 4 to 8192
 
 struct ShadowMapOptions {
     int resolution = 1024; // texels across each picture
@@ -36,7 +36,7 @@ struct ShadowPicture {
     size_t first = 0; // of its texels in ShadowMap::depth, rows of increasing u
     vec2 scale{1}, offset{0};
     int levels = 0; // of its blocks, and where each begins in ShadowMap::blocks
-    std::array<size_t, most_levels> first_block{};
+    std::array<size_t, max_levels> first_block{};
 };
 
 // Depths of a block of texels.

@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
     Ints r;
-    for (size_t i = 0; i < parts; ++i)
+    for (size_t i = 0; i < vectors_per_packet; ++i)
         r.part[i] = hn::IfThenElse(hn::RebindMask(IntTag(), where.part[i]), a.part[i], b.part[i]);
     return r;
 }

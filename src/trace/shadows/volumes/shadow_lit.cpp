@@ -32,7 +32,7 @@ void sort_crossings(std::vector<ShadowCrossing>& crossings) {
 
 HWY_INLINE uint32_t bits_of(const Mask16& mask) {
     uint32_t bits = 0;
-    for (size_t i = 0; i < parts; ++i) {
+    for (size_t i = 0; i < vectors_per_packet; ++i) {
         uint8_t part[8] = {};
         hn::StoreMaskBits(FloatTag(), mask.part[i], part);
         bits |= (lane_step == 16 ? part[0] | uint32_t(part[1]) << 8 : uint32_t(part[0])) << (i * lane_step);

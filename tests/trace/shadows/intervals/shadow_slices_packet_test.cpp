@@ -30,7 +30,7 @@ ShadowSlices soup(int triangles, uint32_t seed) {
 
 void expect_same(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points) {
     std::vector<Interval<double>> together[16], alone;
-    find_lit(near_rays(slices, rays, points), rays, points, together);
+    find_lit(coherent_slices(slices, rays, points), rays, points, together);
     for (size_t i = 0; i < rays.size(); ++i) {
         find_lit(slices, rays[i], points[i], alone);
         EXPECT_LT(difference(together[i], alone), 1e-9) << i;

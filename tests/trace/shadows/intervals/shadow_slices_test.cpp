@@ -291,7 +291,7 @@ TEST(ShadowSlices, LeavesNearSomeRaysAnswerAsAllDo) {
                 points.back().at += 0.1 * dvec3(aside);
                 if (light.far) points.back().at = glm::normalize(points.back().at);
             }
-            const ShadowSlices near = near_rays(stage.slices, rays, points);
+            const ShadowSlices near = coherent_slices(stage.slices, rays, points);
             kept += near.nodes.size();
             for (size_t k = 0; k < 16; ++k) {
                 std::vector<Interval<double>> lit;

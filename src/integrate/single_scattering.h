@@ -1,0 +1,79 @@
+// Fog between exact shadows: what is made once per frame, and the integral along a packet of rays over the stretches
+// that each light reaches. Behind shadow-volume, and behind march with march.visibility=intervals.
+#pragma once
+#include "integrate/gauss_legendre.h"
+#include "integrate/light_along.h"
+#include "integrate/march_steps.h"
+#include "integrate/ray_batch.h"
+#include "integrate/style.h"
+#include "trace/fluence/fluence.h"
+#include "trace/shadows/cached_shadows.h"
+#include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
+
+#include <optional>
+
+namespace tyndall {
+// How a light's shadows are found along rays: exactly, of its centre or of a point that each ray picks, or by shadow
+// rays at every node.
+enum class ShadowsBy { none, volumes, slices, rays };
+
+struct LightShadows {
+    ShadowsBy by = ShadowsBy::none;
+    std::shared_ptr<const ShadowView> view; // with `volumes`, and as the camera sees them
+    std::shared_ptr<const ShadowVolumes> volumes;
+};
+
+// The sides of the volumes as bright sheets instead of the light between them.
+struct Shells {
+    float length;    // metres behind the occluder at which a shell has faded out
+    float intensity; // share of that length: the depth of lit fog a shell is as bright as
+};
+
+struct SingleScattering {
+    Snapshot snapshot; // media and lights as the settings see them
+    StyleSettings style;
+    Camera camera;
+    float margin = 0;               // pixels a ray may stray from its pixel
+    bool sampled = false;           // fog is; otherwise it is integrated in closed form
+    int nodes = 4;                  // Gauss–Legendre nodes on each lit stretch of fog in closed form
+    int steps = 24;                 // along a ray of sampled fog, of equal length ...
+    std::optional<MarchSteps> rule; // ... or as this asks for
+    float opaque = 16;              // optical depth behind which sampled fog is not asked for
+    int light_points = 1;           // of a soft light, asked for shadows at once
+    std::optional<Shells> shells;
+    std::vector<Box> heterogeneous; // fog that is not what it is taken for
+    std::vector<LightDepth> depths;
+    std::vector<ConeFalloff> cones;
+    std::vector<LightShadows> shadows;          // one per light
+    ShadowSlices slices;                        // for the lights that need them
+    std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
+};
+
+// Whether a medium is a grid.
+bool has_grid(const Snapshot& snapshot);
+
+// Fills depths, cones and shadows of the frame's lights, and what it knows of the camera; `by` picks the shadows of
+// lights that cast some.
+void add_lights(const View& view, LightTransmittance method, int light_resolution,
+                const std::function<ShadowsBy(const Light&)>& by, SingleScattering& frame);
+
+// Where rays are cut: between cuts the fog is smooth, or a step long.
+struct RaySegments {
+    std::vector<float> at; // [cut·16 + ray], ascending; the last repeated where other rays have more
+    int pieces[16];        // between the cuts of each ray; 0 without fog
+    int most = 0;          // of any ray
+
+    float low(size_t ray) const { return at[ray]; }
+    float high(size_t ray) const { return at[16 * static_cast<size_t>(pieces[ray]) + ray]; }
+};
+void find_segments(const SingleScattering& frame, std::span<const Ray> rays, RaySegments& cuts);
+
+// Fog along up to 16 rays.
+void single_scattering_packet(const SingleScattering& frame, const RayBatch& batch, std::span<Scatter> results);
+
+// What rays cross of the volumes of a light, up to the ends of `reached`; `dark` = the counts before. Rays whose
+// stretch is empty are left out.
+void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& batch,
+                  const Interval<double> (&reached)[16], std::vector<ShadowCrossing>& crossings, int (&dark)[16]);
+}

@@ -1,0 +1,121 @@
+// Nodes on the lit stretches of rays, inside the kernel of lit fog (see base/simd/simd.h for how such files are
+// compiled).
+#if defined(TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#undef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#else
+#define TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#endif
+
+#include "integrate/single_scattering_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// How far the angle seen from a local light may turn on one set of nodes: less where the phase function has a lobe.
+double widest_turn(const SingleScattering& frame) {
+    float g = 0;
+    for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(medium.optics.phase.g));
+    return std::min(0.8, 4 * (1 - double(g)));
+}
+
+// Far along the ray the angle hardly turns while fog goes on: parts end at ±1, ±3, ±9 ... times the light's distance.
+double next_bound(double x) {
+    double bound = 1;
+    while (bound <= std::abs(x)) bound *= 3;
+    if (x >= -1) return bound;
+    return -bound / (bound / 3 < -x ? 3 : 9);
+}
+
+// A part of a ray in which nothing has a kink.
+struct Part {
+    int light;
+    size_t ray;
+    int cut;
+    double low, high;
+    bool soft = false; // in the soft edge of a spot
+};
+
+// How many turns of at most `widest` the angle between two slopes takes.
+double turns_of(double from, double to, double widest) {
+    if (widest >= 0.8) return 1; // bounds are never further apart
+    return std::ceil((std::atan(to) - std::atan(from)) / widest);
+}
+
+// The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
+std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
+    if (part.light >= 0 && packet.frame.shadows[static_cast<size_t>(part.light)].by == ShadowsBy::rays)
+        return {&packet.jittered[part.ray], 1};
+    const int more = part.soft ? 2 : 0;
+    if (!packet.frame.sampled) return gauss_legendre(packet.frame.nodes + more);
+    return gauss_legendre(packet.spread == Spread::angle ? 2 + more / 2 : 1);
+}
+
+void push_turning(Packet& packet, const Part& part) {
+    const std::span<const QuadratureNode> rule = rule_for(packet, part);
+    const double nearest = packet.scratch.along[part.ray].nearest, away = packet.away[part.ray];
+    const double end = (part.high - nearest) / away, widest = packet.frame.sampled ? 1 : widest_turn(packet.frame);
+    for (double x = (part.low - nearest) / away; x < end;) {
+        const double next = std::min(next_bound(x), end), turns = turns_of(x, next, widest);
+        for (double i = 0; i < turns; ++i)
+            for (const QuadratureNode& node : rule)
+                push_node(packet, part.light, part.ray, part.cut, x * away, next * away, (i + node.at) / turns,
+                          node.weight / turns);
+        x = next;
+    }
+}
+
+void push_part(Packet& packet, const Part& part) {
+    if (packet.spread == Spread::angle) return push_turning(packet, part);
+    for (const QuadratureNode& node : rule_for(packet, part))
+        push_node(packet, part.light, part.ray, part.cut, part.low, part.high, node.at, node.weight);
+}
+
+// Whether a piece between cuts can be seen to hold fog.
+HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
+    if (!packet.frame.sampled) return true;
+    const float* depth = packet.scratch.depth.data() + 16 * static_cast<size_t>(cut) + ray;
+    return depth[0] * packet.frame.style.view_depth < packet.frame.opaque && depth[16] > depth[0];
+}
+
+bool in_soft_edge(const LightAlong& along, Interval<double> part) {
+    if (!has_cone(*along.light)) return false;
+    const dvec3 from = along.origin + 0.5 * (part.low + part.high) * along.direction - dvec3(along.light->position);
+    const double cosine = glm::dot(from, dvec3(along.light->direction)) / glm::length(from);
+    return cosine * along.cone_scale + along.cone_offset < 1;
+}
+
+HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
+    if (counts(packet, ray, cut))
+        packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.part);
+}
+
+// Cuts lit stretches at the cuts of the fog and at the kinks of the light, which divide what it reaches.
+void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<double>> lit,
+              std::span<const Interval<double>> reached) {
+    const float* at = packet.scratch.cuts.at.data() + ray;
+    const int pieces = packet.scratch.cuts.pieces[ray];
+    int cut = 0;
+    for (size_t part = 0; part < reached.size(); ++part) {
+        const Interval<double> within = reached[part];
+        const bool soft = packet.spread == Spread::angle && in_soft_edge(packet.scratch.along[ray], within);
+        for (const Interval<double>& stretch : lit) {
+            double low = std::max<double>({stretch.low, within.low, at[0]});
+            const double end = std::min(stretch.high, within.high);
+            while (low < end) {
+                while (cut < pieces && at[16 * (cut + 1)] <= low) ++cut;
+                if (cut == pieces) return;
+                const double high = std::min<double>(end, at[16 * (cut + 1)]);
+                if (packet.by_rows && low == at[16 * cut] && high == at[16 * (cut + 1)])
+                    note_whole(packet, ray, cut);
+                else if (counts(packet, ray, cut))
+                    push_part(packet, {light, ray, cut, low, high, soft});
+                low = high;
+            }
+        }
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,60 @@
+// What rays cross of the shadow volumes.
+#include "integrate/single_scattering.h"
+
+namespace tyndall {
+namespace {
+bool comes_from(const ShadowView& view, const Camera& camera, const Ray& ray) {
+    if (view.parallel) return glm::distance(ray.direction, camera.forward) < 1e-5f;
+    if (ray.origin == camera.position) return true;
+    const vec3 from = ray.origin - camera.position;
+    const float along = glm::dot(from, ray.direction);
+    return glm::length(from - along * ray.direction) <= 1e-5f * (0.1f + std::abs(along)) && along > -1e-3f;
+}
+
+// The tile all positions lie in, or -1.
+int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin) {
+    if (positions.empty() || view.tiles.x == 0) return -1;
+    vec2 middle(0);
+    for (const vec2 p : positions) middle += p / static_cast<float>(positions.size());
+    const ivec2 tile = glm::clamp(ivec2(glm::floor(middle / float(shadow_tile_side))), ivec2(0), view.tiles - 1);
+    for (const vec2 p : positions) {
+        const vec2 low = vec2(tile * shadow_tile_side) - margin, high = vec2((tile + 1) * shadow_tile_side) + margin;
+        if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) return -1;
+    }
+    return tile.y * view.tiles.x + tile.x;
+}
+
+void find_in_view(const ShadowView& view, ShadowRays& rays, std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
+    find_crossings(view, rays, crossings);
+    for (int i = 0; i < 16; ++i)
+        if (rays.active >> i & 1) dark[i] = view.dark;
+}
+}
+
+void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& batch,
+                  const Interval<double> (&reached)[16], std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
+    const LightShadows& caster = frame.shadows[light];
+    crossings.clear(), std::fill(dark, dark + 16, 0);
+    if (caster.by != ShadowsBy::volumes) return;
+    ShadowRays rays;
+    rays.edges = frame.shells.has_value();
+    for (size_t i = 0; i < batch.rays.size(); ++i) {
+        if (reached[i].empty()) continue;
+        const Ray ray{batch.rays[i].origin, batch.rays[i].direction,
+                      std::nextafter(static_cast<float>(reached[i].high), infinity)};
+        const int lane = static_cast<int>(i);
+        if (comes_from(*caster.view, frame.camera, ray)) {
+            place_ray(*caster.view, ray, lane, rays);
+        } else { // not a ray of the camera: its origin is an eye of its own
+            ShadowRays alone;
+            alone.edges = rays.edges;
+            const ShadowView view = view_from(*caster.volumes, dvec3(ray.origin));
+            place_ray(view, ray, lane, alone);
+            find_in_view(view, alone, crossings, dark);
+        }
+    }
+    if (!rays.active) return;
+    rays.tile = tile_of(*caster.view, batch.positions, frame.margin);
+    find_in_view(*caster.view, rays, crossings, dark);
+}
+}

@@ -1,0 +1,23 @@
+// Points of a chart that an earlier run left in its directory. Internal to the chart.
+#pragma once
+#include "base/io/json.h"
+#include "measure/chart/point.h"
+
+#include <optional>
+
+namespace tyndall {
+// Mode, settings and every field; numbers that are not finite are null.
+Json json_of_point(const ChartPoint& point);
+
+// One hash over all that a point's numbers depend on but for the machine and its load.
+std::string point_hash(const ChartStage& stage, const ChartRung& rung, const std::string& references,
+                       FileHashes& files);
+
+// A point of that hash whose pictures are there too. What is damaged counts as missing.
+std::optional<ChartPoint> cached_point(const std::filesystem::path& directory, const ChartRung& rung,
+                                       const std::string& hash);
+
+// Writes a point's pictures, then its numbers. Throws Error (unwritable).
+void keep_point(const std::filesystem::path& directory, const MeasuredPoint& measured, const std::string& hash,
+                float exposure);
+}

@@ -1,0 +1,122 @@
+#include "modes/fog_buffer_frames.h"
+
+#include "base/parallel.h"
+#include "modes/fog_buffer_mix.h"
+#include "volume/rays/fog_reach.h"
+
+namespace tyndall {
+namespace {
+constexpr float longest_age = 10; // frames; older ones count less and less
+// Over these frames, of fog that moves across the picture:
+constexpr float max_smear = 0.5f; // pixels, of the near fog against the far
+constexpr float max_blur = 0.1f;  // pixels², by finding it between pixels
+
+// Least and most light among a pixel and its neighbours: what a light that moved or went out leaves behind lies
+// outside.
+struct Range {
+    vec3 low{infinity}, high{-infinity};
+};
+Range range_around(const FogBuffer& picture, ivec2 pixel) {
+    Range range;
+    const ivec2 low = glm::max(pixel - 1, 0), high = glm::min(pixel + 1, picture.fog.size - 1);
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            range.low = glm::min(range.low, picture.fog.at(x, y).radiance);
+            range.high = glm::max(range.high, picture.fog.at(x, y).radiance);
+        }
+    return range;
+}
+
+// Where light of homogeneous fog comes from on the way through it, as a share of that way: 1/τ - T/(1 - T), the mean of
+// e^(-τs) over 0 <= s <= 1.
+float mean_share(float transmittance) {
+    const float depth = -std::log(std::clamp(transmittance, 1e-6f, 1.0f));
+    return depth < 0.05f ? 0.5f - depth / 12 : 1 / depth - transmittance / (1 - transmittance);
+}
+
+// A ray's fog in the last frame's picture.
+struct Seen {
+    vec2 pixel{0};   // of where its light comes from
+    float smear = 0; // pixels between half of that light and the other
+};
+std::optional<Seen> seen_before(const FogBuffer& before, const Interval<float>& fog, const Ray& ray,
+                                float transmittance) {
+    const auto pixel = [&](float share) {
+        return pixel_of(before.view.camera, before.fog.size, ray.at(glm::mix(fog.low, fog.high, share)));
+    };
+    const float middle = mean_share(transmittance);
+    const std::optional<vec2> light = pixel(middle), near = pixel(0.5f * middle), far = pixel(1.5f * middle);
+    if (!light || !near || !far) return {};
+    return Seen{*light, glm::distance(*near, *far)};
+}
+
+// How much wider a mean of four pixels around a place makes what it shows: their variance, pixels².
+float blur_of(vec2 pixel) {
+    const vec2 share = glm::fract(pixel - 0.5f);
+    return glm::dot(share, 1.0f - share);
+}
+}
+
+void blur_pattern(FogBuffer& picture) {
+    const ivec2 size = picture.fog.size;
+    const FogBuffer source = picture;
+    parallel_for(size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < size.x; ++x) {
+            Scatter sum{vec3(0), 0, 0, 0, vec3(0)};
+            std::vector<vec3> parts(picture.per_light.size(), vec3(0));
+            float total = 0;
+            for (int j = std::max(y - 2, 0); j <= std::min(y + 2, size.y - 1); ++j)
+                for (int i = std::max(x - 2, 0); i <= std::min(x + 2, size.x - 1); ++i) {
+                    if (!like(source.length.at(i, j), source.length.at(x, y))) continue;
+                    const float weight = (std::abs(i - x) == 2 ? 0.5f : 1) * (std::abs(j - y) == 2 ? 0.5f : 1);
+                    add(sum, source.fog.at(i, j), weight), total += weight;
+                    for (size_t l = 0; l < parts.size(); ++l) parts[l] += source.per_light[l].at(i, j) * weight;
+                }
+            Scatter& result = picture.fog.at(x, y);
+            const int steps = result.steps;
+            result = {vec3(0), 0, 0, steps, vec3(0)};
+            add(result, sum, 1 / total);
+            for (size_t l = 0; l < parts.size(); ++l) picture.per_light[l].at(x, y) = parts[l] / total;
+        }
+    });
+}
+
+void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffer& picture) {
+    const FogBuffer now = picture;
+    parallel_for(now.fog.size.y, [&](int64_t row) {
+        const int y = static_cast<int>(row);
+        for (int x = 0; x < now.fog.size.x; ++x) {
+            Ray ray = ray_through(now, {x, y});
+            ray.t_max = now.length.at(x, y);
+            const Interval<float> stretch = fog_stretch(media, ray);
+            if (stretch.empty()) continue;
+            const std::optional<Seen> seen = seen_before(before, stretch, ray, now.fog.at(x, y).transmittance);
+            if (!seen || !glm::all(glm::greaterThanEqual(seen->pixel, vec2(0))) ||
+                !glm::all(glm::lessThanEqual(seen->pixel, vec2(before.fog.size))))
+                continue;
+            Taps taps = taps_at(before.fog.size, seen->pixel);
+            const Camera& eye = before.view.camera;
+            const vec3 place = ray.at(ray.t_max);
+            const float length =
+                eye.ortho_height > 0 ? glm::dot(place - eye.position, eye.forward) : glm::length(place - eye.position);
+            const Mixed old = mixed(before, taps, length);
+            if (!(old.weight >= enough) || !is_finite(old.fog.radiance)) continue;
+
+            float age = 0;
+            for (int k = 0; k < 4; ++k) age += before.age.at(taps.at[k].x, taps.at[k].y) * taps.weight[k];
+            const float sharp = 1 + max_blur / blur_of(seen->pixel), still = max_smear / seen->smear;
+            age = std::max(1.0f, std::min({age + 1, longest_age, sharp, still}));
+            const Range range = range_around(now, {x, y});
+            const float share = 1 / age;
+            Scatter& fog = picture.fog.at(x, y);
+            fog.radiance = glm::mix(glm::clamp(old.fog.radiance, range.low, range.high), fog.radiance, share);
+            fog.transmittance = glm::mix(old.fog.transmittance, fog.transmittance, share);
+            picture.age.at(x, y) = age;
+            // Parts keep their shares of the whole.
+            for (size_t l = 0; l < now.per_light.size(); ++l)
+                picture.per_light[l].at(x, y) *= fog.radiance / glm::max(now.fog.at(x, y).radiance, vec3(1e-30f));
+        }
+    });
+}
+}

@@ -1,0 +1,204 @@
+// Where sixteen froxels are looked at, and the fog there (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_LOOK_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_LOOK_SIMD_H
+#undef TYNDALL_MODES_FROXEL_LOOK_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_LOOK_SIMD_H
+#endif
+
+#include "base/random.h"
+#include "modes/froxel/fill.h"
+#include "modes/froxel/light_simd.h"
+#include "modes/froxel/settings.h"
+#include "volume/medium_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+struct Fill {
+    const FroxelScene& scene;
+    const FroxelGrid& grid;
+    const FroxelTiles& tiles;
+    const FillPass& pass;
+    FroxelLight& light;
+
+    bool exact() const { return scene.settings.visibility == FroxelVisibility::intervals; }
+    bool wants(size_t part) const { return pass.only < 0 || static_cast<size_t>(pass.only) == part; }
+    // One look at a soft light is at its centre: other points would be noise that nothing averages.
+    bool spreads() const { return scene.settings.shadow_rays > 1 || pass.frame > 0; }
+    int samples() const { return scene.settings.shadow_rays; }
+};
+
+// 4×4 tiles. Lanes beyond the grid's edge are not there.
+struct Lanes {
+    ivec2 at[16];
+    size_t tile[16];
+    bool there[16];
+    alignas(64) float farthest[16]; // surface that any ray of the tile meets; before the first slice where not there
+    int last = 0;                   // slice that any lane sees something of, and 1
+};
+
+// The rays of a sample's first turn: pixels, and the surfaces they meet.
+struct FirstRays {
+    size_t ray;
+    alignas(64) float x[16], y[16], depth[16];
+};
+
+// Where the lanes look: a ray of the tile that still sees this slice, and a depth.
+struct FroxelSamples {
+    alignas(64) float x[16], y[16], z[16], active[16], lit[16], low[16], high[16];
+    alignas(64) float first[16]; // 1 where the ray is the one whose turn it is
+};
+
+// Numbers that spread over 4×4 neighbouring tiles, samples and frames; other ones for each slice and use.
+uint32_t spread_index(const Fill& fill, ivec2 at, int sample) {
+    const auto cell = static_cast<uint32_t>((at.y & 3) * 4 + (at.x & 3));
+    const auto samples = static_cast<uint32_t>(fill.samples());
+    return (static_cast<uint32_t>(fill.pass.frame) * 16 + cell) * samples + static_cast<uint32_t>(sample);
+}
+
+// Radical inverse of base 2, from ½ on: ½, ¼, ¾, …
+float halton(int index) { return to_unit(reverse_bits(static_cast<uint32_t>(index) + 1)); }
+
+// The ray of every tile that a sample looks along, where it is not stopped.
+size_t first_ray(const Fill& fill, int sample) {
+    return static_cast<size_t>(fill.pass.frame + sample) % fill.tiles.rays();
+}
+
+FirstRays first_rays(const Fill& fill, const Lanes& lanes, int sample) {
+    FirstRays first;
+    first.ray = first_ray(fill, sample);
+    for (size_t i = 0; i < 16; ++i) {
+        const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + fill.tiles.offsets[first.ray]);
+        first.x[i] = pixel.x, first.y[i] = pixel.y;
+        first.depth[i] = lanes.there[i] ? fill.tiles.depth[lanes.tile[i] * fill.tiles.rays() + first.ray] : -infinity;
+    }
+    return first;
+}
+
+// Lanes whose light is wanted.
+void set_lit(const Fill& fill, const Lanes& lanes, int slice, FroxelSamples& looks) {
+    if (!fill.pass.stale) return store(Floats(1.0f), looks.lit);
+    const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
+    for (size_t i = 0; i < 16; ++i) looks.lit[i] = fill.pass.stale[lanes.tile[i] * slices + k] ? 0.0f : 1.0f;
+}
+
+// One lane: the first ray in turn that is not yet stopped at that depth; or the deepest, just before it is.
+void look_along(const Fill& fill, const Lanes& lanes, int slice, int sample, size_t i, FroxelSamples& looks) {
+    const FroxelTiles& tiles = fill.tiles;
+    const size_t rays = tiles.rays(), k = static_cast<size_t>(slice), first = first_ray(fill, sample);
+    const float near = fill.grid.faces[k], far = fill.grid.faces[k + 1];
+    const int samples = fill.samples();
+    float u = fill.exact() ? 0.5f : halton(fill.pass.frame);
+    if (samples > 1 && !fill.exact()) {
+        const uint32_t index = spread_index(fill, lanes.at[i], sample);
+        u = (static_cast<float>(sample) + to_unit(hash(index, k))) / static_cast<float>(samples);
+    }
+    const float* depth = tiles.depth.data() + lanes.tile[i] * rays;
+    float z = near + u * (far - near);
+    size_t ray = static_cast<size_t>(tiles.deepest[lanes.tile[i]]);
+    if (fill.exact() && depth[first] > near) ray = first;
+    if (depth[ray] <= z) z = 0.5f * (near + depth[ray]);
+    for (size_t j = 0; j < rays && ray != first; ++j)
+        if (const size_t next = (first + j) % rays; depth[next] > z) {
+            ray = next;
+            break;
+        }
+    const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + tiles.offsets[ray]);
+    looks.x[i] = pixel.x, looks.y[i] = pixel.y, looks.z[i] = z;
+    looks.high[i] = std::min(far, depth[ray]), looks.first[i] = ray == first ? 1.0f : 0.0f;
+}
+
+FroxelSamples look(const Fill& fill, const Lanes& lanes, const FirstRays& first, int slice, int sample) {
+    const float near = fill.grid.faces[static_cast<size_t>(slice)];
+    const float far = fill.grid.faces[static_cast<size_t>(slice) + 1];
+    FroxelSamples looks;
+    const Mask16 active = load(lanes.farthest) > near;
+    const Floats depth = load(first.depth), middle = 0.5f * (near + far);
+    const Mask16 seen = active & (depth > near);
+    store(select(active, 1.0f, 0.0f), looks.active), store(Floats(near), looks.low);
+    store(select(seen, 1.0f, 0.0f), looks.first), store(min(Floats(far), depth), looks.high);
+    store(load(first.x), looks.x), store(load(first.y), looks.y);
+    store(select(seen & (depth <= middle), (near + depth) * 0.5f, middle), looks.z);
+    set_lit(fill, lanes, slice, looks);
+    if (fill.exact() && !any(active & !seen)) return looks;
+    for (size_t i = 0; i < 16; ++i)
+        if (looks.active[i] > 0 && !(fill.exact() && looks.first[i] > 0))
+            look_along(fill, lanes, slice, sample, i, looks);
+    return looks;
+}
+
+// Points of the lanes' lines at planar depths.
+struct Lines {
+    Vec3s origin, step;
+};
+HWY_INLINE Lines lines_of(const FroxelGrid& grid, const FroxelSamples& looks) {
+    const Floats x = load(looks.x), y = load(looks.y);
+    return {fused(splat(grid.origin_x), x, fused(splat(grid.origin_y), y, splat(grid.origin))),
+            fused(splat(grid.step_x), x, fused(splat(grid.step_y), y, splat(grid.step)))};
+}
+
+FroxelLanes froxel_lanes(const FroxelGrid& grid, const FroxelSamples& looks) {
+    const Lines lines = lines_of(grid, looks);
+    const Floats slant = sqrt(dot(lines.step, lines.step)), z = load(looks.z), low = load(looks.low);
+    FroxelLanes lanes;
+    lanes.point = fused(lines.step, z, lines.origin), lanes.step = lines.step, lanes.z = z;
+    lanes.start = fused(lines.step, low, lines.origin);
+    lanes.toward = lines.step * (1.0f / slant);
+    lanes.length = slant * max(load(looks.high) - low, 0.0f);
+    lanes.active = load(looks.active) > 0.0f;
+    const float wide = glm::length(grid.origin_x), wider = glm::length(grid.step_x);
+    const Floats side = fused(z, wider, wide) * static_cast<float>(grid.tile);
+    lanes.width2 = side * side * (1 / pi);
+    return lanes;
+}
+
+// Whether some medium is a sheet, its box thinner than the slice.
+bool holds_sheet(const Fill& fill, int slice) {
+    const size_t k = static_cast<size_t>(slice);
+    const float thickness = fill.grid.faces[k + 1] - fill.grid.faces[k];
+    return std::ranges::any_of(fill.scene.snapshot.media, [&](const Medium& medium) {
+        const vec3 sides = medium.world_bounds.size();
+        return std::min(sides.x, std::min(sides.y, sides.z)) < thickness;
+    });
+}
+
+// Lanes cut down to the fog on them: each medium's part counts by its extinction.
+FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, const float (*extinction)[16]) {
+    Floats low = 0.0f, high = 0.0f, total = 0.0f;
+    for (size_t m = 0; m < media.size(); ++m) {
+        const Interval<Floats> part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
+        const Floats weight = zero_unless(part.high > part.low, load(extinction[m]));
+        low = fused(weight, part.low, low), high = fused(weight, part.high, high), total = total + weight;
+    }
+    const Mask16 some = total > 0.0f;
+    const Floats inverse = 1.0f / select(some, total, 1.0f);
+    low = select(some, low * inverse, 0.0f), high = select(some, high * inverse, lanes.length);
+    FroxelLanes cut = lanes;
+    cut.start = fused(lanes.toward, low, lanes.start), cut.length = high - low;
+    const Floats middle = (low + high) * 0.5f;
+    cut.point = fused(lanes.toward, middle, lanes.start);
+    cut.z = lanes.z + dot(cut.point - lanes.point, lanes.toward) / sqrt(dot(lanes.step, lanes.step));
+    return cut;
+}
+
+// Mean extinction along the stretches: exact for formulas, up to four samples for bricks.
+Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thickness) {
+    if (medium.kind != DensityKind::bricks) {
+        const LightPaths paths{lanes.start, lanes.toward, lanes.length};
+        return zero_unless(lanes.active, analytic_depth16(medium, paths) / max(lanes.length, 1e-20f));
+    }
+    const float voxels = thickness * glm::length(vec3(medium.bricks->world_to_index[0]));
+    const int count = static_cast<int>(std::clamp(std::ceil(0.5f * voxels), 1.0f, 4.0f));
+    if (count == 1) return zero_unless(lanes.active, density16(medium, lanes.point) * grey_extinction(medium.optics));
+    Floats sum = 0.0f;
+    for (int i = 0; i < count; ++i) {
+        const Floats at = lanes.length * ((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
+        sum = sum + density16(medium, fused(lanes.toward, at, lanes.start));
+    }
+    return zero_unless(lanes.active, sum * (grey_extinction(medium.optics) / static_cast<float>(count)));
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,120 @@
+// A line of a path, and what happens on it. Internal to the path tracer.
+#pragma once
+#include "base/random.h"
+#include "modes/path/connect.h"
+#include "modes/path/lights.h"
+#include "trace/occlusion/occluders.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+inline constexpr int max_layers = 64;    // BLEND surfaces on one line; the last counts as opaque
+inline constexpr int certain_orders = 4; // scatterings before Russian roulette may end a path
+// What numbers are for.
+enum Use : uint32_t {
+    use_distance,
+    use_free_path,
+    use_light,
+    use_phase,
+    use_soft,
+    use_glow,
+    use_roulette,
+    use_blend,
+    use_surface_light,
+    use_surface_soft,
+    use_surface_glow,
+    use_bounce
+};
+
+// The end of a path: where its next line starts and what it carries.
+struct PathVertex {
+    size_t lane = 0;
+    Ray ray;
+    float skip = 0;      // surfaces nearer than this are not met
+    vec3 throughput{1};  // share of light that comes down the path
+    float density = 0;   // chance per steradian of the line's direction; 0 at the eye
+    bool in_fog = false; // the path's first event was in fog
+    SamplePlace place{0, 0};
+    uint32_t id = 0;
+};
+
+// A walker's current line.
+struct Segment {
+    PathVertex walker;
+    Ray rest;                         // from the last BLEND surface on
+    float skip = 0, travelled = 0;    // travelled: up to the start of `rest`
+    float end = 0;                    // of the current stretch, along `rest`
+    float through = 1;                // light that passes the fog and the surfaces so far
+    int instance = -1, triangle = -1; // surface just passed
+    bool walking = true;              // the path has not turned off yet
+    int order = 0, layer = 0;
+    RandomStream random;
+
+    vec2 numbers(Use use) const {
+        const uint32_t step = static_cast<uint32_t>(order * max_layers + layer);
+        const Sample2 u = sample2(walker.place.index, hash(walker.place.sequence, step, static_cast<uint32_t>(use)));
+        return {u.x, u.y};
+    }
+    bool open() const { return walking || through > 0; }
+};
+
+// Densities of all media at a point, and what follows from them.
+struct FogPoint {
+    vec3 position{0};
+    std::vector<float> extinction; // 1/m, of each medium
+    float total = 0;
+
+    // Σ albedo p, and Σ p, each weighted by the media's shares of the extinction.
+    vec3 scattered(const Snapshot& snapshot, float cosine) const {
+        vec3 sum(0);
+        for (size_t m = 0; m < extinction.size(); ++m)
+            if (extinction[m] > 0) {
+                const Optics& optics = snapshot.media[m].optics;
+                sum += optics.albedo * (extinction[m] / total * phase_value(optics.phase, cosine));
+            }
+        return sum;
+    }
+    float density(const Snapshot& snapshot, float cosine) const {
+        float sum = 0;
+        for (size_t m = 0; m < extinction.size(); ++m)
+            if (extinction[m] > 0) sum += extinction[m] / total * phase_value(snapshot.media[m].optics.phase, cosine);
+        return sum;
+    }
+};
+
+// What a thread uses again from batch to batch.
+struct PathScratch {
+    std::vector<Segment> lines;
+    std::vector<PathVertex> walkers;
+    std::vector<Connection> connections;
+    std::vector<LineLight> lights;
+    FogPoint fog;
+};
+
+// All that one batch needs.
+struct Walk {
+    const PathTracer& tracer;
+    const Snapshot& snapshot;
+    const RayBatch& batch;
+    std::span<Scatter> results;
+    PathScratch& scratch;
+    int order = 0;
+    bool turns = true; // whether paths may scatter at the end of the current lines
+};
+
+// Adds light that comes down the line undimmed by what the line has met so far.
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, bool in_fog);
+
+// Queues a connection that brings `light` down the line when nothing is in its way.
+void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
+
+// Starts the walker's next line with a share of what this one carries, unless roulette ends the path. `density`: chance
+// per steradian of the direction.
+void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, bool in_fog);
+
+// Light scattered by the fog of the current stretch, from lights; then whether the path collides there and turns.
+void follow_fog(const Walk& walk, Segment& line);
+
+// The surface at the end of the current stretch: its own light, light that falls on it, whether the path turns there.
+// Moves the line on to what lies behind, or ends it.
+void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle);
+}

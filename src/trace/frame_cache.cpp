@@ -1,0 +1,54 @@
+#include "trace/frame_cache.h"
+
+#include "scene/light.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+bool same(const std::weak_ptr<const void>& a, const std::weak_ptr<const void>& b) {
+    return !a.owner_before(b) && !b.owner_before(a);
+}
+
+std::shared_ptr<CachedThing> found(FrameCache* kept, std::type_index type, const CacheKey& key) {
+    if (!kept) return nullptr;
+    const std::scoped_lock lock(kept->mutex);
+    for (const std::shared_ptr<CachedThing>& thing : kept->things)
+        if (thing->type == type && thing->key == key) return thing;
+    return nullptr;
+}
+}
+
+CacheKey& CacheKey::add(const Light& light) {
+    add(light.kind).add(light.position).add(light.direction).add(light.inner_cone).add(light.outer_cone);
+    return add(light.range).add(light.radius).add(light.angle).add(light.shadows);
+}
+
+CacheKey& CacheKey::add(const View& view) {
+    const Camera& camera = view.camera;
+    add(camera.position).add(camera.right).add(camera.up).add(camera.forward).add(camera.vertical_fov);
+    add(camera.ortho_height).add(camera.near).add(camera.far);
+    return add(view.size).add(view.filter).add(view.filter_radius);
+}
+
+bool CacheKey::operator==(const CacheKey& other) const {
+    return bits == other.bits && std::ranges::equal(objects, other.objects, same);
+}
+
+std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key) {
+    FrameCache *own = snapshot.cache.get(), *before = snapshot.cache_before.get();
+    std::shared_ptr<CachedThing> thing = found(before, type, key);
+    if (!own && thing) return thing;
+    if (!thing) thing.reset(new CachedThing{type, std::move(key), {}, nullptr});
+    if (!own) return thing;
+
+    // Another thread may have come first.
+    const std::scoped_lock lock(own->mutex);
+    for (const std::shared_ptr<CachedThing>& known : own->things)
+        if (known->type == type && known->key == thing->key) return known;
+    own->things.push_back(thing);
+    return thing;
+}
+}

@@ -1,0 +1,37 @@
+#include "trace/shadows/cached_shadows.h"
+#include "trace/frame_cache.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+CacheKey shadow_key(const Snapshot& snapshot, const Light& light) {
+    CacheKey key;
+    key.add(snapshot.occluders).add(light);
+    return key;
+}
+}
+
+std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
+                                                   const ShadowMapOptions& options) {
+    Box fog; // all that maps ask of the media
+    for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
+    CacheKey key = shadow_key(snapshot, light);
+    key.add(view).add(fog).add(snapshot.bounds);
+    key.add(options.resolution).add(options.cascades).add(options.pcf).add(options.bias);
+    return cached(snapshot, std::move(key), [&] { return make_shadow_map(view, snapshot, light, options); });
+}
+
+std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light) {
+    return cached(snapshot, shadow_key(snapshot, light),
+                  [&] { return make_shadow_volumes(snapshot.occluders->shadow_mesh(), center_of(light)); });
+}
+
+std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,
+                                                     float margin) {
+    CacheKey key = shadow_key(snapshot, light);
+    return cached(snapshot, std::move(key.add(view).add(margin)),
+                  [&] { return view_from(*cached_shadow_volumes(snapshot, light), view.camera, view.size, margin); });
+}
+}

@@ -1,0 +1,19 @@
+// Shadows of a snapshot's lights, made once while all they depend on stands still (trace/kept.h).
+#pragma once
+#include "trace/shadows/maps/shadow_map.h"
+#include "trace/shadows/volumes/shadow_view.h"
+
+namespace tyndall {
+using ShadowMaps = std::vector<std::shared_ptr<const ShadowMap>>;
+
+// As make_shadow_map().
+std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
+                                                   const ShadowMapOptions& options);
+
+// Of the light's centre. The snapshot has occluders.
+std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light);
+
+// The same as the view's camera sees them; see view_from().
+std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,
+                                                     float margin);
+}
