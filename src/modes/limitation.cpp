@@ -47,8 +47,10 @@ std::string_view name_of(Severity severity) {
 
 std::string where_of(const Limitation& limitation) {
     const std::string name = printable(limitation.name, max_name);
-    if (limitation.subject == Subject::setting) return name;
-    return std::string(word_of(limitation.subject)) + (name.empty() ? "" : " ") + name;
+    const std::string word(word_of(limitation.subject));
+    if (limitation.subject == Subject::setting || name.starts_with(word + " "))
+        return name; // "medium 1" has no other name
+    return name.empty() ? word : word + " " + name;
 }
 
 std::string where_of(const LimitationGroup& group) {
