@@ -33,7 +33,7 @@ struct LightSample {
     vec3 to_light{0, 1, 0};    // unit
     float distance = infinity; // metres, infinite for the sun
 };
-LightSample arrival(const Light& light, vec3 point);
+LightSample arrival(const Light& light, const vec3& point);
 
 // The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
 // or disc is seen under; its centre when the light is a point. Ends just before the light.

@@ -4,7 +4,7 @@
 
 namespace tyndall {
 struct LightFunctions {
-    LightSample (*arrival)(const Light& light, vec3 point);
+    LightSample (*arrival)(const Light& light, const vec3& point);
     Ray (*sample)(const Light& light, vec3 point, vec2 u); // as ray_to_light()
     bool (*is_soft)(const Light& light);
     Box (*bounds)(const Light& light); // what the scene has to hold of it; empty for none

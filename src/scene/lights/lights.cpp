@@ -11,7 +11,7 @@ const LightFunctions& functions_of(const Light& light) {
 }
 }
 
-LightSample arrival(const Light& light, vec3 point) { return functions_of(light).arrival(light, point); }
+LightSample arrival(const Light& light, const vec3& point) { return functions_of(light).arrival(light, point); }
 
 Ray ray_to_light(const Light& light, vec3 point, vec2 u) { return functions_of(light).sample(light, point, u); }
 

@@ -5,7 +5,7 @@
 namespace tyndall {
 namespace {
 // Inverse square law, held inside the glowing ball (or a tenth of a millimetre) so that it stays finite.
-LightSample punctual_arrival(const Light& light, vec3 point) {
+LightSample punctual_arrival(const Light& light, const vec3& point) {
     const vec3 towards = light.position - point;
     const float distance = glm::length(towards), reach = std::max(light.radius, smallest_radius);
     const vec3 to_light = distance > 0 ? towards / distance : -light.direction;

@@ -3,7 +3,7 @@
 
 namespace tyndall {
 namespace {
-LightSample sun_arrival(const Light& light, vec3) { return {light.intensity, -light.direction, infinity}; }
+LightSample sun_arrival(const Light& light, const vec3&) { return {light.intensity, -light.direction, infinity}; }
 
 Ray sun_sample(const Light& light, vec3 point, vec2 u) {
     const float half = std::sin(0.5f * light.angle);
