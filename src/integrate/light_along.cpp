@@ -18,7 +18,7 @@ Interval<double> reached(const Light& light, LightAlong& along, Interval<double>
         if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
     };
     along.kinks.push_back(along.nearest);
-    note(inside_ball(light.position, radius_of(light), along.origin, along.direction));
+    note(chord(along.nearest, along.distance, radius_of(light), glm::length(along.direction)));
     if (has_cone(light)) {
         set_cone(light, along);
         const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
@@ -81,8 +81,10 @@ double LightAlong::distance_to(double low, double high) const {
     return std::sqrt(off * off + distance * distance);
 }
 
+double LightAlong::height() const { return std::max(distance, radius_of(*light)); }
+
 EquiAngular<double> LightAlong::angles(double low, double high) const {
-    return equi_angular(nearest, std::max(distance, radius_of(*light)), low, high);
+    return equi_angular(nearest, height(), low, high);
 }
 
 double LightAlong::veil_voxels(double low, double high) const {

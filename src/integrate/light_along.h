@@ -29,6 +29,7 @@ struct LightAlong {
 
     bool local() const { return !is_distant(*light); }
     double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
+    double height() const; // of a local light over the ray, no less than its radius
     EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
     double veil_voxels(double low, double high) const;         // per metre, on a stretch that no veil's end divides
 };

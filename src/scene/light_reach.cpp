@@ -45,13 +45,17 @@ Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 or
     return inside(0) ? Interval<double>{-endless, endless} : Interval<double>{};
 }
 
+Interval<double> chord(double nearest, double distance, double radius, double length) {
+    if (!(distance < radius)) return {};
+    const double half = std::sqrt((radius - distance) * (radius + distance)) / length;
+    return {nearest - half, nearest + half};
+}
+
 Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 direction) {
     const double length = glm::length(direction);
     const dvec3 d = direction / length;
-    const double nearest = glm::dot(center - origin, d), away = glm::length(center - origin - nearest * d);
-    if (!(away < radius)) return {};
-    const double half = std::sqrt((radius - away) * (radius + away));
-    return {(nearest - half) / length, (nearest + half) / length};
+    const double nearest = glm::dot(center - origin, d);
+    return chord(nearest / length, glm::length(center - origin - nearest * d), radius, length);
 }
 
 Interval<float> light_reach(const Light& light, const Ray& ray, Interval<float> stretch) {

@@ -9,6 +9,10 @@ struct Light;
 // (unit) as seen from the apex. Its ends may be infinite.
 Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 origin, dvec3 direction);
 
+// The stretch of a line inside a ball whose centre it passes at t = nearest, at `distance` metres; `length`: of the
+// line's direction.
+Interval<double> chord(double nearest, double distance, double radius, double length);
+
 // The stretch inside a ball.
 Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 direction);
 
