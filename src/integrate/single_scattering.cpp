@@ -7,6 +7,19 @@
 #include <algorithm>
 
 namespace tyndall {
+namespace {
+// Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
+// scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
+// once.
+constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
+}
+
+ShadowsBy exact_shadows(const Light& light, const Occluders& occluders) {
+    const uint64_t most = is_soft(light) ? max_sliced : max_with_volumes;
+    if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
+    return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
+}
+
 bool has_grid(const Snapshot& snapshot) {
     return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.kind == DensityKind::bricks; });
 }

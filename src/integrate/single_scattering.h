@@ -1,5 +1,5 @@
-// Fog between exact shadows: what is made once per frame, and the integral along a packet of rays over the stretches
-// that each light reaches. Behind shadow-volume, and behind march with march.visibility=intervals.
+// Light scattered once in fog: what is made once per frame, and the integral along a packet of rays over the stretches
+// that each light reaches. Behind march and shadow-volume.
 #pragma once
 #include "integrate/gauss_legendre.h"
 #include "integrate/light_along.h"
@@ -14,14 +14,18 @@
 #include <optional>
 
 namespace tyndall {
-// How a light's shadows are found along rays: exactly, of its centre or of a point that each ray picks, or by shadow
-// rays at every node.
-enum class ShadowsBy { none, volumes, slices, rays };
+// How a light's shadows are found along rays: exactly, of its centre or of a point that each ray picks; or asked for at
+// points of the ray, by shadow rays or in a shadow map.
+enum class ShadowsBy { none, volumes, slices, rays, maps };
+
+// The quickest that is exact; rays where surfaces have alpha or are too many.
+ShadowsBy exact_shadows(const Light& light, const Occluders& occluders);
 
 struct LightShadows {
     ShadowsBy by = ShadowsBy::none;
     std::shared_ptr<const ShadowView> view; // with `volumes`, and as the camera sees them
     std::shared_ptr<const ShadowVolumes> volumes;
+    std::shared_ptr<const ShadowMap> map; // with `maps`
 };
 
 // The sides of the volumes as bright sheets instead of the light between them.

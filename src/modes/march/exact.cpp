@@ -34,7 +34,7 @@ struct Scratch {
 };
 
 struct RayMarch {
-    const March& march;
+    const SingleScattering& frame;
     const Ray& ray;
     Scratch& scratch;
     double longest = 0; // step by length alone
@@ -47,7 +47,7 @@ struct RayMarch {
 // null for none.
 template<class Visit>
 void split(const RayMarch& on, size_t piece, double low, double high, const LightAlong* along, const Visit& visit) {
-    const MarchSettings& settings = on.march.settings;
+    const MarchSettings& settings = on.frame.rule->settings;
     const FogPieces& fog = on.scratch.fog;
     constexpr double closest = 1e-3; // metres: nearer to a light parts shrink no further
     const double length = high - low;
@@ -66,10 +66,10 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Ligh
 
 // Share of the light scattered at a point of the ray that reaches the eye.
 double seen(const RayMarch& on, size_t piece, double t) {
-    const StyleSettings& style = on.march.style;
+    const StyleSettings& style = on.frame.style;
     const double share = std::exp(-style.view_depth * on.scratch.fog.depth_at(piece, t));
     if (style.range >= StyleSettings{}.range) return share;
-    return share * style_fade(style, eye_distance(on.march.camera, on.ray.at(static_cast<float>(t))));
+    return share * style_fade(style, eye_distance(on.frame.camera, on.ray.at(static_cast<float>(t))));
 }
 
 // Calls body(piece, t, weight) at the nodes of all fog on the ray; the weights hold what of their light arrives.
@@ -91,9 +91,9 @@ dvec3 glow(RayMarch& on) {
     dvec3 sum(0);
     at_nodes(on, [&](size_t piece, double t, double weight) {
         for (size_t m = 0; m < fog.media; ++m) {
-            const Optics& optics = on.march.snapshot.media[m].optics;
+            const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 per_density =
-                double(grey_extinction(optics)) * dvec3(optics.albedo * on.march.snapshot.ambient);
+                double(grey_extinction(optics)) * dvec3(optics.albedo * on.frame.snapshot.ambient);
             sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
         }
     });
@@ -103,13 +103,13 @@ dvec3 glow(RayMarch& on) {
 // Light that has been scattered before, cell by cell of its grid.
 dvec3 scattered_before(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
-    const FluenceGrid& grid = *on.march.fluence;
+    const FluenceGrid& grid = *on.frame.fluence;
     const double longest = std::exchange(on.longest, std::min<double>(on.longest, grid.cell));
     dvec3 sum(0);
     at_nodes(on, [&](size_t piece, double t, double weight) {
         const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
         for (size_t m = 0; m < fog.media; ++m) {
-            const Optics& optics = on.march.snapshot.media[m].optics;
+            const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
             sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
         }
@@ -145,7 +145,7 @@ void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& 
         rays.dx[i] = float(direction.x), rays.dy[i] = float(direction.y), rays.dz[i] = float(direction.z);
         rays.t_min[i] = 0, rays.t_max[i] = static_cast<float>(end * 0.9999);
     }
-    on.march.snapshot.occluders->transmission(rays, share);
+    on.frame.snapshot.occluders->transmission(rays, share);
 }
 
 // Adds the pending points to the sum, dimmed by the fog between them and the light.
@@ -154,9 +154,9 @@ void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum)
     alignas(64) float depth[16] = {}, share[16];
     for (int i = 0; i < 16; ++i) pending.active[i] = i < pending.count ? -1 : 0, share[i] = 1;
     const LightAlong& along = on.scratch.along;
-    const Occluders* occluders = on.march.snapshot.occluders.get();
+    const Occluders* occluders = on.frame.snapshot.occluders.get();
     if (along.light->shadows && occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
-    light_depths(on.march.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
+    light_depths(on.frame.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
     for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
     on.nodes += pending.count;
     pending.count = 0;
@@ -171,7 +171,7 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     for (size_t m = 0; m < fog.media; ++m) {
         const double density = fog.density(piece, m, t);
         if (density == 0) continue;
-        const Optics& optics = on.march.snapshot.media[m].optics;
+        const Optics& optics = on.frame.snapshot.media[m].optics;
         scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
     }
     return scattering * (weight * light_at.amount * seen(on, piece, t));
@@ -228,18 +228,18 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
 // Light of one light along the ray: each point's lit stretches, taken together where shares of them can be. Shadow rays
 // through surfaces with alpha need a point each.
 dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
-    const March& march = on.march;
-    const Light& light = march.snapshot.lights[light_index];
-    const Occluders* occluders = march.snapshot.occluders.get();
+    const SingleScattering& frame = on.frame;
+    const Light& light = frame.snapshot.lights[light_index];
+    const Occluders* occluders = frame.snapshot.occluders.get();
     const bool apart = light.shadows && occluders && occluders->has_alpha();
-    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(march.light_points) : 1;
+    const uint32_t count = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
     std::vector<LitPart>& lit = on.scratch.lit;
     std::vector<LitEnd>& ends = on.scratch.ends;
     dvec3 sum(0);
     ends.clear();
     for (uint32_t k = 0; k < count; ++k) {
-        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &march.slices,
-                   march.snapshot.media, on.scratch.along);
+        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &frame.slices,
+                   frame.snapshot.media, on.scratch.along);
         lit.clear();
         for (const Interval<double>& stretch : on.scratch.along.lit) {
             lit.push_back({stretch, 1.0 / count});
@@ -260,20 +260,20 @@ dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_i
     return light_along_ray(on, light_index);
 }
 
-void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scatter& result) {
+void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_index, Scatter& result) {
     static thread_local Scratch scratch;
     const Ray& ray = batch.rays[ray_index];
-    RayMarch on{march, ray, scratch};
+    RayMarch on{frame, ray, scratch};
     const FogPieces& fog = scratch.fog;
-    find_fog(ray, march.snapshot.media, march.settings.min_transmittance, scratch.fog);
+    find_fog(ray, frame.snapshot.media, frame.rule->settings.min_transmittance, scratch.fog);
     result = {};
     if (fog.pieces.empty()) return;
 
     const double stretch = fog.pieces.back().high - fog.pieces.front().low;
-    on.longest = march.settings.step_share * stretch;
+    on.longest = frame.rule->settings.step_share * stretch;
     dvec3 sum = glow(on);
-    if (march.fluence) sum += scattered_before(on);
-    const std::vector<Light>& lights = march.snapshot.lights;
+    if (frame.fluence) sum += scattered_before(on);
+    const std::vector<Light>& lights = frame.snapshot.lights;
     for (size_t l = 0; l < lights.size(); ++l) {
         const dvec3 light = light_from(on, batch, ray_index, l);
         sum += light;
@@ -285,7 +285,7 @@ void march_ray(const March& march, const RayBatch& batch, size_t ray_index, Scat
 }
 }
 
-void march_exact(const March& march, const RayBatch& batch, std::span<Scatter> results) {
-    for (size_t i = 0; i < batch.rays.size(); ++i) march_ray(march, batch, i, results[i]);
+void march_exact(const SingleScattering& frame, const RayBatch& batch, std::span<Scatter> results) {
+    for (size_t i = 0; i < batch.rays.size(); ++i) march_ray(frame, batch, i, results[i]);
 }
 }

@@ -44,13 +44,13 @@ struct Points {
     Mask16 active; // lanes with fog here
 };
 
-void place_steps(const March& march, const RayBatch& batch, Packet& packet) {
+void place_steps(const SingleScattering& frame, const RayBatch& batch, Packet& packet) {
     packet.longest = 0;
     for (size_t lane = 0; lane < 16; ++lane) {
         std::vector<Step>& steps = packet.scratch.steps[lane];
         steps.clear();
         if (lane >= batch.rays.size()) continue;
-        append_march_steps(march.steps, march.snapshot, batch.rays[lane], steps);
+        append_march_steps(*frame.rule, frame.snapshot, batch.rays[lane], steps);
         packet.longest = std::max(packet.longest, steps.size());
     }
 }
@@ -72,38 +72,40 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
 }
 
 // Share of the light that surfaces let through.
-Floats visible_share(const March& march, const Light& light, const Points& points, const LightSamples& light_at,
-                     const Mask16& wanted, const RayBatch& batch, size_t step, size_t light_index) {
-    if (march.settings.visibility == Visibility::maps) return lit_share16(*march.maps[light_index], points.position);
-    if (!casts(light, march.snapshot) || march.settings.visibility == Visibility::off) return 1.0f;
+Floats visible_share(const SingleScattering& frame, const Light& light, const Points& points,
+                     const LightSamples& light_at, const Mask16& wanted, const RayBatch& batch, size_t step,
+                     size_t light_index) {
+    const LightShadows& shadows = frame.shadows[light_index];
+    if (shadows.by == ShadowsBy::maps) return lit_share16(*shadows.map, points.position);
+    if (shadows.by == ShadowsBy::none) return 1.0f;
     const auto key = [&](size_t lane) {
         return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
     };
-    return share_by_rays(*march.snapshot.occluders, light, points.position, light_at, wanted, march.light_points, key);
+    return share_by_rays(*frame.snapshot.occluders, light, points.position, light_at, wanted, frame.light_points, key);
 }
 
 // Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.
-Vec3s scattered_from(const March& march, size_t light_index, const Points& points, const Packet& packet,
+Vec3s scattered_from(const SingleScattering& frame, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
-    const Light& light = march.snapshot.lights[light_index];
-    const LightSamples light_at = arriving(light, march.cones[light_index], points.position);
+    const Light& light = frame.snapshot.lights[light_index];
+    const LightSamples light_at = arriving(light, frame.cones[light_index], points.position);
     Mask16 wanted = points.active & (light_at.amount > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
-    const Floats share = visible_share(march, light, points, light_at, wanted, batch, step, light_index);
+    const Floats share = visible_share(frame, light, points, light_at, wanted, batch, step, light_index);
     wanted = wanted & (share > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
 
-    const Vec3s towards = scattering(march.snapshot.media, dot(light_at.to_light, packet.direction),
+    const Vec3s towards = scattering(frame.snapshot.media, dot(light_at.to_light, packet.direction),
                                      [&](size_t m) HWY_ATTR { return packet.extinction(m); });
-    return scattered_light(light, march.depths[light_index], points.position,
+    return scattered_light(light, frame.depths[light_index], points.position,
                            zero_unless(wanted, light_at.amount * share), towards);
 }
 
 // Extinction of all media at the points; remembers each in the packet's scratch.
-Floats extinction_at(const March& march, const Points& points, const Packet& packet) {
+Floats extinction_at(const SingleScattering& frame, const Points& points, const Packet& packet) {
     Floats total = 0.0f;
-    for (size_t m = 0; m < march.snapshot.media.size(); ++m) {
-        const Medium& medium = march.snapshot.media[m];
+    for (size_t m = 0; m < frame.snapshot.media.size(); ++m) {
+        const Medium& medium = frame.snapshot.media[m];
         const Floats density = density16(medium, points.position);
         const Floats extinction = zero_unless(points.active, density * grey_extinction(medium.optics));
         store(extinction, packet.scratch.extinction[m].data());
@@ -112,27 +114,28 @@ Floats extinction_at(const March& march, const Points& points, const Packet& pac
     return total;
 }
 
-void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Scatter> results) {
+void march_packet_kernel(const SingleScattering& frame, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local Scratch scratch;
-    scratch.extinction.resize(march.snapshot.media.size());
+    scratch.extinction.resize(frame.snapshot.media.size());
     const Rays16 rays = rays_of(batch);
     Packet packet{rays.origin, rays.direction, scratch};
-    const size_t light_count = march.snapshot.lights.size();
-    place_steps(march, batch, packet);
+    const float min_transmittance = frame.rule->settings.min_transmittance;
+    const size_t light_count = frame.snapshot.lights.size();
+    place_steps(frame, batch, packet);
 
     alignas(64) float jitter[16];
     store(rays.jitter, jitter);
-    const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
+    const bool styled = frame.style.view_depth != 1 || frame.style.range < StyleSettings{}.range;
     Totals totals{splat(vec3(0)), 0.0f, 1.0f};
     Floats taken = 0.0f;
     for (size_t k = 0; k < packet.longest; ++k) {
         Points points = step_points(packet, k, jitter);
-        points.active = points.active & (totals.transmittance > march.settings.min_transmittance);
+        points.active = points.active & (totals.transmittance > min_transmittance);
         if (!any(points.active)) {
-            if (!any(totals.transmittance > march.settings.min_transmittance)) break;
+            if (!any(totals.transmittance > min_transmittance)) break;
             continue;
         }
-        const Floats extinction = extinction_at(march, points, packet);
+        const Floats extinction = extinction_at(frame, points, packet);
         points.active = points.active & (extinction > 0.0f);
         taken = taken + select(points.active, 1.0f, 0.0f);
         if (!any(points.active)) continue;
@@ -141,15 +144,15 @@ void march_packet_kernel(const March& march, const RayBatch& batch, std::span<Sc
         const Floats depth = extinction * points.length;
         Floats weight = totals.transmittance * points.length * mean_transmittance(depth);
         if (styled) {
-            const Floats seen = exp(-totals.depth * march.style.view_depth);
-            weight = seen * points.length * mean_transmittance(depth * march.style.view_depth) *
-                     style_fade(march.style, march.camera, points.position);
+            const Floats seen = exp(-totals.depth * frame.style.view_depth);
+            weight = seen * points.length * mean_transmittance(depth * frame.style.view_depth) *
+                     style_fade(frame.style, frame.camera, points.position);
         }
-        const Vec3s glowing = glow(march.snapshot, march.fluence.get(), points.position, packet.direction,
+        const Vec3s glowing = glow(frame.snapshot, frame.fluence.get(), points.position, packet.direction,
                                    [&](size_t m) HWY_ATTR { return packet.extinction(m); });
         totals.radiance = totals.radiance + glowing * weight;
         for (size_t light = 0; light < light_count; ++light) {
-            const Vec3s added = scattered_from(march, light, points, packet, batch, k) * weight;
+            const Vec3s added = scattered_from(frame, light, points, packet, batch, k) * weight;
             totals.radiance = totals.radiance + added;
             add_per_light(added, light, light_count, batch);
         }
@@ -166,8 +169,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(march_packet_kernel);
-void march_packet(const March& march, const RayBatch& batch, std::span<Scatter> results) {
-    HWY_DYNAMIC_DISPATCH(march_packet_kernel)(march, batch, results);
+void march_packet(const SingleScattering& frame, const RayBatch& batch, std::span<Scatter> results) {
+    HWY_DYNAMIC_DISPATCH(march_packet_kernel)(frame, batch, results);
 }
 }
 #endif

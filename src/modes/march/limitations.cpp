@@ -1,7 +1,7 @@
 #include "modes/march/limitations.h"
 
+#include "integrate/single_scattering.h"
 #include "modes/map_shadows.h"
-#include "modes/march/march.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/mesh.h"
@@ -25,7 +25,7 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
             {Severity::info, &limitation::sampled_alpha_shadows, Subject::setting, "march.visibility"});
     if (visibility == Visibility::intervals && !alpha)
         for (const Light& light : snapshot.lights)
-            if (casts(light, snapshot) && shadows_by(light, *snapshot.occluders) == ShadowsBy::rays)
+            if (casts(light, snapshot) && exact_shadows(light, *snapshot.occluders) == ShadowsBy::rays)
                 limitations.push_back({Severity::info,
                                        &limitation::sampled_shadows,
                                        Subject::light,

@@ -1,7 +1,5 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
-#include "modes/march/march.h"
-
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"
@@ -15,58 +13,50 @@
 
 namespace tyndall {
 namespace {
-// Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
-// scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
-// once.
-constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
+ShadowsBy shadows_by(Visibility visibility, const Light& light, const Occluders& occluders) {
+    switch (visibility) {
+    case Visibility::off:
+        return ShadowsBy::none;
+    case Visibility::rays:
+        return ShadowsBy::rays;
+    case Visibility::maps:
+        return ShadowsBy::maps;
+    case Visibility::intervals:
+        return exact_shadows(light, occluders);
+    case Visibility::exact:
+        return ShadowsBy::slices;
+    }
+    return ShadowsBy::none;
 }
 
-ShadowsBy shadows_by(const Light& light, const Occluders& occluders) {
-    const uint64_t most = is_soft(light) ? max_sliced : max_with_volumes;
-    if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
-    return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
-}
-
-namespace {
-// Steps inside lit stretches. Shadows are exact, of one point of each light for a ray; but sampled by rays at every
-// step where surfaces have alpha, or are too many.
-ScatterFunction prepare_slices(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    auto fog = std::make_shared<SingleScattering>();
-    const MarchSettings& march = settings.march;
-    fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
-    fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
-    fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
-    const auto by = [&](const Light& light) { return shadows_by(light, *snapshot.occluders); };
-    add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
-    std::vector<Light> sampled; // lights that the steps have to find the shadows of
-    for (size_t i = 0; i < fog->shadows.size(); ++i)
-        if (fog->shadows[i].by == ShadowsBy::rays) sampled.push_back(fog->snapshot.lights[i]);
-    fog->sampled = has_grid(fog->snapshot) || !sampled.empty();
-    if (fog->sampled) fog->rule = march_steps(march, std::move(sampled));
-    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    return [fog](const RayBatch& batch, std::span<Scatter> results) { single_scattering_packet(*fog, batch, results); };
+// Steps that resolve what they have to ask for: the shadows of lights that are not found otherwise, and the strength of
+// all where nothing else follows the lights.
+void add_steps(const MarchSettings& march, bool all, SingleScattering& fog) {
+    std::vector<Light> lights;
+    for (size_t i = 0; i < fog.shadows.size(); ++i)
+        if (all || fog.shadows[i].by == ShadowsBy::rays) lights.push_back(fog.snapshot.lights[i]);
+    fog.sampled = has_grid(fog.snapshot) || !lights.empty();
+    fog.rule = march_steps(march, std::move(lights));
 }
 }
 
 ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
-    if (settings.march.visibility == Visibility::intervals) return prepare_slices(view, snapshot, settings);
-    auto march = std::make_shared<March>();
-    march->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms);
-    march->settings = settings.march, march->light_points = settings.terms.light_points, march->style = settings.style,
-    march->camera = view.camera;
-    for (const Light& light : march->snapshot.lights) {
-        march->depths.push_back(
-            make_light_depth(march->snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
-        march->depths.back().scale = settings.style.light_depth;
-        march->cones.push_back(cone_falloff(light));
+    auto fog = std::make_shared<SingleScattering>();
+    const MarchSettings& march = settings.march;
+    const bool intervals = march.visibility == Visibility::intervals, exact = march.visibility == Visibility::exact;
+    fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
+    fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
+    fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
+    const auto by = [&](const Light& light) { return shadows_by(march.visibility, light, *snapshot.occluders); };
+    add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
+    add_steps(march, !intervals && !exact, *fog);
+    if (march.visibility == Visibility::maps) {
+        const ShadowMaps maps = make_shadow_maps(view, fog->snapshot, settings);
+        for (size_t i = 0; i < maps.size(); ++i) fog->shadows[i].map = maps[i];
     }
-    march->steps = march_steps(settings.march, march->snapshot.lights);
-    march->fluence = cached_fluence(march->snapshot, settings.fluence, view.seed);
-    if (settings.march.visibility == Visibility::maps) march->maps = make_shadow_maps(view, march->snapshot, settings);
-    if (settings.march.visibility != Visibility::exact)
-        return [march](const RayBatch& batch, std::span<Scatter> results) { march_packet(*march, batch, results); };
-    if (snapshot.occluders) march->slices = snapshot.occluders->shadow_slices();
-    return [march](const RayBatch& batch, std::span<Scatter> results) { march_exact(*march, batch, results); };
+    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
+    const auto integrate = intervals ? single_scattering_packet : exact ? march_exact : march_packet;
+    return [fog, integrate](const RayBatch& batch, std::span<Scatter> results) { integrate(*fog, batch, results); };
 }
 
 Mode march_mode() {
