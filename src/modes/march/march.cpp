@@ -55,8 +55,11 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         for (size_t i = 0; i < maps.size(); ++i) fog->shadows[i].map = maps[i];
     }
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    const auto integrate = intervals ? single_scattering_packet : exact ? march_exact : march_packet;
-    return [fog, integrate](const RayBatch& batch, std::span<Scatter> results) { integrate(*fog, batch, results); };
+    return [fog, intervals, exact](const RayBatch& batch, std::span<Scatter> results) {
+        if (intervals) return single_scattering_packet(*fog, batch, results);
+        if (exact) return march_exact(*fog, batch, results);
+        march_packet(*fog, batch, results);
+    };
 }
 
 Mode march_mode() {
