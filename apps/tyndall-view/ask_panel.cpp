@@ -1,7 +1,6 @@
-#include "ask_panel.h"
+#include "panels.h"
 
 #include "base/text.h"
-#include "lights_panel.h"
 #include "theme.h"
 #include "viewer/editing/scene_session.h"
 

@@ -1,7 +1,7 @@
 #include "handles_panel.h"
 
 #include "base/text.h"
-#include "lights_panel.h"
+#include "panels.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
 #include "theme.h"

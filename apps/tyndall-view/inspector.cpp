@@ -1,7 +1,5 @@
-#include "inspector.h"
 
-#include "ray_panel.h"
-#include "volume_panel.h"
+#include "panels.h"
 
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-#include "lights_panel.h"
+#include "panels.h"
 
 #include "base/text.h"
 #include "property_controls.h"

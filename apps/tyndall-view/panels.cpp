@@ -1,10 +1,6 @@
 // Where the panels lie, and the list of keys.
 #include "panels.h"
 
-#include "ask_panel.h"
-#include "inspector.h"
-#include "lights_panel.h"
-#include "picture_panel.h"
 #include "theme.h"
 
 #include <algorithm>

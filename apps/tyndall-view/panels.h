@@ -1,10 +1,12 @@
 // What is drawn, and the actions that come of it.
 #pragma once
 #include "edit_memory.h"
+#include "viewer/painting/ray_question.h"
 #include "viewer/painting/shown_picture.h"
 #include "viewer/state/view_state.h"
 
 #include <functional>
+#include <imgui.h>
 
 namespace tyndall {
 // What the panels show besides the state.
@@ -61,4 +63,36 @@ void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);
 
 // Mode, size, samples, time and what the mode gets wrong, as one line.
 std::string status_line(const ViewState& state, const ShownPicture& picture);
+
+// The question that comes before unsaved edits would be lost or a job ended.
+void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act);
+
+// The picture with its line of status.
+void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act);
+
+// What happens on the ray of a pixel, in the space that is left of the current window: curves on the left, the
+// techniques' answers on the right.
+void draw_ray(const ViewState& state, const RayAnswer* answer, const Act& act);
+
+// A medium's density and its grid, in the space that is left of the current window: picture and scale on the left,
+// controls and facts on the right.
+void draw_volume(const ViewState& state, const PanelResources& resources, const Act& act);
+
+// The strip below the picture: what is looked into. Its height; 0 when that is nothing.
+float inspector_height(const ViewState& state, float whole);
+void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act);
+
+// The side's page for lights and fog: what there is, what the selected one is like, undo and saving.
+void draw_lights(const ViewState& state, EditMemory& memory, const Act& act);
+
+// Whether a file is there that would be written over.
+bool is_taken(const std::filesystem::path& file);
+
+// A name to save the scene as, for each scene once.
+void propose_name(const ViewState& state, EditMemory& memory);
+
+// The two pages of the side.
+void draw_tabs(const ViewState& state, const Act& act);
+
+ImVec4 shown_color(vec3 linear); // as bright as a screen can show it
 }

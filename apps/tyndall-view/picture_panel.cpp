@@ -1,5 +1,5 @@
 // The picture, what the mouse does on it, and the line of status.
-#include "picture_panel.h"
+#include "panels.h"
 
 #include "base/error.h"
 #include "base/text.h"

@@ -1,7 +1,7 @@
 #include "property_controls.h"
 
 #include "base/text.h"
-#include "lights_panel.h"
+#include "panels.h"
 #include "theme.h"
 #include "viewer/state/edit_actions.h"
 

@@ -1,4 +1,4 @@
-#include "ray_panel.h"
+#include "panels.h"
 
 #include "base/text.h"
 #include "measure/explain/curves.h"

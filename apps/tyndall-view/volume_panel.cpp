@@ -1,4 +1,4 @@
-#include "volume_panel.h"
+#include "panels.h"
 
 #include "base/text.h"
 #include "measure/metrics/heatmap.h"

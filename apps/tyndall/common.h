@@ -1,6 +1,5 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
-#include "base/choice.h"
 #include "base/io/json.h"
 #include "base/io/progress.h"
 #include "base/math.h"

@@ -5,7 +5,6 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
-#include "render/sequence/loaded_frame.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"

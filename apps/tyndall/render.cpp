@@ -9,7 +9,6 @@
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/contact_sheet.h"
-#include "render/sequence/loaded_frame.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"
 #include "scene/light.h"

@@ -110,4 +110,10 @@ std::string unknown_name(std::string_view kind, std::string_view name, const std
     if (known.empty()) return text + "; there is none";
     return known.size() > longest_list ? text : text + "; there is " + joined(known, ", ");
 }
+
+size_t choice_among(std::string_view where, std::string_view text, const std::vector<std::string>& choices) {
+    const auto found = std::ranges::find(choices, text);
+    if (found == choices.end()) fail(ExitCode::usage, where, unknown_name("choice", text, choices));
+    return static_cast<size_t>(found - choices.begin());
+}
 }

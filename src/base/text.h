@@ -1,5 +1,6 @@
 // Small helpers for messages that name things.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -27,4 +28,7 @@ std::string unknown_name(std::string_view kind, std::string_view name, const std
 
 // The candidate with the fewest edits (insert, delete, replace, swap of neighbours) from `name`; the first on a tie.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+// The position of `text` among `choices`. Throws Error (usage) at `where`: names those like it, or lists all.
+size_t choice_among(std::string_view where, std::string_view text, const std::vector<std::string>& choices);
 }

@@ -2,7 +2,9 @@
 #pragma once
 #include "base/math.h"
 #include "integrate/equi_angular.h"
+#include "integrate/ray_batch.h"
 #include "scene/light.h"
+#include "trace/light_ray.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 
 #include <span>
@@ -29,7 +31,7 @@ struct LightAlong {
 
     bool local() const { return !is_distant(*light); }
     double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
-    double height() const; // of a local light over the ray, no less than its radius
+    double height() const;                             // of a local light over the ray, no less than its radius
     EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
     double veil_voxels(double low, double high) const;         // per metre, on a stretch that no veil's end divides
 };
@@ -45,4 +47,9 @@ LightSamplesAt arriving_at(const LightAlong& along, double t);
 // the grids among `media`.
 void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,
                 std::span<const Medium> media, LightAlong& along);
+
+// Point k of `count` points of a light, for a ray of a batch: well spread over the samples of a pixel. The centre of a
+// light that is a point.
+LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index, uint32_t k,
+                       uint32_t count);
 }

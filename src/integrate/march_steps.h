@@ -1,9 +1,22 @@
 // Where the march evaluates the fog of a ray: steps as its settings ask for.
 #pragma once
-#include "integrate/march_settings.h"
 #include "volume/rays/steps.h"
 
 namespace tyndall {
+// How shadows of surfaces in the fog are found: sampled by rays or looked up in maps at each step, integrated over the
+// lit intervals of the ray, or so with everything else as exact: the reference.
+enum class Visibility { off, rays, maps, intervals, exact };
+
+struct MarchSettings {
+    float step_depth = 0.25f;        // most optical depth per step
+    float step_voxels = 8;           // most voxels per step
+    float step_share = 1.0f / 28;    // longest step as a share of the ray's stretch through fog
+    float near_light = 0.5f;         // a step is at most this share of the distance to a local light
+    float min_transmittance = 1e-3f; // the march stops where less than this passes
+    Visibility visibility = Visibility::intervals;
+    int nodes = 4; // Gauss–Legendre nodes on each lit stretch of fog in closed form
+};
+
 struct Light;
 struct Snapshot;
 

@@ -1,7 +1,7 @@
 // Light scattered once in fog: what is made once per frame, and the integral along a packet of rays over the stretches
 // that each light reaches. Behind march and shadow-volume.
 #pragma once
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "integrate/light_along.h"
 #include "integrate/march_steps.h"
 #include "integrate/ray_batch.h"

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "integrate/single_scattering_kernel.cpp"
 #include <hwy/foreach_target.h>
 
-#include "integrate/light_point.h"
+#include "integrate/light_along.h"
 #include "integrate/single_scattering.h"
 #include "integrate/style.h"
 

@@ -4,7 +4,6 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "modes/fog_buffer_frames.h"
 #include "modes/fog_buffer_mix.h"
 #include "modes/history.h"
 #include "scene/light.h"

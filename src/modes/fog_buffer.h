@@ -29,4 +29,15 @@ ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, cons
 
 // A share of a picture size, rounded up.
 ivec2 shared_size(ivec2 size, Resolution share);
+
+struct FogBuffer;
+struct Medium;
+
+// Averages every pixel with those of like length around it: weights ½ 1 1 1 ½ along each side hold every phase of a
+// 4×4 pattern equally often.
+void blur_pattern(FogBuffer& picture);
+
+// Mixes in what the last frame's picture shows of the same fog: where the light of homogeneous fog comes from. The more
+// its near and its far half move against each other the less is remembered.
+void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffer& picture);
 }

@@ -1,4 +1,4 @@
-#include "modes/fog_buffer_frames.h"
+#include "modes/fog_buffer.h"
 
 #include "base/parallel.h"
 #include "modes/fog_buffer_mix.h"

@@ -2,7 +2,7 @@
 // headers.
 #pragma once
 #include "base/math.h"
-#include "integrate/march_settings.h"
+#include "integrate/march_steps.h"
 #include "integrate/style.h"
 #include "integrate/terms.h"
 #include "trace/fluence/settings.h"

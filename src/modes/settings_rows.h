@@ -1,6 +1,6 @@
 // How a technique describes its settings as named rows. For settings.cpp of each technique.
 #pragma once
-#include "base/choice.h"
+#include "base/text.h"
 #include "modes/settings.h"
 
 #include <type_traits>

@@ -123,4 +123,10 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options =
 Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options = {});
 
 mat4 node_matrix(const Scene& scene, int node, double seconds); // local to world
+
+// Whether the scene gives keys to a node (-1 = none) or one above it.
+bool is_moving(const Scene& scene, int node);
+
+// Around every instance at a moment, and every medium whose extent is known without opening volumes.
+Box scene_bounds(const Scene& scene, double seconds);
 }

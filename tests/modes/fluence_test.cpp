@@ -1,7 +1,7 @@
 // Light that scatters more than once, by the grid of fluence: closed forms, conservation, and path tracing.
+#include "base/gauss_legendre.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "integrate/gauss_legendre.h"
 #include "modes/froxel/froxel_fixtures.h"
 #include "modes/froxel/settings.h"
 #include "modes/mode.h"

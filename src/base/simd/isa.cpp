@@ -1,7 +1,7 @@
 #include "base/simd/isa.h"
 
-#include "base/choice.h"
 #include "base/error.h"
+#include "base/text.h"
 
 #include <hwy/targets.h>
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "measure/chart/errors.h"
 #include "modes/mode.h"
-#include "render/adaptive/ladders.h"
+#include "render/adaptive/candidates.h"
 
 #include <cstdint>
 #include <limits>

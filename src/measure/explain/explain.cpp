@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "integrate/march_settings.h"
+#include "integrate/march_steps.h"
 #include "render/adaptive/candidates.h"
 #include "render/frame/camera_paths.h"
 #include "scene/scene.h"

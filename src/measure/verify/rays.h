@@ -1,6 +1,6 @@
 // Scenes without files and light along single rays, for checks. Internal to verify.
 #pragma once
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "integrate/ray_estimate.h"
 #include "measure/verify/verify.h"
 #include "modes/settings.h"

@@ -7,9 +7,9 @@
 #define TYNDALL_MODES_CONE_PACKET_SIMD_H
 #endif
 
+#include "base/gauss_legendre.h"
 #include "base/simd/reduce_simd.h"
 #include "base/simd/simd.h"
-#include "integrate/gauss_legendre.h"
 #include "modes/cone/cone.h"
 #include "modes/cone/geometry_simd.h"
 #include "trace/transmittance/light_depth_simd.h"

@@ -1,7 +1,7 @@
 #include "modes/froxel/light_injection.h"
 
+#include "base/gauss_legendre.h"
 #include "base/random.h"
-#include "integrate/gauss_legendre.h"
 #include "integrate/light_along.h"
 
 #include <array>

@@ -6,7 +6,7 @@
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
-#include "scene/moving_nodes.h"
+#include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

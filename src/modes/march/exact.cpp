@@ -1,8 +1,7 @@
 #include "modes/march/exact.h"
 
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "integrate/light_along.h"
-#include "integrate/light_point.h"
 #include "integrate/style.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_pieces.h"

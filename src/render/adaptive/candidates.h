@@ -1,9 +1,27 @@
 // Ways for a mode to integrate the fog, from coarse to fine, and the truth they are held against.
 #pragma once
 #include "modes/settings.h"
-#include "render/adaptive/ladders.h"
+
+#include <span>
 
 namespace tyndall {
+struct Mode;
+
+struct Candidate {
+    std::string name; // of its rung, without samples
+    Settings settings;
+};
+
+// At least six rungs for every mode. What decides how carefully a rung works is its own, pixel.samples among it;
+// everything else is as in `settings`.
+std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings);
+
+// The rows that the rungs of a mode decide, but for pixel.samples.
+std::vector<std::string> ladder_rows(const Mode& mode);
+
+// Copies rows by name.
+void take_rows(std::span<const std::string> names, const Settings& from, Settings& to);
+
 // Candidates of a mode, cheapest first, made from a job's settings: what decides how finely fog is integrated is the
 // candidate's, except for rows in which the settings depart from their quality; everything else stays. A mode whose
 // error is noise has one, the settings as they are; a mode that is a look has none.

@@ -4,8 +4,7 @@
 #include "base/random.h"
 #include "modes/mode.h"
 #include "render/adaptive/allotment.h"
-#include "render/frame/layers_mean.h"
-#include "render/frame/noise.h"
+#include "render/frame/layers.h"
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "base/parallel.h"
 #include "modes/mode.h"
 #include "render/frame/edges.h"
-#include "render/frame/noise.h"
+#include "render/frame/layers.h"
 #include "render/frame/pixel_sum.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"

@@ -55,4 +55,11 @@ struct FrameStats {
 
     void add(const FrameStats& other); // counts and times
 };
+
+// Into the layers `share` of other ones, with the variances of such a mean. Depth stays.
+void blend_layers(Layers& layers, const Layers& other, float share);
+
+// From the variances of the layers, which stand on `freedom` differences between batches (batches - 1, summed over
+// pictures combined). A layer that is black and free of noise has no error.
+Noise noise_of(const Layers& layers, int freedom);
 }

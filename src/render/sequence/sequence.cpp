@@ -9,7 +9,6 @@
 #include "render/adaptive/to_target.h"
 #include "render/image/png.h"
 #include "render/sequence/check_job.h"
-#include "render/sequence/loaded_frame.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/resume.h"
 #include "scene/light.h"

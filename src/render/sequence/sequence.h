@@ -4,14 +4,22 @@
 #include "modes/limitation.h"
 #include "render/frame/layers.h"
 #include "render/sequence/job.h"
+#include "trace/snapshot.h"
 
 #include <atomic>
 #include <string>
 #include <vector>
 
 namespace tyndall {
-struct LoadedFrame;
-struct Scene;
+// A frame of a sequence, loaded to be looked at before it is rendered.
+struct LoadedFrame {
+    Snapshot snapshot;
+    double seconds = 0; // it took
+};
+
+// Loads the first frame asked for, to look at it before the others. What stands still is shared with `previous`, when
+// that is a frame of the same scene. Throws Error.
+LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous = nullptr);
 
 struct FrameReport {
     int frame = 0;

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "scene/file/stand_ins.h"
 #include "scene/gltf/gltf.h"
-#include "scene/scene_bounds.h"
 #include "scene_schema.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -138,18 +138,5 @@ Scene load_scene_text(std::string_view text, const std::filesystem::path& file, 
     read_scene_document(document, scene, options);
     add_missing_camera(scene);
     return scene;
-}
-
-mat4 node_matrix(const Scene& scene, int node, double seconds) {
-    mat4 world(1);
-    for (; node >= 0; node = scene.nodes[node].parent) {
-        const Node& here = scene.nodes[node];
-        world = (here.matrix
-                     ? *here.matrix
-                     : glm::translate(mat4(1), here.translation.at(seconds)) *
-                           glm::mat4_cast(here.rotation.at(seconds)) * glm::scale(mat4(1), here.scale.at(seconds))) *
-                world;
-    }
-    return world;
 }
 }

@@ -1,7 +1,7 @@
 // Which triangles stand where at a moment, and what a hit looks like.
 #include "trace/occlusion/scene.h"
 
-#include "scene/moving_nodes.h"
+#include "scene/scene.h"
 
 namespace tyndall {
 namespace {

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/io/json.h"
 #include "base/io/json_pointer.h"
-#include "scene/scene_bounds.h"
+#include "scene/file/stand_ins.h"
 #include "scene_schema.h"
 #include "viewer/editing/json_text.h"
 #include "viewer/editing/key_place.h"

@@ -4,7 +4,6 @@
 #include "modes/mode.h"
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
-#include "render/frame/layers_mean.h"
 #include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 #include "viewer/painting/request.h"

@@ -1,6 +1,6 @@
 #include "viewer/state/camera_control.h"
 
-#include "scene/scene_bounds.h"
+#include "scene/scene.h"
 #include "trace/moment.h"
 
 #include <glm/gtc/matrix_transform.hpp>

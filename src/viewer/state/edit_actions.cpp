@@ -1,6 +1,5 @@
 #include "viewer/state/edit_actions.h"
 
-#include "base/choice.h"
 #include "base/error.h"
 #include "base/io/json_pointer.h"
 #include "base/text.h"

@@ -1,5 +1,4 @@
 // How pictures are shown, what is asked about them, and which panels are there.
-#include "base/choice.h"
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/scene.h"

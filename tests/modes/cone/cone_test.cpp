@@ -13,9 +13,9 @@
 #include "trace/view.h"
 #include "volume/medium.h"
 
+#include "base/gauss_legendre.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "integrate/gauss_legendre.h"
 
 #include <gtest/gtest.h>
 

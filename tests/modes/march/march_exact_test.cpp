@@ -1,5 +1,5 @@
 // The exact march against closed forms, quadrature of the light equation, and the sampled march.
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "integrate/ray_batch.h"
 #include "modes/busy_stage.h"
 #include "modes/limitation.h"

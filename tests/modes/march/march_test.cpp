@@ -1,7 +1,7 @@
 // The march against closed forms and quadrature of the light equation.
 
+#include "base/gauss_legendre.h"
 #include "base/random.h"
-#include "integrate/gauss_legendre.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "support/run_mode.h"

@@ -1,6 +1,6 @@
 // The march with shadow maps against closed forms, the reference and traced shadows.
 
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
 #include "modes/settings.h"

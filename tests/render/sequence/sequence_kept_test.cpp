@@ -3,7 +3,6 @@
 #include "base/io/frames.h"
 #include "modes/mode.h"
 #include "render/fixtures.h"
-#include "render/sequence/loaded_frame.h"
 #include "render/sequence/sequence.h"
 #include "scene/light.h"
 #include "scene/light_kind.h"

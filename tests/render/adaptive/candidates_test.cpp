@@ -1,6 +1,6 @@
 // Ladders hold what charts and plans compare.
 #include "modes/mode.h"
-#include "render/adaptive/ladders.h"
+#include "render/adaptive/candidates.h"
 
 #include <gtest/gtest.h>
 

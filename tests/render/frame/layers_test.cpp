@@ -1,7 +1,7 @@
 #include "base/random.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
-#include "render/frame/noise.h"
+#include "render/frame/layers.h"
 #include "render/frame/noise_fixtures.h"
 #include "render/frame/pixel_sum.h"
 #include "scene/light.h"

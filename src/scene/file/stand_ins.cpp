@@ -1,4 +1,4 @@
-#include "scene/scene_bounds.h"
+#include "scene/file/stand_ins.h"
 
 #include "scene/file/scene_file.h"
 
@@ -9,15 +9,6 @@
 
 namespace tyndall {
 namespace {
-Box box_of(const Mesh& mesh) {
-    Box box;
-    for (const glm::uvec3& triangle : mesh.triangles)
-        for (int corner = 0; corner < 3; ++corner) box.grow(mesh.positions[triangle[corner]]);
-    return box;
-}
-
-Box finite(const Box& box) { return is_finite(box.low) && is_finite(box.high) ? box : Box{}; }
-
 std::string number_text(const char* format, double value) {
     char text[64];
     std::snprintf(text, sizeof text, format, value);
@@ -34,22 +25,6 @@ float brightest_illuminance(const Scene& scene, const Box& bounds) {
     }
     return sum;
 }
-}
-
-Box scene_bounds(const Scene& scene, double seconds) {
-    std::vector<Box> boxes;
-    for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
-    Box bounds;
-    for (const Instance& instance : scene.instances)
-        bounds.grow(finite(transform(node_matrix(scene, instance.node, seconds), boxes[instance.mesh])));
-    for (const MediumSource& medium : scene.media) {
-        const Box local = medium.kind == MediumKind::noise ? medium.recipe->bounds : medium.bounds;
-        if (medium.kind == MediumKind::vdb || !is_finite(local.low) || !is_finite(local.high)) continue;
-        const mat4 placed = glm::translate(mat4(1), medium.translation.at(seconds)) *
-                            glm::mat4_cast(medium.rotation.at(seconds)) * glm::scale(mat4(1), medium.scale.at(seconds));
-        bounds.grow(finite(transform(placed, local)));
-    }
-    return bounds;
 }
 
 void add_missing_camera(Scene& scene) {

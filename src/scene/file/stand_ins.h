@@ -3,9 +3,6 @@
 #include "scene/scene.h"
 
 namespace tyndall {
-// Around every instance at a moment, and every medium whose extent is known without opening volumes.
-Box scene_bounds(const Scene& scene, double seconds);
-
 // Adds a camera that frames the scene when it has none, with a warning.
 void add_missing_camera(Scene& scene);
 

@@ -1,4 +1,4 @@
-#include "integrate/gauss_legendre.h"
+#include "base/gauss_legendre.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,56 @@
+// Places of a scene's parts.
+#include "scene/scene.h"
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace tyndall {
+mat4 node_matrix(const Scene& scene, int node, double seconds) {
+    mat4 world(1);
+    for (; node >= 0; node = scene.nodes[node].parent) {
+        const Node& here = scene.nodes[node];
+        world = (here.matrix
+                     ? *here.matrix
+                     : glm::translate(mat4(1), here.translation.at(seconds)) *
+                           glm::mat4_cast(here.rotation.at(seconds)) * glm::scale(mat4(1), here.scale.at(seconds))) *
+                world;
+    }
+    return world;
+}
+
+bool is_moving(const Scene& scene, int node) {
+    for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
+        const Node& n = scene.nodes[static_cast<size_t>(node)];
+        if (n.matrix) continue;
+        if (!n.translation.constant() || !n.rotation.constant() || !n.scale.constant()) return true;
+    }
+    return false;
+}
+
+namespace {
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const glm::uvec3& triangle : mesh.triangles)
+        for (int corner = 0; corner < 3; ++corner) box.grow(mesh.positions[triangle[corner]]);
+    return box;
+}
+
+Box finite(const Box& box) { return is_finite(box.low) && is_finite(box.high) ? box : Box{}; }
+}
+
+Box scene_bounds(const Scene& scene, double seconds) {
+    std::vector<Box> boxes;
+    for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
+    Box bounds;
+    for (const Instance& instance : scene.instances)
+        bounds.grow(finite(transform(node_matrix(scene, instance.node, seconds), boxes[instance.mesh])));
+    for (const MediumSource& medium : scene.media) {
+        const Box local = medium.kind == MediumKind::noise ? medium.recipe->bounds : medium.bounds;
+        if (medium.kind == MediumKind::vdb || !is_finite(local.low) || !is_finite(local.high)) continue;
+        const mat4 placed = glm::translate(mat4(1), medium.translation.at(seconds)) *
+                            glm::mat4_cast(medium.rotation.at(seconds)) * glm::scale(mat4(1), medium.scale.at(seconds));
+        bounds.grow(finite(transform(placed, local)));
+    }
+    return bounds;
+}
+}
