@@ -14,6 +14,8 @@
 namespace tyndall {
 struct Choice;
 struct Mode;
+struct Scene;
+struct View;
 
 // What is asked for: of what, how, and where to.
 struct RenderRequest {
@@ -59,4 +61,15 @@ bool has_goal(const RenderRequest& request);
 bool measures_noise(const RenderRequest& request);
 
 bool wants_layer(const RenderRequest& request, std::string_view layer);
+
+// A frame as the camera sees it. Throws Error for a camera that is not in the scene.
+View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame);
+
+inline std::filesystem::path png_name(const std::string& exr) {
+    return std::filesystem::path(exr).replace_extension(".png");
+}
+
+// Tests picture size, layers, names, directories and the target error, and removes leftovers of killed runs. Nothing
+// that was read may be written over. Throws Error (usage, unwritable).
+void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode);
 }

@@ -141,34 +141,6 @@ std::string command_line(const RenderRequest& request) {
     return text;
 }
 
-RenderPlan plan_as_asked(const RenderRequest& request) {
-    return {&find_mode(request.mode), request.settings, {}, {}, {}};
-}
-
-bool has_goal(const RenderRequest& request) { return request.target_error > 0 || request.time_budget > 0; }
-
-bool measures_noise(const RenderRequest& request) {
-    return wants_layer(request, "variance") || wants_layer(request, "halves");
-}
-
-bool wants_layer(const RenderRequest& request, std::string_view layer) {
-    return std::ranges::count(request.exr.layers, layer) > 0;
-}
-
-View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame) {
-    View view;
-    view.camera = camera_at(scene, find_camera(scene, request.camera), moment_of(scene, frame).seconds);
-    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    view.crop_low = request.crop_low, view.crop_high = request.crop_high;
-    view.pixel_samples = settings.pixel.samples;
-    view.filter = settings.pixel.filter, view.filter_radius = settings.pixel.filter_radius;
-    view.lamp_samples = settings.pixel.lamp_samples, view.edge_samples = settings.pixel.edge_samples;
-    view.jitter = settings.pixel.jitter, view.per_light = wants_layer(request, "lights");
-    view.seed = request.seed, view.frame = frame;
-    if (measures_noise(request)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
-    return view;
-}
-
 std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                        FileHashes& files) {
     const double seconds = moment_of(scene, view.frame).seconds;

@@ -1,4 +1,4 @@
-// What a frame is made from, as a view to render, a hash to compare and attributes to keep.
+// What a frame is made from, as a hash to compare and attributes to keep.
 #pragma once
 #include "render/sequence/job.h"
 
@@ -8,8 +8,6 @@
 namespace tyndall {
 struct Scene;
 struct View;
-
-View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame);
 
 // Content hashes of files already read, by path: a file counts as it was when first asked for.
 struct FileHashes {

@@ -8,7 +8,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/png.h"
-#include "render/sequence/check_job.h"
+#include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/resume.h"
 #include "scene/light.h"

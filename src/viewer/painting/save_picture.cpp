@@ -5,7 +5,6 @@
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
 #include "render/image/png.h"
-#include "render/sequence/check_job.h"
 #include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
 #include "scene/light.h"

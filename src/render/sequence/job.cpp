@@ -1,13 +1,15 @@
-#include "render/sequence/check_job.h"
 
+#include "render/sequence/job.h"
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
-#include "render/sequence/job.h"
+#include "render/frame/frame.h"
+#include "scene/camera.h"
 #include "scene/scene.h"
 #include "trace/moment.h"
+#include "trace/view.h"
 
 #include <set>
 
@@ -68,5 +70,33 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
         fail(ExitCode::usage, "--aov",
              std::string(mode.name) + " works on the finished picture: it has no variance and no halves");
     check_outputs(scene, request);
+}
+
+RenderPlan plan_as_asked(const RenderRequest& request) {
+    return {&find_mode(request.mode), request.settings, {}, {}, {}};
+}
+
+bool has_goal(const RenderRequest& request) { return request.target_error > 0 || request.time_budget > 0; }
+
+bool measures_noise(const RenderRequest& request) {
+    return wants_layer(request, "variance") || wants_layer(request, "halves");
+}
+
+bool wants_layer(const RenderRequest& request, std::string_view layer) {
+    return std::ranges::count(request.exr.layers, layer) > 0;
+}
+
+View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame) {
+    View view;
+    view.camera = camera_at(scene, find_camera(scene, request.camera), moment_of(scene, frame).seconds);
+    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    view.crop_low = request.crop_low, view.crop_high = request.crop_high;
+    view.pixel_samples = settings.pixel.samples;
+    view.filter = settings.pixel.filter, view.filter_radius = settings.pixel.filter_radius;
+    view.lamp_samples = settings.pixel.lamp_samples, view.edge_samples = settings.pixel.edge_samples;
+    view.jitter = settings.pixel.jitter, view.per_light = wants_layer(request, "lights");
+    view.seed = request.seed, view.frame = frame;
+    if (measures_noise(request)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
+    return view;
 }
 }
