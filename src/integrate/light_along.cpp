@@ -74,9 +74,9 @@ Interval<double> behind(const Box& box, const LightAlong& along) {
 
 void find_veils(std::span<const Medium> media, LightAlong& along) {
     for (const Medium& medium : media) {
-        if (medium.kind != DensityKind::bricks || medium.bricks->empty()) continue;
-        const Interval<double> stretch = behind(medium.bricks->bounds, along);
-        const vec3 voxel = medium.bricks->voxel_size;
+        if (medium.density.kind != DensityKind::bricks || medium.density.bricks->empty()) continue;
+        const Interval<double> stretch = behind(medium.density.bricks->bounds, along);
+        const vec3 voxel = medium.density.bricks->voxel_size;
         if (stretch.empty()) continue;
         along.veils.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
         along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);

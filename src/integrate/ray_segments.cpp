@@ -14,7 +14,7 @@ void add_levels(const Medium& medium, const Ray& ray, Interval<double> inside, s
     const double dy = ray.direction.y, y = ray.origin.y;
     if (std::abs(dy) < 1e-12) return;
     for (int level = 0; level <= 12; ++level) {
-        const double t = (medium.height_base + 1.5 * level * medium.height_falloff - y) / dy;
+        const double t = (medium.density.height_base + 1.5 * level * medium.density.height_falloff - y) / dy;
         if (t > inside.low && t < inside.high) cuts.push_back(t);
     }
 }
@@ -26,12 +26,12 @@ void add_exits(const Medium& medium, const Light& light, const Ray& ray, Interva
                std::vector<double>& cuts) {
     const double far = is_distant(light) ? 0 : 1;
     const glm::dvec4 source = far == 0 ? glm::dvec4(-dvec3(light.direction), 0) : glm::dvec4(light.position, 1);
-    const dvec3 to(dmat4(medium.world_to_local) * source);
-    const LocalRay local = local_ray(medium.world_to_local, ray);
+    const dvec3 to(dmat4(medium.density.world_to_local) * source);
+    const LocalRay local = local_ray(medium.density.world_to_local, ray);
     dvec3 face(0);
     bool leaves[3];
     for (int i = 0; i < 3; ++i) {
-        const double low = medium.bounds.low[i], high = medium.bounds.high[i];
+        const double low = medium.density.bounds.low[i], high = medium.density.bounds.high[i];
         const double beyond = far == 0 ? 0 : high, before = far == 0 ? 0 : low;
         face[i] = to[i] > beyond ? high : low;
         leaves[i] = (to[i] > beyond || to[i] < before) && std::isfinite(face[i]);
@@ -65,10 +65,11 @@ void find_even_cuts(const SingleScattering& frame, const Ray& ray, std::vector<d
     kinks.clear();
     const double end = std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media));
     for (const Medium& medium : frame.snapshot.media) {
-        const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, end});
+        const Interval<double> inside =
+            clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), {0, end});
         if (inside.empty()) continue;
         kinks.push_back(inside.low), kinks.push_back(inside.high);
-        if (medium.kind == DensityKind::height) add_levels(medium, ray, inside, kinks);
+        if (medium.density.kind == DensityKind::height) add_levels(medium, ray, inside, kinks);
         for (const Light& light : frame.snapshot.lights) add_exits(medium, light, ray, inside, kinks);
     }
     if (kinks.empty()) return;

@@ -21,7 +21,7 @@ ShadowsBy exact_shadows(const Light& light, const Occluders& occluders) {
 }
 
 bool has_grid(const Snapshot& snapshot) {
-    return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.kind == DensityKind::bricks; });
+    return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.density.kind == DensityKind::bricks; });
 }
 
 void add_lights(const View& view, LightTransmittance method, int light_resolution,

@@ -98,7 +98,8 @@ HWY_INLINE Vec3s glow(const SingleScattering& frame, const Vec3s& position) {
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
-        const vec3 per_density = grey_extinction(optics) * optics.albedo * frame.snapshot.ambient + optics.emission;
+        const vec3 per_density =
+            grey_extinction(optics) * optics.albedo * frame.snapshot.ambient + optics.emission.radiance;
         sum = fused(splat(per_density), density16(medium, position), sum);
     }
     return sum;

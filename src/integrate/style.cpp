@@ -7,15 +7,15 @@
 namespace tyndall {
 namespace {
 Medium at_mean_density(const Medium& medium) {
-    if (medium.kind != DensityKind::bricks) return medium;
+    if (medium.density.kind != DensityKind::bricks) return medium;
     Medium even = medium;
-    even.kind = DensityKind::homogeneous;
-    even.bounds = medium.bricks->bounds;
-    even.world_to_local = mat4(1);
-    even.world_bounds = medium.bricks->bounds;
-    even.optics.extinction *= medium.bricks->mean;
-    even.optics.emission *= medium.bricks->mean;
-    even.bricks = nullptr;
+    even.density.kind = DensityKind::homogeneous;
+    even.density.bounds = medium.density.bricks->bounds;
+    even.density.world_to_local = mat4(1);
+    even.world_bounds = medium.density.bricks->bounds;
+    even.optics.extinction *= medium.density.bricks->mean;
+    even.optics.emission.radiance *= medium.density.bricks->mean;
+    even.density.bricks = nullptr;
     return even;
 }
 
@@ -35,7 +35,7 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
     Snapshot result = snapshot;
     for (Medium& medium : result.media) {
         medium.optics.extinction *= style.density;
-        medium.optics.emission *= style.density * style.tint;
+        medium.optics.emission.radiance *= style.density * style.tint;
     }
     drop_clear(result.media);
     for (Light& light : result.lights) light.intensity *= style.tint;

@@ -58,12 +58,12 @@ void add_single_scattering(const View& view, const Snapshot& snapshot, Limitatio
 void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations) {
     Box fog;
     for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks) fog.grow(medium.world_bounds);
+        if (medium.density.kind == DensityKind::bricks) fog.grow(medium.world_bounds);
     if (fog.empty() || snapshot.lights.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
     for (const Medium& medium : snapshot.media) {
         const float depth = medium.majorant() * cell;
-        if (medium.kind == DensityKind::bricks && depth > deep_cell)
+        if (medium.density.kind == DensityKind::bricks && depth > deep_cell)
             limitations.push_back(
                 {Severity::degraded, &limitation::light_grid_cells, Subject::medium, medium.name, {depth}});
     }
@@ -92,8 +92,8 @@ void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed
         for (const Ray& ray : rays)
             length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
         const float step = length / static_cast<float>(steps), depth = step * medium.majorant();
-        if (medium.kind == DensityKind::bricks) {
-            const vec3 voxels = medium.bricks->voxel_size;
+        if (medium.density.kind == DensityKind::bricks) {
+            const vec3 voxels = medium.density.bricks->voxel_size;
             const float voxel = std::min(voxels.x, std::min(voxels.y, voxels.z));
             if (step > voxel)
                 limitations.push_back({step > detail_voxels * voxel ? Severity::degraded : Severity::info,

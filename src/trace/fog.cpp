@@ -94,11 +94,12 @@ FogSource fog_source(const Scene& scene, const MediumSource& source, Moment mome
 // Fog given by a formula: its box moves, its height does not.
 void add_analytic(const Scene& scene, const MediumSource& source, double seconds, Medium& medium) {
     const mat4 matrix = medium_matrix(scene, source, seconds);
-    medium.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
-    medium.bounds = source.bounds;
-    medium.world_to_local = glm::inverse(matrix);
+    medium.density.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
+    medium.density.bounds = source.bounds;
+    medium.density.world_to_local = glm::inverse(matrix);
     medium.world_bounds = moved_box(matrix, source.bounds);
-    medium.height_base = source.height_base.at(seconds), medium.height_falloff = source.height_falloff.at(seconds);
+    medium.density.height_base = source.height_base.at(seconds),
+    medium.density.height_falloff = source.height_falloff.at(seconds);
 }
 }
 
@@ -125,7 +126,7 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         medium.name = source.name;
         medium.optics = optics_at(source, moment.seconds);
         if (!(grey_extinction(medium.optics) > 0)) {
-            if (max_component(medium.optics.emission) > 0 && !comparable)
+            if (max_component(medium.optics.emission.radiance) > 0 && !comparable)
                 snapshot.notes.push_back("medium " + source.name + ": emits nothing, as its extinction is 0");
             fog = before;
             continue;
@@ -133,8 +134,8 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         if (source.kind == MediumKind::noise || source.kind == MediumKind::vdb) {
             fog = fog_source(scene, source, moment, missing, before, snapshot.notes);
             if (!fog.placed || !(fog.placed->highest > 0)) continue;
-            medium.kind = DensityKind::bricks;
-            medium.bricks = fog.placed;
+            medium.density.kind = DensityKind::bricks;
+            medium.density.bricks = fog.placed;
             medium.world_bounds = fog.placed->bounds;
         } else {
             add_analytic(scene, source, moment.seconds, medium);

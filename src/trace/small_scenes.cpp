@@ -13,7 +13,7 @@ Medium homogeneous_medium(float extinction, Box box, Phase phase, vec3 albedo) {
     Medium medium;
     medium.name = "even";
     medium.optics = {vec3(extinction), albedo, phase, vec3(0)};
-    medium.bounds = medium.world_bounds = box;
+    medium.density.bounds = medium.world_bounds = box;
     return medium;
 }
 
@@ -36,9 +36,9 @@ SparseVolume unit_volume(int voxels, const std::function<float(vec3)>& density) 
 
 Medium medium_of(const SparseVolume& volume, float extinction) {
     Medium medium = homogeneous_medium(extinction);
-    medium.name = "grid", medium.kind = DensityKind::bricks;
-    medium.bricks = make_bricks(volume);
-    medium.world_bounds = medium.bounds = medium.bricks->bounds;
+    medium.name = "grid", medium.density.kind = DensityKind::bricks;
+    medium.density.bricks = make_bricks(volume);
+    medium.world_bounds = medium.density.bounds = medium.density.bricks->bounds;
     return medium;
 }
 

@@ -24,18 +24,18 @@ void densities(const Medium& medium, const float* x, const float* y, const float
 }
 
 float Medium::majorant() const {
-    return grey_extinction(optics) * (kind == DensityKind::bricks ? bricks->highest : 1.0f);
+    return grey_extinction(optics) * (density.kind == DensityKind::bricks ? density.bricks->highest : 1.0f);
 }
 
 float density_at(const Medium& medium, vec3 point) {
-    if (medium.kind == DensityKind::bricks) return sample_density(*medium.bricks, point);
-    const vec3 local(medium.world_to_local * vec4(point, 1));
-    const Box& box = medium.bounds;
+    if (medium.density.kind == DensityKind::bricks) return sample_density(*medium.density.bricks, point);
+    const vec3 local(medium.density.world_to_local * vec4(point, 1));
+    const Box& box = medium.density.bounds;
     const bool inside =
         glm::all(glm::greaterThanEqual(local, box.low)) && glm::all(glm::lessThanEqual(local, box.high));
     if (!inside) return 0;
-    if (medium.kind == DensityKind::homogeneous) return 1;
-    return std::exp(-std::max(point.y - medium.height_base, 0.0f) / medium.height_falloff);
+    if (medium.density.kind == DensityKind::homogeneous) return 1;
+    return std::exp(-std::max(point.y - medium.density.height_base, 0.0f) / medium.density.height_falloff);
 }
 }
 #endif

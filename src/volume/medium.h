@@ -12,11 +12,26 @@
 namespace tyndall {
 struct BrickPool;
 
+// Where a medium is, and how dense.
+enum class DensityKind { homogeneous, height, bricks };
+struct Density {
+    DensityKind kind = DensityKind::homogeneous;
+    Box bounds = everywhere(); // local box of a homogeneous or height medium
+    mat4 world_to_local{1};    // of those bounds; bricks carry their own transform
+    float height_base = 0;     // exp(-(y - base) / falloff) in world y, at most 1 below base
+    float height_falloff = 1;
+    std::shared_ptr<const BrickPool> bricks;
+};
+
+struct Emission {
+    vec3 radiance{0}; // per metre at density 1
+};
+
 struct Optics {
     vec3 extinction{0.1f}; // 1/m at density 1; the same in all channels, as loaders see to
     vec3 albedo{0.95f};    // scattered share of the extinction, 0..1
     Phase phase;
-    vec3 emission{0}; // radiance per metre at density 1
+    Emission emission;
 };
 
 // What kernels ask for while all media are grey.
@@ -27,21 +42,14 @@ inline float grey_extinction(const Optics& optics) {
 
 // What fog sends on of emission and even light from all around, per unit of its extinction, which is not 0.
 inline vec3 source_radiance(const Optics& optics, vec3 ambient) {
-    return optics.albedo * ambient + optics.emission / optics.extinction;
+    return optics.albedo * ambient + optics.emission.radiance / optics.extinction;
 }
-
-enum class DensityKind { homogeneous, height, bricks };
 
 struct Medium {
     std::string name;
-    DensityKind kind = DensityKind::homogeneous;
+    Density density;
     Optics optics;
-    Box bounds = everywhere(); // local box of a homogeneous or height medium
-    mat4 world_to_local{1};    // of those bounds; bricks carry their own transform
     Box world_bounds = everywhere();
-    float height_base = 0; // density = exp(-(y - base) / falloff) in world y, at most 1 below base
-    float height_falloff = 1;
-    std::shared_ptr<const BrickPool> bricks;
 
     // Extinction no point of the medium exceeds, 1/m.
     float majorant() const;

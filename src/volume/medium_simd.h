@@ -84,19 +84,19 @@ HWY_INLINE Floats brick_density(const BrickPool& pool, const Vec3s& point) {
 
 // 1 inside the medium's local box, 0 outside.
 HWY_INLINE Mask16 inside_bounds(const Medium& medium, const Vec3s& point) {
-    const Vec3s p = transform_points(medium.world_to_local, point);
-    const Box& box = medium.bounds;
+    const Vec3s p = transform_points(medium.density.world_to_local, point);
+    const Box& box = medium.density.bounds;
     return (p.x >= box.low.x) & (p.x <= box.high.x) & (p.y >= box.low.y) & (p.y <= box.high.y) & (p.z >= box.low.z) &
            (p.z <= box.high.z);
 }
 
 // Density of any medium, 0 outside it.
 HWY_INLINE Floats density16(const Medium& medium, const Vec3s& point) {
-    if (medium.kind == DensityKind::bricks) return brick_density(*medium.bricks, point);
+    if (medium.density.kind == DensityKind::bricks) return brick_density(*medium.density.bricks, point);
     const Mask16 inside = inside_bounds(medium, point);
-    if (medium.kind == DensityKind::homogeneous) return zero_unless(inside, 1.0f);
-    const Floats height = max(point.y - medium.height_base, 0.0f);
-    return zero_unless(inside, exp(height * (-1 / medium.height_falloff)));
+    if (medium.density.kind == DensityKind::homogeneous) return zero_unless(inside, 1.0f);
+    const Floats height = max(point.y - medium.density.height_base, 0.0f);
+    return zero_unless(inside, exp(height * (-1 / medium.density.height_falloff)));
 }
 }
 HWY_AFTER_NAMESPACE();

@@ -129,11 +129,12 @@ double brick_column(const BrickPool& pool, const Ray& ray) {
 
 // Density integrated along the ray, in metres.
 double density_column(const Medium& medium, const Ray& ray) {
-    if (medium.kind == DensityKind::bricks) return brick_column(*medium.bricks, ray);
-    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, ray.t_max});
-    if (inside.empty() || medium.kind == DensityKind::homogeneous) return inside.length();
-    const double height = ray.origin.y + inside.low * ray.direction.y - medium.height_base;
-    return height_column(height, ray.direction.y, inside.length(), medium.height_falloff);
+    if (medium.density.kind == DensityKind::bricks) return brick_column(*medium.density.bricks, ray);
+    const Interval<double> inside =
+        clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), {0, ray.t_max});
+    if (inside.empty() || medium.density.kind == DensityKind::homogeneous) return inside.length();
+    const double height = ray.origin.y + inside.low * ray.direction.y - medium.density.height_base;
+    return height_column(height, ray.direction.y, inside.length(), medium.density.height_falloff);
 }
 }
 

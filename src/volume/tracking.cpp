@@ -45,7 +45,8 @@ void walk_brick_fog(const BrickPool& pool, const Ray& ray, Interval<double> rang
 template<class Visit>
 void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> range, const Visit& visit) {
     constexpr int layers = 34;
-    const double start = ray.origin.y - medium.height_base, slope = ray.direction.y, falloff = medium.height_falloff;
+    const double start = ray.origin.y - medium.density.height_base, slope = ray.direction.y,
+                 falloff = medium.density.height_falloff;
     const auto density = [&](double t) {
         return static_cast<float>(std::exp(-std::max(start + t * slope, 0.0) / falloff));
     };
@@ -67,10 +68,10 @@ void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> rang
 // Calls visit(fog, density at a distance) for the stretches of the ray in order until it returns false.
 template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interval<float> range, const Visit& visit) {
     const Interval<double> whole{range.low, range.high};
-    if (medium.kind == DensityKind::bricks) return walk_brick_fog(*medium.bricks, ray, whole, visit);
-    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), whole);
+    if (medium.density.kind == DensityKind::bricks) return walk_brick_fog(*medium.density.bricks, ray, whole, visit);
+    const Interval<double> inside = clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), whole);
     if (inside.empty()) return;
-    if (medium.kind == DensityKind::height) return walk_height_fog(medium, ray, inside, visit);
+    if (medium.density.kind == DensityKind::height) return walk_height_fog(medium, ray, inside, visit);
     visit(Fog{inside.low, inside.high, 1, true}, [](double) { return 1.0f; });
 }
 

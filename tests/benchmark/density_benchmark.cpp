@@ -53,9 +53,9 @@ SparseVolume blobs() {
 const Medium& blob_medium() {
     static const Medium medium = [] {
         Medium made;
-        made.kind = DensityKind::bricks;
-        made.bricks = make_bricks(blobs());
-        made.world_bounds = made.bricks->bounds;
+        made.density.kind = DensityKind::bricks;
+        made.density.bricks = make_bricks(blobs());
+        made.world_bounds = made.density.bricks->bounds;
         return made;
     }();
     return medium;

@@ -75,13 +75,13 @@ struct Movement {
     // Another grid each time, as frames of a file are.
     void move_fog(int frame, const Snapshot& still, Snapshot& moved) const {
         for (size_t i = 0; fog && i < moved.media.size(); ++i) {
-            if (moved.media[i].kind != DensityKind::bricks) continue;
-            auto bricks = std::make_shared<BrickPool>(*still.media[i].bricks);
+            if (moved.media[i].density.kind != DensityKind::bricks) continue;
+            auto bricks = std::make_shared<BrickPool>(*still.media[i].density.bricks);
             const dmat4 to_volume = glm::translate(dmat4(1), -dvec3(bricks->low));
             place(*bricks,
                   glm::translate(dmat4(1), dvec3(0.1 * sway(frame))) * dmat4(bricks->index_to_world) * to_volume);
-            moved.media[i].bounds = moved.media[i].world_bounds = bricks->bounds;
-            moved.media[i].bricks = std::move(bricks);
+            moved.media[i].density.bounds = moved.media[i].world_bounds = bricks->bounds;
+            moved.media[i].density.bricks = std::move(bricks);
         }
     }
 };

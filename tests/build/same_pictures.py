@@ -1,11 +1,13 @@
 """Says whether two builds of tyndall make the same pictures, bit for bit: the five example scenes in every mode, at every
 quality, for every instruction set that this processor has.
 
-    same_pictures.py OLD NEW [--size 160x90] [--modes M,M] [--qualities Q,Q] [--isas I,I] [--scenes FILE,FILE]
+    same_pictures.py OLD NEW [--size 160x90] [--modes M,M] [--qualities Q,Q] [--isas I,I] [--scenes FILE,FILE] [--stress]
 
-Pixels are compared as they are stored: headers tell version and time. `path` takes 4 samples. Ends with 1 when some
-picture differs, each on a line."""
+Pixels are compared as they are stored: headers tell version and time. `path` takes 4 samples. With --stress the cases of
+`tyndall stress` are compared too, at the middle of their sweeps, by the error that each build measures there. Ends with 1
+when some picture differs, each on a line."""
 import argparse
+import json
 import pathlib
 import struct
 import subprocess
@@ -53,6 +55,26 @@ def difference(old, new, scene, mode, quality, isa, size, directory):
     return "other pixels; " + "; ".join(told.split("\n"))
 
 
+def middle_errors(program, directory):
+    """The error of each case and mode at the middle of its sweep."""
+    subprocess.run([program, "stress", "-o", directory, "--quiet"], capture_output=True)  # ends with 1 where a mode fails
+    cases = json.loads((directory / "stress.json").read_text())["cases"]
+    return {(case["case"], result["mode"]): result["points"][len(result["points"]) // 2]["error"]
+            for case in cases for result in case["results"] if result["points"]}
+
+
+def same_stress(old, new, directory):
+    """Counts of the cases that both builds have: with the same error, with another."""
+    errors = [middle_errors(program, directory / name) for program, name in [(old, "old"), (new, "new")]]
+    both = sorted(errors[0].keys() & errors[1].keys())
+    other = [key for key in both if errors[0][key] != errors[1][key]]
+    for case, mode in other:
+        print(f"stress {case} {mode}: error {errors[0][case, mode]} became {errors[1][case, mode]}", flush=True)
+    for key in sorted(errors[0].keys() ^ errors[1].keys()):
+        print(f"stress {' '.join(key)}: in one build alone", flush=True)
+    return len(both) - len(other), len(other)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("old", type=pathlib.Path)
@@ -62,6 +84,7 @@ def main():
     parser.add_argument("--qualities", default="draft,preview,final")
     parser.add_argument("--isas", default=",".join(instruction_sets()))
     parser.add_argument("--scenes", default=",".join(str(SOURCE / f"scenes/{name}.json") for name in SCENES))
+    parser.add_argument("--stress", action="store_true")
     given = parser.parse_args()
     same = other = 0
     with tempfile.TemporaryDirectory() as directory:
@@ -73,6 +96,9 @@ def main():
                         same, other = same + (not told), other + bool(told)
                         if told:
                             print(f"{scene.stem} {mode} {quality} {isa}: {told}", flush=True)
+        if given.stress:
+            alike, changed = same_stress(given.old, given.new, pathlib.Path(directory))
+            same, other = same + alike, other + changed
     print(f"{same} of {same + other} pictures are the same")
     sys.exit(1 if other else 0)
 

@@ -90,7 +90,7 @@ TEST_P(Styles, RangeFades) {
 
 TEST(Style, FogWithoutDensityIsGone) {
     Slab slab;
-    slab.snapshot.media.front().optics.emission = vec3(3);
+    slab.snapshot.media.front().optics.emission.radiance = vec3(3);
     slab.snapshot.ambient = vec3(1);
     Settings styled;
     styled.style.density = 0;
@@ -107,8 +107,8 @@ TEST(Style, EvenMediaKeepTheirMeanDensity) {
     const Medium grid = medium_of(unit_volume(8, [](vec3 p) { return p.x; }), 0.5f);
     const std::vector<Medium> even = homogeneous_media(std::vector{grid, homogeneous_medium(0.2f)});
     ASSERT_EQ(even.size(), 2u);
-    EXPECT_EQ(even[0].kind, DensityKind::homogeneous);
-    EXPECT_FLOAT_EQ(grey_extinction(even[0].optics), 0.5f * grid.bricks->mean);
+    EXPECT_EQ(even[0].density.kind, DensityKind::homogeneous);
+    EXPECT_FLOAT_EQ(grey_extinction(even[0].optics), 0.5f * grid.density.bricks->mean);
     EXPECT_EQ(grey_extinction(even[1].optics), 0.2f);
 }
 }

@@ -114,7 +114,7 @@ TEST(Fluence, OfALampIsItsPowerInTheFog) {
     const Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, unit_box)}, {point_light(vec3(0.5f), 2)});
     const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
     LightPathResult result;
-    trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 4), rules, 0, 200'000, 200'000, result);
+    trace_light_paths(snapshot, even_strata(snapshot, rules.reach, 4), rules, 0, 200'000, 200'000, result);
     const double expected = 4 * std::numbers::pi * 2 * sigma * mean_inverse_square();
     EXPECT_NEAR(result.scattered_once, expected, 0.06 * expected); // 4 standard errors of 2100 collisions in 200000
 }
@@ -131,7 +131,7 @@ TEST(Fluence, OfALampFarFromTheFogIsWhatArrivesThere) {
         const Snapshot snapshot = snapshot_of({homogeneous_medium(sigma, unit_box)}, {light});
         const LightPathRules rules{light_reach(snapshot), unit_box, 2, 5};
         LightPathResult result;
-        trace_light_paths(snapshot, even_emission(snapshot, rules.reach, 8), rules, 0, 200'000, 200'000, result);
+        trace_light_paths(snapshot, even_strata(snapshot, rules.reach, 8), rules, 0, 200'000, 200'000, result);
         // σ ∫ E dV with E = 1 / (1 + (z - 20)/20)² and so on: under 1 % from 1 at the middle.
         const double expected = light.range == 20 ? 0.0 : sigma * (1 - sigma / 2);
         if (expected > 0) {

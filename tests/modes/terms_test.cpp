@@ -19,7 +19,7 @@ constexpr WithoutTerm terms[] = {
     {"terms.heterogeneity", [](Snapshot& snapshot) { snapshot.media = homogeneous_media(snapshot.media); }},
     {"terms.emission",
      [](Snapshot& snapshot) {
-         for (Medium& medium : snapshot.media) medium.optics.emission = vec3(0);
+         for (Medium& medium : snapshot.media) medium.optics.emission.radiance = vec3(0);
      }},
     {"terms.ambient", [](Snapshot& snapshot) { snapshot.ambient = vec3(0); }},
 };
@@ -27,7 +27,7 @@ constexpr WithoutTerm terms[] = {
 TEST(Terms, OffIsASceneWithoutThem) {
     Medium cloud = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 2.5f);
     cloud.optics.phase = {PhaseKind::henyey_greenstein, 0.6f};
-    cloud.optics.emission = vec3(0.1f);
+    cloud.optics.emission.radiance = vec3(0.1f);
     const Snapshot snapshot = snapshot_of({cloud}, {point_light({1.5f, 1.3f, 0.4f}, 1)}, vec3(0.2f));
     const View view = view_of({0.5f, 0.8f, 3}, {0.5f, 0.5f, 0.5f}, {32, 18});
     const std::vector<Ray> rays = picture_rays(view, snapshot, 10);

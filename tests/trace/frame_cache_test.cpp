@@ -203,7 +203,10 @@ TEST(FrameCache, LightDepthIsMadeOnceForFramesAndUsers) {
     EXPECT_NE(changed([](Snapshot& s) { s.media.push_back(s.media[0]); }), grid);
     EXPECT_NE(changed([](Snapshot& s) { s.lights[0].position.x += 0.1f; }), grid);
     EXPECT_NE(changed([](Snapshot& s) { s.lights[0].radius = 0.5f; }), grid);
-    EXPECT_NE(changed([](Snapshot& s) { s.media[0].bricks = std::make_shared<BrickPool>(*s.media[0].bricks); }), grid);
+    EXPECT_NE(changed([](Snapshot& s) {
+                  s.media[0].density.bricks = std::make_shared<BrickPool>(*s.media[0].density.bricks);
+              }),
+              grid);
     EXPECT_NE(make_light_depth(second, second.lights[0], LightTransmittance::grid, 17).grid.depth, grid);
 }
 

@@ -99,7 +99,7 @@ TEST(Snapshot, AnalyticMediaMoveWithTheirTransform) {
     EXPECT_EQ(snapshot.media[0].world_bounds.high, vec3(7, 1, 1));
     EXPECT_EQ(snapshot.media[1].world_bounds.low, vec3(-infinity, 1, -infinity));
     EXPECT_EQ(snapshot.media[1].world_bounds.high, vec3(infinity, 4, infinity));
-    EXPECT_EQ(snapshot.media[1].height_base, 2);
+    EXPECT_EQ(snapshot.media[1].density.height_base, 2);
     EXPECT_EQ(snapshot.bounds.low, vec3(3, -1, -1));
     EXPECT_EQ(snapshot.bounds.high, vec3(7, 1, 1));
     EXPECT_NEAR(optical_depth(snapshot.media[0], {vec3(0), vec3(1, 0, 0)}), 4, 1e-5);
@@ -129,9 +129,9 @@ TEST(Snapshot, StillFogIsGrownOnceAndDriftingFogAnew) {
     const Snapshot first = make_snapshot(scene, {0, 0});
     ASSERT_EQ(first.media.size(), 2u);
     const Snapshot next = make_snapshot(scene, {1, 0.5}, &first);
-    EXPECT_EQ(next.media[0].bricks, first.media[0].bricks);
-    EXPECT_NE(next.media[1].bricks, first.media[1].bricks);
-    EXPECT_EQ(make_snapshot(scene, {1, 0.5}, &next).media[1].bricks, next.media[1].bricks);
+    EXPECT_EQ(next.media[0].density.bricks, first.media[0].density.bricks);
+    EXPECT_NE(next.media[1].density.bricks, first.media[1].density.bricks);
+    EXPECT_EQ(make_snapshot(scene, {1, 0.5}, &next).media[1].density.bricks, next.media[1].density.bricks);
 }
 
 // What a frame holds must not depend on the frame before.
@@ -144,14 +144,14 @@ TEST(Snapshot, ReuseGivesTheSameBits) {
     const Snapshot second = make_snapshot(scene, {1, 0.2}, &first);
     const Snapshot third = make_snapshot(scene, {2, 0.3}, &second);
     const Snapshot fresh = make_snapshot(scene, {2, 0.3});
-    const BrickPool &a = *third.media[0].bricks, &b = *fresh.media[0].bricks;
+    const BrickPool &a = *third.media[0].density.bricks, &b = *fresh.media[0].density.bricks;
     EXPECT_EQ(a.index_to_world, b.index_to_world);
     EXPECT_EQ(a.world_to_index, b.world_to_index);
     EXPECT_EQ(a.bounds.low, b.bounds.low);
     EXPECT_EQ(a.anchor, b.anchor);
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(third.fog_sources[0].bricks, first.fog_sources[0].bricks);
-    EXPECT_EQ(make_snapshot(scene, {2, 0.3}, &third).media[0].bricks, third.media[0].bricks);
+    EXPECT_EQ(make_snapshot(scene, {2, 0.3}, &third).media[0].density.bricks, third.media[0].density.bricks);
     EXPECT_EQ(third.media[0].world_bounds.low, b.bounds.low);
 }
 
@@ -169,12 +169,12 @@ TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
     EXPECT_NEAR(first.media[0].world_bounds.center().x, 11.5f, 1e-3);
     EXPECT_NEAR(first.media[0].world_bounds.center().y, 17.5f, 1e-3);
     const Snapshot same = make_snapshot(scene, {2, 1}, &first);
-    EXPECT_EQ(same.media[0].bricks, first.media[0].bricks);
+    EXPECT_EQ(same.media[0].density.bricks, first.media[0].density.bricks);
 
     write_vdb(file, constant_box(24, 0.5f));
     const Snapshot changed = make_snapshot(scene, {3, 2}, &same);
-    EXPECT_NE(changed.media[0].bricks, first.media[0].bricks);
-    EXPECT_NEAR(changed.media[0].bricks->mass, 0.5 * 24 * 24 * 24, 1);
+    EXPECT_NE(changed.media[0].density.bricks, first.media[0].density.bricks);
+    EXPECT_NEAR(changed.media[0].density.bricks->mass, 0.5 * 24 * 24 * 24, 1);
 }
 
 TEST(Snapshot, ClippedSequencesHaveNoFog) {

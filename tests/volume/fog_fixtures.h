@@ -45,15 +45,15 @@ inline float exact_noise(int x, int y, int z) {
 
 // The medium in another place.
 inline Medium placed(Medium medium, const mat4& local_to_world) {
-    medium.world_to_local = glm::inverse(local_to_world);
-    medium.world_bounds = transform(local_to_world, medium.bounds);
+    medium.density.world_to_local = glm::inverse(local_to_world);
+    medium.world_bounds = transform(local_to_world, medium.density.bounds);
     return medium;
 }
 
 inline Medium height_fog(float extinction, float base, float falloff, Box bounds = everywhere()) {
     Medium medium = homogeneous_medium(extinction, bounds);
-    medium.kind = DensityKind::height;
-    medium.height_base = base, medium.height_falloff = falloff;
+    medium.density.kind = DensityKind::height;
+    medium.density.height_base = base, medium.density.height_falloff = falloff;
     return medium;
 }
 

@@ -52,13 +52,13 @@ std::vector<std::string_view> vector_isas() {
 
 TEST(Densities, EqualTheScalarSample) {
     const Medium medium = medium_of(varied_volume());
-    const Box box = medium.bricks->bounds;
+    const Box box = medium.density.bricks->bounds;
     const float tolerance = vector_isas().empty() ? 2e-5f : 0; // the same bits where multiply-adds fuse
     for (uint32_t packet = 0; packet < 1000; ++packet) {
         const Points points = random_points(box.low - 2.0f, box.high + 2.0f, packet);
         const auto density = densities_at(medium, points);
         for (int lane = 0; lane < 16; ++lane)
-            EXPECT_NEAR(density[lane], sample_density(*medium.bricks, points.at(lane)), tolerance);
+            EXPECT_NEAR(density[lane], sample_density(*medium.density.bricks, points.at(lane)), tolerance);
     }
 }
 
@@ -82,9 +82,10 @@ TEST(Densities, SameBitsOnEveryVectorInstructionSet) {
 TEST(Densities, LargePoolsSampleTheSame) {
     const Medium medium = medium_of(varied_volume());
     for (uint32_t packet = 0; packet < 100; ++packet) {
-        const Points points = random_points(medium.bricks->bounds.low, medium.bricks->bounds.high, packet);
+        const Points points =
+            random_points(medium.density.bricks->bounds.low, medium.density.bricks->bounds.high, packet);
         alignas(64) float far[16];
-        store(brick_density_far(*medium.bricks, {load(points.x), load(points.y), load(points.z)}), far);
+        store(brick_density_far(*medium.density.bricks, {load(points.x), load(points.y), load(points.z)}), far);
         const auto near = densities_at(medium, points);
         for (int lane = 0; lane < 16; ++lane) EXPECT_NEAR(far[lane], near[lane], 1e-6);
     }
@@ -149,7 +150,7 @@ double height_depth_by_quadrature(const Medium& fog, const Ray& ray) {
     double sum = 0;
     for (int i = 0; i < pieces; ++i) {
         const double t = (i + 0.5) * ray.t_max / pieces, y = ray.origin.y + t * ray.direction.y;
-        sum += std::exp(-std::max(y - fog.height_base, 0.0) / fog.height_falloff);
+        sum += std::exp(-std::max(y - fog.density.height_base, 0.0) / fog.density.height_falloff);
     }
     return grey_extinction(fog.optics) * sum * ray.t_max / pieces;
 }

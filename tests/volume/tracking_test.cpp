@@ -38,7 +38,7 @@ struct Case {
 std::vector<Case> cases() {
     const vec3 slanted = glm::normalize(vec3(1, 0.4f, 0.3f));
     const Medium grid = medium_of(holey_volume(), 1.3f);
-    const vec3 middle = grid.bricks->bounds.center();
+    const vec3 middle = grid.density.bricks->bounds.center();
     return {
         {"even", homogeneous_medium(0.7f, {vec3(-1), vec3(1)}), {{-3, -0.9f, -0.8f}, slanted, 10}},
         {"even, ray ends inside", homogeneous_medium(0.7f), {{-3, 0.2f, 0.1f}, slanted, 1.5f}},

@@ -90,7 +90,7 @@ RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on,
         const Optics& optics = scene.fog.media[m].optics;
         step.extinction += place.densities[m] * grey_extinction(optics);
         step.glow += static_cast<float>(place.densities[m]) *
-                     (grey_extinction(optics) * optics.albedo * scene.fog.ambient + optics.emission);
+                     (grey_extinction(optics) * optics.albedo * scene.fog.ambient + optics.emission.radiance);
     }
     const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
     const bool fades = style.range < StyleSettings{}.range;

@@ -169,12 +169,13 @@ void add_switches(Terms& terms) {
             return variant;
         };
     };
-    const bool bricks = any_medium([](const Medium& medium) { return medium.kind == DensityKind::bricks; });
+    const bool bricks = any_medium([](const Medium& medium) { return medium.density.kind == DensityKind::bricks; });
     terms.add({"changing density", "", "homogeneous fog"}, bricks ? infinity : 0, &Terms::usual,
               without(&TermSettings::heterogeneity));
     terms.add({"direction of scattering", "", "isotropic"}, phase_bound(snapshot), &Terms::usual,
               without(&TermSettings::phase));
-    const bool glows = any_medium([](const Medium& medium) { return max_component(medium.optics.emission) > 0; });
+    const bool glows =
+        any_medium([](const Medium& medium) { return max_component(medium.optics.emission.radiance) > 0; });
     terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&TermSettings::emission));
     const bool ambient = max_component(snapshot.ambient) > 0;
     terms.add({"ambient light in fog", "", "left out"}, ambient ? infinity : 0, &Terms::usual,

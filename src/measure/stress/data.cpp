@@ -108,7 +108,7 @@ constexpr float ramp_depth = 0.5f;
 StressScene ramp(double voxels) {
     Medium fog = medium_of(unit_volume(static_cast<int>(voxels), [](vec3 p) { return p.x; }), 2);
     fog.world_bounds.low.z = 0.5f - 0.5f * ramp_depth, fog.world_bounds.high.z = 0.5f + 0.5f * ramp_depth;
-    fog.bounds = fog.world_bounds;
+    fog.density.bounds = fog.world_bounds;
     return stress_scene({fog}, {noon_light}, flat_camera({0.5f, 0.5f, 3}, vec3(0.5f), 0.4f));
 }
 double ramp_off(Trial& trial) {

@@ -95,13 +95,13 @@ StressScene cut_off(double far) {
 
 StressScene layer(double falloff) {
     Medium fog = homogeneous_medium(0.3f, {vec3(-5, -1, -5), vec3(5, 3, 5)});
-    fog.kind = DensityKind::height, fog.height_falloff = static_cast<float>(falloff);
+    fog.density.kind = DensityKind::height, fog.density.height_falloff = static_cast<float>(falloff);
     return stress_scene({fog}, {noon}, camera_from({0, 0.6f, 4}, {0, 0.1f, 0}));
 }
 
 StressScene glowing(double depth) {
     Medium fog = homogeneous_medium(static_cast<float>(depth) / 2, {vec3(-30, -30, -1), vec3(30, 30, 1)}, {}, vec3(0));
-    fog.optics.emission = vec3(3);
+    fog.optics.emission.radiance = vec3(3);
     return stress_scene({fog}, {}, flat_camera({0, 0, 5}, vec3(0), 2));
 }
 
@@ -125,8 +125,8 @@ double copies_off(Trial& trial) {
 // Two clouds, one in the other, of other colour and phase.
 StressScene nested(double share) {
     Medium inner = homogeneous_medium(2, {vec3(-0.6f), vec3(0.6f)}, forward_phase(0.7f), vec3(0.9f, 0.4f, 0.2f));
-    inner.world_bounds.low += vec3(static_cast<float>(share)), inner.bounds = inner.world_bounds;
-    inner.world_bounds.high += vec3(static_cast<float>(share)), inner.bounds = inner.world_bounds;
+    inner.world_bounds.low += vec3(static_cast<float>(share)), inner.density.bounds = inner.world_bounds;
+    inner.world_bounds.high += vec3(static_cast<float>(share)), inner.density.bounds = inner.world_bounds;
     return stress_scene({homogeneous_medium(0.2f, {vec3(-1.5f), vec3(1.5f)}), inner}, {noon}, front);
 }
 

@@ -156,7 +156,7 @@ double after_bad_frame(Trial& trial) {
     settle(trial, trial.scene, history);
     const uint64_t before = trial.faults.non_finite;
     StressScene bad = trial.scene;
-    bad.snapshot.media[0].optics.emission = vec3(static_cast<float>(trial.value));
+    bad.snapshot.media[0].optics.emission.radiance = vec3(static_cast<float>(trial.value));
     next_frame(trial, bad, trial.scene, long_enough, history);
     trial.faults.non_finite = before; // of the bad frame itself
     const Layers next = next_frame(trial, trial.scene, trial.scene, long_enough + 1, history);

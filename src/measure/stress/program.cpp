@@ -144,10 +144,10 @@ double majorant_off(Trial& trial) {
     double count = 0;
     for (uint32_t i = 0; i < 20000; ++i) {
         const vec3 p(random_unit(i, 0, 0, seed), random_unit(i, 0, 1, seed), random_unit(i, 0, 2, seed));
-        const vec3 local = local_point(*fog.bricks, p);
-        const ivec3 brick = glm::clamp(ivec3(local / 8.0f), ivec3(0), fog.bricks->size - 1);
-        const ivec3 size = fog.bricks->size;
-        const float bound = fog.bricks->maximum[size_t((brick.x * size.y + brick.y) * size.z + brick.z)];
+        const vec3 local = local_point(*fog.density.bricks, p);
+        const ivec3 brick = glm::clamp(ivec3(local / 8.0f), ivec3(0), fog.density.bricks->size - 1);
+        const ivec3 size = fog.density.bricks->size;
+        const float bound = fog.density.bricks->maximum[size_t((brick.x * size.y + brick.y) * size.z + brick.z)];
         const float density = density_at(fog, p);
         count += density > fog.majorant() * 1.000001f || density > bound * 1.000001f;
     }
@@ -202,7 +202,7 @@ double culling_off(Trial& trial) {
     recipe.threshold = static_cast<float>(trial.value), recipe.voxel_size = 1.0 / 24;
     const Medium grown = [&] {
         Medium medium;
-        medium.kind = DensityKind::bricks, medium.bricks = make_bricks(grow(recipe, 0.3));
+        medium.density.kind = DensityKind::bricks, medium.density.bricks = make_bricks(grow(recipe, 0.3));
         return medium;
     }();
     std::vector<float> x, y, z;
@@ -216,7 +216,8 @@ double culling_off(Trial& trial) {
     recipe_density(recipe, 0.3, x, y, z, density);
     double missing = 0;
     for (size_t i = 0; i < x.size(); ++i)
-        missing += density[i] > 0.01f && !(sample_density(*grown.bricks, {x[i], y[i], z[i]}) > 0.5f * density[i]);
+        missing +=
+            density[i] > 0.01f && !(sample_density(*grown.density.bricks, {x[i], y[i], z[i]}) > 0.5f * density[i]);
     return missing;
 }
 

@@ -45,7 +45,7 @@ void check_transmittance(Checks& checks) {
                    2e-5 * expected, "rounding");
     }
     Medium height = homogeneous_medium(0.1f, everywhere());
-    height.kind = DensityKind::height, height.height_falloff = 10;
+    height.density.kind = DensityKind::height, height.density.height_falloff = 10;
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
     checks.add("optical depth of height fog", optical_depth(height, ray), 1.729329434, 1e-6, "rounding");
 
@@ -69,7 +69,7 @@ void check_transmittance(Checks& checks) {
 
 void check_emission(Checks& checks) {
     Medium fire = homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}, forward_phase(0), vec3(0));
-    fire.optics.emission = vec3(1);
+    fire.optics.emission.radiance = vec3(1);
     const Snapshot snapshot = snapshot_of({fire}, {});
     const Ray ray{{0, 0, 5}, {0, 0, -1}, 20};
     const double expected = 1.553739680; // j/σ (1 - e^(-σs))

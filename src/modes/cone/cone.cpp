@@ -16,15 +16,15 @@ namespace tyndall {
 namespace {
 Medium seen_from(const Medium& medium, dvec3 anchor) {
     Medium moved = medium;
-    moved.world_to_local[3] = vec4(dmat4(medium.world_to_local) * glm::dvec4(anchor, 1));
-    moved.height_base = static_cast<float>(medium.height_base - anchor.y);
+    moved.density.world_to_local[3] = vec4(dmat4(medium.density.world_to_local) * glm::dvec4(anchor, 1));
+    moved.density.height_base = static_cast<float>(medium.density.height_base - anchor.y);
     return moved;
 }
 
 // The faces of a box, along one axis, that ways to the light can leave it by: the ones that face the light, or of
 // points outside the box either.
 std::vector<double> faces(const Medium& medium, int axis, double towards_low, double towards_high, bool both) {
-    const double low = medium.bounds.low[axis], high = medium.bounds.high[axis];
+    const double low = medium.density.bounds.low[axis], high = medium.density.bounds.high[axis];
     std::vector<double> result;
     if (std::isfinite(low) && (both || towards_low > 0)) result.push_back(low);
     if (std::isfinite(high) && (both || towards_high > 0)) result.push_back(high);
@@ -33,11 +33,11 @@ std::vector<double> faces(const Medium& medium, int axis, double towards_low, do
 
 // Planes through the light and the edges of a box.
 void add_edge_planes(const Medium& medium, const Light& light, bool both, std::vector<vec4>& planes) {
-    const dmat4 m(medium.world_to_local);
+    const dmat4 m(medium.density.world_to_local);
     const bool sun = is_distant(light);
     const dvec3 apex(m[3]), travel = glm::dmat3(m) * dvec3(light.direction); // local; the light is the anchor
     const auto faces_of = [&](int axis) {
-        const double low = medium.bounds.low[axis], high = medium.bounds.high[axis];
+        const double low = medium.density.bounds.low[axis], high = medium.density.bounds.high[axis];
         if (sun) return faces(medium, axis, travel[axis], -travel[axis], both);
         return faces(medium, axis, low - apex[axis], apex[axis] - high, both);
     };
@@ -60,7 +60,7 @@ bool contains(const Box& box, dvec3 point) {
 }
 
 bool endless(const Medium& medium) {
-    return glm::all(glm::isinf(medium.bounds.low)) && glm::all(glm::isinf(medium.bounds.high));
+    return glm::all(glm::isinf(medium.density.bounds.low)) && glm::all(glm::isinf(medium.density.bounds.high));
 }
 
 // `light` null: for transmittance and glow alone.
@@ -70,10 +70,10 @@ AnchoredFog anchored(std::span<const Medium> media, dvec3 anchor, const Light* l
     fog.direct = light && !is_distant(*light);
     for (const Medium& medium : media) {
         const Medium& moved = fog.media.emplace_back(seen_from(medium, anchor));
-        const bool height = moved.kind == DensityKind::height;
-        const bool around = contains(moved.bounds, dvec3(moved.world_to_local[3]));
+        const bool height = moved.density.kind == DensityKind::height;
+        const bool around = contains(moved.density.bounds, dvec3(moved.density.world_to_local[3]));
         fog.direct &= !height && (endless(moved) || (media.size() == 1 && around));
-        if (height) fog.kinks.push_back(vec4(0, 1, 0, -moved.height_base));
+        if (height) fog.kinks.push_back(vec4(0, 1, 0, -moved.density.height_base));
         if (light) add_edge_planes(moved, *light, media.size() > 1, fog.kinks);
     }
     return fog;
@@ -121,7 +121,7 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);
     cone.casts = snapshot.occluders && !snapshot.occluders->empty();
     for (const Medium& medium : seen.media)
-        if (medium.kind == DensityKind::bricks) cone.grids.push_back(medium.bricks->bounds);
+        if (medium.density.kind == DensityKind::bricks) cone.grids.push_back(medium.density.bricks->bounds);
     seen.media = homogeneous_media(seen.media);
     cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
     for (const Medium& medium : seen.media) cone.glow.push_back(source_radiance(medium.optics, seen.ambient));

@@ -24,7 +24,7 @@ struct EvenLight {
 
 // Whether optical depths are linear between the breaks.
 bool is_linear(const Packet& packet) {
-    const auto homogeneous = [](const Medium& medium) { return medium.kind == DensityKind::homogeneous; };
+    const auto homogeneous = [](const Medium& medium) { return medium.density.kind == DensityKind::homogeneous; };
     return std::ranges::all_of(packet.fog.media, homogeneous) && packet.cone.style.range >= no_range;
 }
 

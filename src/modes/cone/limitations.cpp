@@ -52,7 +52,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     for (const Light& light : snapshot.lights)
         add_light(view, snapshot, light, settings.of<ConeSettings>(), limitations);
     for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks)
+        if (medium.density.kind == DensityKind::bricks)
             limitations.push_back(
                 {Severity::degraded, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_single_scattering(view, snapshot, limitations);

@@ -84,7 +84,8 @@ Interval<Floats> reached(const Packet& packet, const ConeLight& light, const See
 void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Interval<Floats>& stretch) {
     Floats rate = packet.fog.extinction();
     for (const Medium& medium : packet.fog.media)
-        if (medium.kind == DensityKind::height) rate = rate + abs(packet.direction.y) * (1 / medium.height_falloff);
+        if (medium.density.kind == DensityKind::height)
+            rate = rate + abs(packet.direction.y) * (1 / medium.density.height_falloff);
     const Floats scale = 1.0f / max(rate, 1e-20f), behind = max(stretch.low, 0.0f), before = min(stretch.high, 0.0f);
     for (const float share : {1.0f / 16, 0.25f, 1.0f, 4.0f}) {
         const Floats at = behind + share * scale, mirrored = before - share * scale;

@@ -87,7 +87,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
         const Floats from = load(packet.scratch.from[m].data());
         const Floats to = min(t, load(packet.scratch.to[m].data()));
         Floats depth = max(to - from, 0.0f) * grey_extinction(medium.optics);
-        if (medium.kind == DensityKind::height) {
+        if (medium.density.kind == DensityKind::height) {
             const Floats y0 = fused(packet.direction.y, from, packet.origin.y);
             const Floats y1 = fused(packet.direction.y, to, packet.origin.y);
             depth = zero_unless(depth > 0.0f, depth * mean_height_density(medium, y0, y1));
@@ -102,9 +102,9 @@ HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
     const Medium& medium = packet.fog.media[m];
     const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
     Floats value = grey_extinction(medium.optics);
-    if (medium.kind == DensityKind::height) {
-        const Floats height = max(fused(packet.direction.y, t, packet.origin.y) - medium.height_base, 0.0f);
-        value = value * exp(height * (-1 / medium.height_falloff));
+    if (medium.density.kind == DensityKind::height) {
+        const Floats height = max(fused(packet.direction.y, t, packet.origin.y) - medium.density.height_base, 0.0f);
+        value = value * exp(height * (-1 / medium.density.height_falloff));
     }
     return packet.media() == 1 ? value : zero_unless(inside, value);
 }
@@ -180,8 +180,8 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
     Floats amount = change;
     float narrowest = 1;
     for (const Medium& medium : packet.fog.media) {
-        if (medium.kind == DensityKind::height)
-            amount = amount + min(abs(packet.direction.y) * length * (1 / medium.height_falloff), 30.0f);
+        if (medium.density.kind == DensityKind::height)
+            amount = amount + min(abs(packet.direction.y) * length * (1 / medium.density.height_falloff), 30.0f);
         const float g = medium.optics.phase.kind == PhaseKind::isotropic ? 0 : std::abs(medium.optics.phase.g);
         narrowest = std::min(narrowest, 1 - std::min(g, largest_g));
     }

@@ -41,7 +41,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
-        if (medium.kind == DensityKind::bricks) bricks.push_back(&medium);
+        if (medium.density.kind == DensityKind::bricks) bricks.push_back(&medium);
     for (const Light& light : scene.snapshot.lights) {
         scene.depths.push_back(
             make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));

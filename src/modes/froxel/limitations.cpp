@@ -79,8 +79,8 @@ void add_medium(const Medium& medium, FroxelSize size, Limitations& limitations)
     const float depth = medium.majorant() * std::min(size.deep, thin);
     if (depth > 1) add(depth > dark_depth ? Severity::wrong : Severity::degraded, limitation::deep_froxels, {depth});
     if (thin < size.deep) add(Severity::info, limitation::thin_medium, {size.deep});
-    if (medium.kind != DensityKind::bricks) return;
-    const float voxel = 1 / glm::length(vec3(medium.bricks->world_to_index[0]));
+    if (medium.density.kind != DensityKind::bricks) return;
+    const float voxel = 1 / glm::length(vec3(medium.density.bricks->world_to_index[0]));
     if (voxel < 0.5f * size.coarse()) add(Severity::info, limitation::lost_detail, {size.coarse(), voxel});
 }
 }

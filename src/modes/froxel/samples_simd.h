@@ -184,11 +184,11 @@ FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, c
 
 // Mean extinction along the stretches: exact for formulas, up to four samples for bricks.
 Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thickness) {
-    if (medium.kind != DensityKind::bricks) {
+    if (medium.density.kind != DensityKind::bricks) {
         const LightPaths paths{lanes.start, lanes.toward, lanes.length};
         return zero_unless(lanes.active, analytic_depth16(medium, paths) / max(lanes.length, 1e-20f));
     }
-    const float voxels = thickness * glm::length(vec3(medium.bricks->world_to_index[0]));
+    const float voxels = thickness * glm::length(vec3(medium.density.bricks->world_to_index[0]));
     const int count = static_cast<int>(std::clamp(std::ceil(0.5f * voxels), 1.0f, 4.0f));
     if (count == 1) return zero_unless(lanes.active, density16(medium, lanes.point) * grey_extinction(medium.optics));
     Floats sum = 0.0f;

@@ -22,9 +22,10 @@ bool same(const std::shared_ptr<const Occluders>& a, const std::shared_ptr<const
 
 // Where and how dense, not how it scatters.
 bool same(const Medium& a, const Medium& b) {
-    return a.kind == b.kind && grey_extinction(a.optics) == grey_extinction(b.optics) && same(a.bounds, b.bounds) &&
-           a.world_to_local == b.world_to_local && same(a.world_bounds, b.world_bounds) &&
-           a.height_base == b.height_base && a.height_falloff == b.height_falloff && a.bricks == b.bricks;
+    return a.density.kind == b.density.kind && grey_extinction(a.optics) == grey_extinction(b.optics) &&
+           same(a.density.bounds, b.density.bounds) && a.density.world_to_local == b.density.world_to_local &&
+           same(a.world_bounds, b.world_bounds) && a.density.height_base == b.density.height_base &&
+           a.density.height_falloff == b.density.height_falloff && a.density.bricks == b.density.bricks;
 }
 
 // Whether the slices of a grid still cover the fog and are hardly wider: froxels that stay where they are lose nothing.

@@ -93,7 +93,7 @@ dvec3 glow(RayMarch& on) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 per_density =
                 double(grey_extinction(optics)) * dvec3(optics.albedo * on.frame.snapshot.ambient);
-            sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission));
+            sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission.radiance));
         }
     });
     return sum;

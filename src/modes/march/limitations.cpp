@@ -44,7 +44,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
         add_fluence(view, snapshot, settings.fluence, limitations);
     if (terms.light == LightTransmittance::grid) add_light_grid_cells(snapshot, terms.light_resolution, limitations);
     for (const Medium& medium : snapshot.media)
-        if (!terms.heterogeneity && medium.kind == DensityKind::bricks)
+        if (!terms.heterogeneity && medium.density.kind == DensityKind::bricks)
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_visibility(view, snapshot, settings, limitations);
     add_light_transmittance(snapshot, terms.light, limitations);

@@ -23,12 +23,12 @@ float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float
     constexpr double max_in_grids = 3;
     double depth = 0, in_grids = 0;
     for (const Medium& medium : snapshot.media) {
-        if (medium.kind != DensityKind::bricks) {
+        if (medium.density.kind != DensityKind::bricks) {
             depth += optical_depth(medium, ray);
             continue;
         }
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
-        in_grids += static_cast<double>(inside.length()) * grey_extinction(medium.optics) * medium.bricks->mean;
+        in_grids += static_cast<double>(inside.length()) * grey_extinction(medium.optics) * medium.density.bricks->mean;
     }
     return static_cast<float>(std::exp(-depth - std::min(in_grids, max_in_grids)));
 }
@@ -170,7 +170,7 @@ void collide(const Walk& walk, Segment& line) {
 
     const Optics& optics = snapshot.media[hit].optics;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
-    add_light(walk, line, optics.emission / grey_extinction(optics), in_fog);
+    add_light(walk, line, optics.emission.radiance / grey_extinction(optics), in_fog);
     if (!walk.turns) return;
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);

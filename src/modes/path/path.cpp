@@ -14,7 +14,7 @@ namespace {
 bool has_emission(const PathTracer& tracer) {
     if (max_component(tracer.snapshot.ambient) > 0) return true;
     for (const Medium& medium : tracer.snapshot.media)
-        if (max_component(medium.optics.emission) > 0) return true;
+        if (max_component(medium.optics.emission.radiance) > 0) return true;
     if (tracer.surfaces_emit && tracer.snapshot.scene)
         for (const Material& material : tracer.snapshot.scene->materials)
             if (max_component(material.emission) > 0) return true;

@@ -12,7 +12,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
     const RadialBlurSettings& own = settings.of<RadialBlurSettings>();
     Limitations limitations{{Severity::degraded, &limitation::screen_space, Subject::image}};
     for (const Medium& medium : snapshot.media)
-        if (medium.kind == DensityKind::bricks && own.fog)
+        if (medium.density.kind == DensityKind::bricks && own.fog)
             limitations.push_back({Severity::degraded, &limitation::homogeneous_dimming, Subject::medium, medium.name});
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, own);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {

@@ -19,8 +19,8 @@ constexpr float detail_voxels = 4; // of the finest detail of a noise
 float fog_detail(std::span<const Medium> media) {
     float detail = infinity;
     for (const Medium& medium : media) {
-        if (medium.kind != DensityKind::bricks) continue;
-        const vec3 voxel = medium.bricks->voxel_size;
+        if (medium.density.kind != DensityKind::bricks) continue;
+        const vec3 voxel = medium.density.bricks->voxel_size;
         detail = std::min(detail, detail_voxels * std::min(voxel.x, std::min(voxel.y, voxel.z)));
     }
     return detail;

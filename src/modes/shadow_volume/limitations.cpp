@@ -21,7 +21,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
             add_light_grid_cells(snapshot, settings.terms.light_resolution, limitations);
     } else {
         for (const Medium& medium : snapshot.media)
-            if (medium.kind == DensityKind::bricks)
+            if (medium.density.kind == DensityKind::bricks)
                 limitations.push_back(
                     {Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     }

@@ -28,7 +28,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     frame->sampled = samples_fog(frame->snapshot, own);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
-            if (medium.kind == DensityKind::bricks) frame->heterogeneous.push_back(medium.world_bounds);
+            if (medium.density.kind == DensityKind::bricks) frame->heterogeneous.push_back(medium.world_bounds);
         frame->snapshot.media = homogeneous_media(frame->snapshot.media);
     }
     const auto by = [](const Light&) { return ShadowsBy::volumes; };

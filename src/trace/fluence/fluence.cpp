@@ -110,14 +110,14 @@ struct Pilot {
 };
 
 Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
-    const Emission emission = even_emission(snapshot, rules.reach, max_side);
-    Pilot pilot{max_side, std::vector<double>(emission.cumulative.size(), 0.0)};
+    const RayStrata strata = even_strata(snapshot, rules.reach, max_side);
+    Pilot pilot{max_side, std::vector<double>(strata.cumulative.size(), 0.0)};
     std::vector<LightPathResult> results(static_cast<size_t>((paths + block_paths - 1) / block_paths));
     rules.seed = hash(rules.seed, 1u);
     parallel_for(static_cast<int64_t>(results.size()), [&](int64_t b) {
         LightPathResult& result = results[static_cast<size_t>(b)];
         result.of_stratum.resize(pilot.squares.size());
-        trace_light_paths(snapshot, emission, rules, b * block_paths, std::min(block_paths, paths - b * block_paths),
+        trace_light_paths(snapshot, strata, rules, b * block_paths, std::min(block_paths, paths - b * block_paths),
                           paths, result);
         result.flights = {};
     });
@@ -130,20 +130,20 @@ Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
 
 // Chances of strata in proportion to the root of the mean square of what paths from them bring (Neyman 1934), in
 // strata large enough to be known.
-Emission emission_by_pilot(const Snapshot& snapshot, const LightPathRules& rules, int64_t paths) {
+RayStrata strata_by_pilot(const Snapshot& snapshot, const LightPathRules& rules, int64_t paths) {
     Pilot pilot = fly_pilot(snapshot, rules, std::max<int64_t>(paths / pilot_share, 1));
     while (pilot.side > 1 && pilot.hits < fewest_hits * static_cast<int64_t>(pilot.squares.size())) pilot.coarsen();
-    Emission emission = even_emission(snapshot, rules.reach, pilot.side);
-    const std::vector<double> even = emission.cumulative;
+    RayStrata strata = even_strata(snapshot, rules.reach, pilot.side);
+    const std::vector<double> even = strata.cumulative;
     const auto chance = [&](size_t i) { return even[i] - (i > 0 ? even[i - 1] : 0.0); };
     double sum = 0, together = 0;
     for (size_t i = 0; i < even.size(); ++i) sum += std::sqrt(chance(i) * pilot.squares[i]);
-    if (!(sum > 0)) return emission;
+    if (!(sum > 0)) return strata;
     for (size_t i = 0; i < even.size(); ++i) {
         const double wanted = std::sqrt(chance(i) * pilot.squares[i]) / sum;
-        emission.cumulative[i] = together += evenly * chance(i) + (1 - evenly) * wanted;
+        strata.cumulative[i] = together += evenly * chance(i) + (1 - evenly) * wanted;
     }
-    return emission;
+    return strata;
 }
 
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
@@ -155,10 +155,17 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
         key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale);
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
-        key.add(medium.kind).add(grey_extinction(optics)).add(optics.albedo).add(optics.phase.kind).add(optics.phase.g);
-        key.add(medium.bounds).add(medium.world_bounds).add(medium.height_base).add(medium.height_falloff);
-        for (int column = 0; column < 4; ++column) key.add(medium.world_to_local[column]);
-        key.add(medium.bricks);
+        key.add(medium.density.kind)
+            .add(grey_extinction(optics))
+            .add(optics.albedo)
+            .add(optics.phase.kind)
+            .add(optics.phase.g);
+        key.add(medium.density.bounds)
+            .add(medium.world_bounds)
+            .add(medium.density.height_base)
+            .add(medium.density.height_falloff);
+        for (int column = 0; column < 4; ++column) key.add(medium.density.world_to_local[column]);
+        key.add(medium.density.bricks);
     }
     return key;
 }
@@ -174,14 +181,14 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
     FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
     const int64_t paths = settings.paths;
-    const Emission emission = emission_by_pilot(snapshot, rules, paths);
+    const RayStrata strata = strata_by_pilot(snapshot, rules, paths);
     std::vector<LightPathResult> blocks(static_cast<size_t>(round_blocks));
     for (int64_t round = 0; round < paths; round += round_blocks * block_paths) {
         parallel_for(round_blocks, [&](int64_t b) {
             LightPathResult& result = blocks[static_cast<size_t>(b)];
             result.flights.clear();
             const int64_t first = round + b * block_paths, count = std::min(block_paths, paths - first);
-            if (count > 0) trace_light_paths(snapshot, emission, rules, first, count, paths, result);
+            if (count > 0) trace_light_paths(snapshot, strata, rules, first, count, paths, result);
         });
         add_flights(blocks, grid, octants);
     }

@@ -36,7 +36,7 @@ struct PathVertex {
 
 struct Walk {
     const Snapshot& snapshot;
-    const Emission& emission;
+    const RayStrata& strata;
     const LightPathRules& rules;
     std::span<const LightSquare> squares;
     bool endless; // whether any fog is
@@ -47,15 +47,15 @@ struct Walk {
 PathVertex start(const Walk& walk, int64_t index, int64_t total) {
     PathVertex walker;
     walker.random = {hash(walk.rules.seed, static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32))};
-    const std::vector<double>& sums = walk.emission.cumulative;
+    const std::vector<double>& sums = walk.strata.cumulative;
     const double wanted = (static_cast<double>(index) + walker.random.next()) / static_cast<double>(total);
     const auto found = std::ranges::upper_bound(sums, wanted * sums.back());
     walker.stratum = std::min<size_t>(static_cast<size_t>(found - sums.begin()), sums.size() - 1);
     const double chance = sums[walker.stratum] - (walker.stratum > 0 ? sums[walker.stratum - 1] : 0.0);
     if (!(chance > 0)) return walker;
 
-    const int side = walk.emission.side, strata = side * side, stratum = static_cast<int>(walker.stratum) % strata;
-    walker.light_index = static_cast<int>(walker.stratum) / strata;
+    const int side = walk.strata.side, count = side * side, stratum = static_cast<int>(walker.stratum) % count;
+    walker.light_index = static_cast<int>(walker.stratum) / count;
     const LightSquare& square = walk.squares[static_cast<size_t>(walker.light_index)];
     const vec2 place = (vec2(stratum % side, stratum / side) + walker.pair()) / static_cast<float>(side);
     walker.ray = square.ray(place, walker.pair());
@@ -66,7 +66,7 @@ PathVertex start(const Walk& walk, int64_t index, int64_t total) {
     if (walk.endless && is_distant(*square.light))
         left *= static_cast<float>(
             std::exp(-optical_depth(walk.snapshot.media, {walker.ray.origin, -walker.ray.direction, infinity})));
-    walker.light = square.power * (left / static_cast<float>(chance * strata * static_cast<double>(total)));
+    walker.light = square.power * (left / static_cast<float>(chance * count * static_cast<double>(total)));
     walker.walking = max_component(walker.light) > 0;
     return walker;
 }
@@ -203,21 +203,21 @@ Box fog_bounds(const Snapshot& snapshot, const Box& reach) {
     return fog;
 }
 
-Emission even_emission(const Snapshot& snapshot, const Box& reach, int side) {
-    Emission emission{side, {}};
+RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
+    RayStrata strata{side, {}};
     double sum = 0;
     for (const Light& light : snapshot.lights)
         for (int i = 0; i < side * side; ++i)
-            emission.cumulative.push_back(sum += luminance(square_of(light, reach).power) / (side * side));
-    for (double& each : emission.cumulative) each /= sum;
-    return emission;
+            strata.cumulative.push_back(sum += luminance(square_of(light, reach).power) / (side * side));
+    for (double& each : strata.cumulative) each /= sum;
+    return strata;
 }
 
-void trace_light_paths(const Snapshot& snapshot, const Emission& emission, const LightPathRules& rules, int64_t first,
+void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
                        int64_t count, int64_t total, LightPathResult& result) {
     std::vector<LightSquare> squares;
     for (const Light& light : snapshot.lights) squares.push_back(square_of(light, rules.reach));
-    const Walk walk{snapshot, emission, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
+    const Walk walk{snapshot, strata, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
     PathVertex walkers[walkers_at_once];
     for (int64_t done = 0; done < count; done += walkers_at_once) {
         const size_t some = static_cast<size_t>(std::min<int64_t>(walkers_at_once, count - done));

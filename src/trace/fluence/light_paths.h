@@ -24,13 +24,13 @@ struct LightPathRules {
 };
 
 // All rays of the lights into a box, as squares divided into as many strata each. `chances` of strata add up to 1.
-struct Emission {
+struct RayStrata {
     int side = 1;                   // strata along each side of a light's square
     std::vector<double> cumulative; // chance of the strata up to and with each: [light·side² + stratum]
 };
 
 // Chances in proportion to the power of the lights, spread evenly over their squares.
-Emission even_emission(const Snapshot& snapshot, const Box& reach, int side);
+RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side);
 
 // What a number of paths brought.
 struct LightPathResult {
@@ -44,7 +44,7 @@ struct LightPathResult {
 
 // Paths first..first+count-1 of `total`: they share the strata evenly, and each has random numbers of its own. The
 // result adds up to an estimate of the whole when all `total` are taken.
-void trace_light_paths(const Snapshot& snapshot, const Emission& emission, const LightPathRules& rules, int64_t first,
+void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
                        int64_t count, int64_t total, LightPathResult& result);
 
 // Where light paths go: fog and surfaces, and of endless fog as far beyond as its light comes back from.

@@ -27,7 +27,7 @@ double multiple_over_single(const Medium& medium) {
     const vec3 albedo = medium.optics.albedo;
     const double w = max_component(albedo), sigma = grey_extinction(medium.optics);
     if (!is_finite(medium.world_bounds.size())) return w < 1 ? w / (1 - w) : double(infinity);
-    const double density = medium.kind == DensityKind::bricks ? double(medium.bricks->mean) : 1.0;
+    const double density = medium.density.kind == DensityKind::bricks ? double(medium.density.bricks->mean) : 1.0;
     const dvec3 size(medium.world_bounds.size());
     return multiple_over_single(sigma * density * std::cbrt(0.75 / pi * size.x * size.y * size.z), w);
 }
@@ -39,10 +39,10 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
     rules.orders = 65536, rules.seed = seed;
     if (snapshot.lights.empty() || snapshot.media.empty()) return {};
     const int64_t each = std::max<int64_t>(paths / batches, 1);
-    const Emission emission = even_emission(snapshot, rules.reach, 1);
+    const RayStrata strata = even_strata(snapshot, rules.reach, 1);
     std::vector<LightPathResult> results(batches);
     parallel_for(batches, [&](int64_t b) {
-        trace_light_paths(snapshot, emission, rules, b * each, each, batches * each, results[static_cast<size_t>(b)]);
+        trace_light_paths(snapshot, strata, rules, b * each, each, batches * each, results[static_cast<size_t>(b)]);
     });
 
     // Ratio of means, its spread by the batches' residuals (Cochran 1977, section 2.11).

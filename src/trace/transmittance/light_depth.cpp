@@ -61,7 +61,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
     CacheKey key;
     key.add(light).add(resolution);
-    for (const Medium* medium : bricks) key.add(medium->bricks).add(grey_extinction(medium->optics));
+    for (const Medium* medium : bricks) key.add(medium->density.bricks).add(grey_extinction(medium->optics));
     return key;
 }
 
@@ -94,7 +94,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
     if (method == LightTransmittance::off) return depth;
     std::vector<const Medium*> bricks;
     for (const Medium& medium : snapshot.media)
-        (medium.kind == DensityKind::bricks ? bricks : depth.analytic).push_back(&medium);
+        (medium.density.kind == DensityKind::bricks ? bricks : depth.analytic).push_back(&medium);
     if (method == LightTransmittance::froxel && !bricks.empty())
         depth.froxels = kept_froxels(snapshot, bricks, light, resolution, *view);
     if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {

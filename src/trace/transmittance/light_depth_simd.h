@@ -41,16 +41,16 @@ HWY_INLINE void clip_axis(const Floats& origin, const Floats& direction, float l
 
 // The part of each path inside a medium's box.
 HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const LightPaths& paths) {
-    const mat4& m = medium.world_to_local;
+    const mat4& m = medium.density.world_to_local;
     const Vec3s origin = transform_points(m, paths.origin);
     const Vec3s& d = paths.direction;
     const Vec3s direction = {fused(d.z, m[2].x, fused(d.y, m[1].x, d.x * m[0].x)),
                              fused(d.z, m[2].y, fused(d.y, m[1].y, d.x * m[0].y)),
                              fused(d.z, m[2].z, fused(d.y, m[1].z, d.x * m[0].z))};
     Interval<Floats> range{0.0f, paths.length};
-    clip_axis(origin.x, direction.x, medium.bounds.low.x, medium.bounds.high.x, range);
-    clip_axis(origin.y, direction.y, medium.bounds.low.y, medium.bounds.high.y, range);
-    clip_axis(origin.z, direction.z, medium.bounds.low.z, medium.bounds.high.z, range);
+    clip_axis(origin.x, direction.x, medium.density.bounds.low.x, medium.density.bounds.high.x, range);
+    clip_axis(origin.y, direction.y, medium.density.bounds.low.y, medium.density.bounds.high.y, range);
+    clip_axis(origin.z, direction.z, medium.density.bounds.low.z, medium.density.bounds.high.z, range);
     return range;
 }
 
@@ -58,13 +58,13 @@ HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const LightPaths& p
 // the lower end times (1-e^-x)/x with x the height difference over the falloff. Both shares are worked out by
 // themselves: on a path to the sun a share of 1e-9 is still kilometres.
 HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, const Floats& y1) {
-    const Floats base = medium.height_base, low = min(y0, y1), high = max(y0, y1);
+    const Floats base = medium.density.height_base, low = min(y0, y1), high = max(y0, y1);
     const Mask16 level = high <= low;
     const Floats inverse = 1.0f / select(level, 1.0f, high - low);
     const Floats from = max(low, base), to = max(high, base);
     const Floats above = select(level, select(low > base, 1.0f, 0.0f), (to - from) * inverse);
     const Floats below = select(level, select(low > base, 0.0f, 1.0f), (min(high, base) - min(low, base)) * inverse);
-    const float thinning = 1 / medium.height_falloff;
+    const float thinning = 1 / medium.density.height_falloff;
     const Floats density = exp((base - from) * thinning) * mean_transmittance((to - from) * thinning);
     return fused(above, density, below);
 }
@@ -73,7 +73,7 @@ HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, co
 HWY_INLINE Floats analytic_depth16(const Medium& medium, const LightPaths& paths) {
     const Interval<Floats> range = inside_box(medium, paths);
     const Floats length = max(range.high - range.low, 0.0f) * grey_extinction(medium.optics);
-    if (medium.kind == DensityKind::homogeneous) return length;
+    if (medium.density.kind == DensityKind::homogeneous) return length;
     const Floats y0 = fused(paths.direction.y, range.low, paths.origin.y);
     const Floats y1 = fused(paths.direction.y, range.high, paths.origin.y);
     return zero_unless(length > 0.0f, length * mean_height_density(medium, y0, y1));

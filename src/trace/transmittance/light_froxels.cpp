@@ -16,8 +16,8 @@ constexpr float voxels_per_sample = 1.5f;
 
 // Optical depth of one medium along the paths, by midpoints of their parts inside its bricks' box.
 Floats depth_along(const Medium& medium, const LightPaths& paths) {
-    if (medium.bricks->empty()) return 0.0f;
-    const Box& box = medium.bricks->bounds;
+    if (medium.density.bricks->empty()) return 0.0f;
+    const Box& box = medium.density.bricks->bounds;
     Interval<Floats> range{0.0f, paths.length};
     clip_axis(paths.origin.x, paths.direction.x, box.low.x, box.high.x, range);
     clip_axis(paths.origin.y, paths.direction.y, box.low.y, box.high.y, range);
@@ -27,7 +27,7 @@ Floats depth_along(const Medium& medium, const LightPaths& paths) {
     store(length, lengths);
     const float longest = *std::max_element(lengths, lengths + 16);
     if (!(longest > 0)) return 0.0f;
-    const vec3 voxel = medium.bricks->voxel_size;
+    const vec3 voxel = medium.density.bricks->voxel_size;
     const float finest = std::min(voxel.x, std::min(voxel.y, voxel.z));
     const int samples = std::max(1, static_cast<int>(std::ceil(longest / (voxels_per_sample * finest))));
     const Floats step = length * (1 / static_cast<float>(samples));

@@ -38,7 +38,7 @@ Block block_of(const BrickPool& pool, vec3 low, vec3 high) {
 std::vector<Block> blocks_of(std::span<const Medium* const> media, bool runs) {
     std::vector<Block> blocks;
     for (const Medium* medium : media) {
-        const BrickPool& pool = *medium->bricks;
+        const BrickPool& pool = *medium->density.bricks;
         const int32_t* row = pool.index.data();
         for (int x = 0; x < pool.size.x; ++x)
             for (int y = 0; y < pool.size.y; ++y, row += pool.size.z)
@@ -113,7 +113,7 @@ Fit tightest(std::span<const Medium* const> media, vec3 axis, LightDepthGrid& gr
     Fit best;
     for (const Medium* medium : media)
         for (int i = 0; i < 3; ++i) {
-            const mat3 frame = frame_along(axis, vec3(medium->bricks->index_to_world[i]));
+            const mat3 frame = frame_along(axis, vec3(medium->density.bricks->index_to_world[i]));
             const Fit fit = fit_of(frame);
             if (!best.empty() && !(fit.area() < best.area())) continue;
             best = fit;

@@ -46,7 +46,7 @@ Columns columns_at(const LightDepthGrid& grid, int first, int row) {
 // Optical depth of one medium between two distances along the columns, by midpoints.
 Floats depth_between(const Medium& medium, const Columns& columns, float from, float to) {
     if (!(to > from)) return 0.0f;
-    const vec3 voxel = medium.bricks->voxel_size;
+    const vec3 voxel = medium.density.bricks->voxel_size;
     const float finest = std::min(voxel.x, std::min(voxel.y, voxel.z));
     const int samples = std::max(1, static_cast<int>(std::ceil((to - from) / (voxels_per_sample * finest))));
     const float step = (to - from) / static_cast<float>(samples);

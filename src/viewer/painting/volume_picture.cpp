@@ -36,8 +36,8 @@ Box shown_box(const Medium& medium, const Snapshot& snapshot, const Camera& came
 
 // Cells along an axis of the box: voxels, where there are some.
 int cells_along(const Medium& medium, const Box& box, int axis, int most) {
-    if (medium.kind != DensityKind::bricks) return std::min(most, 128);
-    const vec3 voxel = medium.bricks->voxel_size;
+    if (medium.density.kind != DensityKind::bricks) return std::min(most, 128);
+    const vec3 voxel = medium.density.bricks->voxel_size;
     const float finest = std::min(voxel.x, std::min(voxel.y, voxel.z));
     return std::clamp(static_cast<int>(std::ceil((box.high[axis] - box.low[axis]) / finest)), 1, most);
 }
@@ -132,14 +132,15 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Scene& scene, co
             if (known.key != key) known = {key, file_facts(*file, source->sequence.grid)};
             facts = known.facts;
         }
-    if (medium.kind == DensityKind::bricks) {
+    if (medium.density.kind == DensityKind::bricks) {
         facts.emplace_back("as rendered", source->kind == MediumKind::noise ? "grown from a recipe" : "read as fog");
-        for (auto& row : brick_facts(*medium.bricks)) facts.push_back(std::move(row));
+        for (auto& row : brick_facts(*medium.density.bricks)) facts.push_back(std::move(row));
     } else {
-        facts.emplace_back("kind", medium.kind == DensityKind::height
-                                       ? formatted("falls with height: to 37 %% in %.3g m above %.3g m",
-                                                   double(medium.height_falloff), double(medium.height_base))
-                                       : "even");
+        facts.emplace_back("kind",
+                           medium.density.kind == DensityKind::height
+                               ? formatted("falls with height: to 37 %% in %.3g m above %.3g m",
+                                           double(medium.density.height_falloff), double(medium.density.height_base))
+                               : "even");
     }
     facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(grey_extinction(medium.optics))));
     return facts;
@@ -165,7 +166,7 @@ std::shared_ptr<const VolumePicture> volume_picture(const Request& request, cons
     shown->facts = facts_of(*request.scene, *medium, request, known);
 
     const Image<float> values = density_of(*medium, *shown);
-    shown->high = medium->kind == DensityKind::bricks ? medium->bricks->highest : 1.0;
+    shown->high = medium->density.kind == DensityKind::bricks ? medium->density.bricks->highest : 1.0;
     if (request.volume->look == VolumeLook::mean) shown->high = *std::ranges::max_element(values.pixels);
     if (!(shown->high > 0)) shown->high = 1;
     shown->codes = Image<glm::u8vec4>(values.size);

@@ -56,8 +56,8 @@ void append_brick_density(const Ray& ray, const BrickPool& pool, double t_end, s
 // Density 1 below the base and an exponential above it.
 void append_height_density(const Ray& ray, const Medium& medium, Interval<double> inside,
                            std::vector<DensityPiece>& pieces) {
-    const double start = (double(ray.origin.y) - medium.height_base) / medium.height_falloff;
-    const double slope = double(ray.direction.y) / medium.height_falloff;
+    const double start = (double(ray.origin.y) - medium.density.height_base) / medium.density.height_falloff;
+    const double slope = double(ray.direction.y) / medium.density.height_falloff;
     const auto append = [&](double low, double high) {
         if (!(low < high)) return;
         const double middle = start + slope * 0.5 * (low + high);
@@ -127,10 +127,13 @@ double DensityPiece::column(double t) const {
 }
 
 void append_density(const Ray& ray, const Medium& medium, double t_end, std::vector<DensityPiece>& pieces) {
-    if (medium.kind == DensityKind::bricks) return append_brick_density(ray, *medium.bricks, t_end, pieces);
-    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_end});
+    if (medium.density.kind == DensityKind::bricks)
+        return append_brick_density(ray, *medium.density.bricks, t_end, pieces);
+    const Interval<double> inside =
+        clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), {0, t_end});
     if (inside.empty()) return;
-    if (medium.kind == DensityKind::homogeneous) return pieces.push_back({inside.low, inside.high, {1}, false, 0});
+    if (medium.density.kind == DensityKind::homogeneous)
+        return pieces.push_back({inside.low, inside.high, {1}, false, 0});
     append_height_density(ray, medium, inside, pieces);
 }
 

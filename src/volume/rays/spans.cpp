@@ -14,12 +14,13 @@ constexpr double closest = 1e-3; // metres: nearer to a light steps shrink no fu
 // over which its density halves: band k lies (k-1)·ln 2 to k·ln 2 fall-offs above the base, band 0 below it.
 template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, const Visit& visit) {
     const double t_max = std::min<double>(ray.t_max, farthest);
-    const Interval<double> inside = clip(medium.bounds, local_ray(medium.world_to_local, ray), {0, t_max});
+    const Interval<double> inside =
+        clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), {0, t_max});
     if (inside.empty()) return;
-    if (medium.kind == DensityKind::homogeneous) return visit(inside, 1.0, 1.0);
+    if (medium.density.kind == DensityKind::homogeneous) return visit(inside, 1.0, 1.0);
 
-    const double start = (double(ray.origin.y) - medium.height_base) / medium.height_falloff;
-    const double slope = double(ray.direction.y) / medium.height_falloff;
+    const double start = (double(ray.origin.y) - medium.density.height_base) / medium.density.height_falloff;
+    const double slope = double(ray.direction.y) / medium.density.height_falloff;
     const auto density = [&](double t) { return std::exp(-std::max(start + slope * t, 0.0)); };
     const double entry = (start + slope * inside.low) / ln2;
     int band = entry <= 0 ? 0 : 1 + static_cast<int>(std::min<double>(entry, highest_band));
@@ -41,7 +42,7 @@ template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, cons
 
 void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule,
                         std::vector<Span>& spans) {
-    const BrickPool& pool = *medium.bricks;
+    const BrickPool& pool = *medium.density.bricks;
     const LocalRay local = local_ray(pool, ray);
     const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
     const size_t first = spans.size();
@@ -69,7 +70,7 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
 double horizon(const Ray& ray, std::span<const Medium> media) {
     double end = std::min<double>(ray.t_max, farthest);
     for (const Medium& medium : media) {
-        if (medium.kind == DensityKind::bricks) continue;
+        if (medium.density.kind == DensityKind::bricks) continue;
         double depth = 0;
         walk_bands(ray, medium, [&](Interval<double> stretch, double, double smallest) {
             const double extinction = grey_extinction(medium.optics) * smallest;
@@ -82,7 +83,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
 }
 
 void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans) {
-    if (medium.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
+    if (medium.density.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
     walk_bands(ray, medium, [&](Interval<double> stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
         if (stretch.low < high) spans.push_back({stretch.low, high, grey_extinction(medium.optics) * largest, 0});

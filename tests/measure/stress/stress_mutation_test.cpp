@@ -312,9 +312,9 @@ TEST(MutationCheck, HalfAVoxelAside) {
                                              History* history) {
                       Snapshot aside = snapshot;
                       for (Medium& medium : aside.media) {
-                          const auto pool = std::make_shared<BrickPool>(*medium.bricks);
+                          const auto pool = std::make_shared<BrickPool>(*medium.density.bricks);
                           pool->anchor.x += 0.5f * pool->voxel_size.x;
-                          medium.bricks = pool;
+                          medium.density.bricks = pool;
                       }
                       return find_mode("march").prepare(view, aside, settings, history);
                   }));

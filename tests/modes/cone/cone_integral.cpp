@@ -34,13 +34,13 @@ double mean_density(double h0, double h1, double falloff) {
 double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, double length) {
     double sum = 0;
     for (const Medium& medium : media) {
-        const Interval<double> in = inside(medium.bounds, origin, direction, length);
+        const Interval<double> in = inside(medium.density.bounds, origin, direction, length);
         if (in.empty()) continue;
-        const double h0 = origin.y + in.low * direction.y - medium.height_base;
-        const double h1 = origin.y + in.high * direction.y - medium.height_base;
-        const bool height = medium.kind == DensityKind::height;
-        sum +=
-            grey_extinction(medium.optics) * in.length() * (height ? mean_density(h0, h1, medium.height_falloff) : 1);
+        const double h0 = origin.y + in.low * direction.y - medium.density.height_base;
+        const double h1 = origin.y + in.high * direction.y - medium.density.height_base;
+        const bool height = medium.density.kind == DensityKind::height;
+        sum += grey_extinction(medium.optics) * in.length() *
+               (height ? mean_density(h0, h1, medium.density.height_falloff) : 1);
     }
     return sum;
 }
@@ -94,11 +94,11 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
         if (amount == 0) return 0.0;
         double scattered = 0;
         for (const Medium& medium : media) {
-            const Box& box = medium.bounds;
+            const Box& box = medium.density.bounds;
             if (glm::any(glm::lessThan(point, dvec3(box.low))) || glm::any(glm::greaterThan(point, dvec3(box.high))))
                 continue;
-            const double height = std::max(point.y - medium.height_base, 0.0) / medium.height_falloff;
-            const double density = medium.kind == DensityKind::height ? std::exp(-height) : 1;
+            const double height = std::max(point.y - medium.density.height_base, 0.0) / medium.density.height_falloff;
+            const double density = medium.density.kind == DensityKind::height ? std::exp(-height) : 1;
             scattered += grey_extinction(medium.optics) * density *
                          phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
         }
@@ -112,7 +112,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
     const double off = std::max(glm::length(apex - o - nearest * d), 1e-5);
     std::vector<double> cuts{0, double(ray.t_max), nearest};
     const auto add = [&](Interval<double> s) { cuts.push_back(s.low), cuts.push_back(s.high); };
-    for (const Medium& medium : media) add(inside(medium.bounds, o, d, ray.t_max));
+    for (const Medium& medium : media) add(inside(medium.density.bounds, o, d, ray.t_max));
     if (has_cone(light))
         add(inside_cone(apex, axis, light.outer_cone, o, d)), add(inside_cone(apex, axis, light.inner_cone, o, d));
     for (const double radius : {double(light.range), double(std::max(light.radius, smallest_radius))})

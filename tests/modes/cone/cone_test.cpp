@@ -53,10 +53,10 @@ Medium random_medium(RandomStream& random, int kind, vec3 place) {
     Medium medium = homogeneous_medium(extinction, everywhere(), {PhaseKind::henyey_greenstein, g});
     const vec3 half = 2.0f + 3.0f * vec3(random.next(), random.next(), random.next());
     const vec3 middle = place + random_vector(random, 2);
-    if (kind > 0) medium.bounds = medium.world_bounds = Box{middle - half, middle + half};
+    if (kind > 0) medium.density.bounds = medium.world_bounds = Box{middle - half, middle + half};
     if (kind == 2) {
-        medium.kind = DensityKind::height;
-        medium.height_base = place.y - 1, medium.height_falloff = 0.5f + 2 * random.next();
+        medium.density.kind = DensityKind::height;
+        medium.density.height_base = place.y - 1, medium.density.height_falloff = 0.5f + 2 * random.next();
     }
     return medium;
 }
@@ -200,7 +200,7 @@ TEST(Cone, AmbientLightAndEmissionOfOverlappingMedia) {
     // Constant glow per extinction c_m on overlapping slabs: piecewise c (1 - e^-τ).
     Medium first = homogeneous_medium(0.5f, {vec3(-1), vec3(1)}),
            second = homogeneous_medium(1.5f, {vec3(-1, -1, -1), vec3(1, 1, 0)});
-    first.optics.albedo = vec3(0.5f), second.optics.emission = vec3(3), second.optics.albedo = vec3(0);
+    first.optics.albedo = vec3(0.5f), second.optics.emission.radiance = vec3(3), second.optics.albedo = vec3(0);
     const Snapshot snapshot = snapshot_of({first, second}, {}, vec3(2));
     const Scatter result = coned(snapshot, {{0, 0, 5}, {0, 0, -1}, 20});
     const double t1 = std::exp(-0.5), t2 = std::exp(-2.0);

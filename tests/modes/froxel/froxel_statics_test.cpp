@@ -58,7 +58,7 @@ TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
     EXPECT_EQ(thicker.stood, 0);
 
     // Slices follow fog that leaves them, with some room, and stay while it moves in there.
-    here.snapshot.media[1].world_bounds = here.snapshot.media[1].bounds = {vec3(-2, 0, -2), vec3(0, 2, 20)};
+    here.snapshot.media[1].world_bounds = here.snapshot.media[1].density.bounds = {vec3(-2, 0, -2), vec3(0, 2, 20)};
     const FroxelStatics nearer = look_at_scene(still_view(), here.snapshot, settings, &first);
     const FroxelStatics fresh = look_at_scene(still_view(), here.snapshot, settings, nullptr);
     EXPECT_FALSE(nearer.same_froxels);

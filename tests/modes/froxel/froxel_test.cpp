@@ -43,7 +43,8 @@ TEST(Froxel, AmbientLightAndEmissionMatchTheirClosedForms) {
     // L = (albedo · ambient + j/σ) (1 - e^-σs) through a box of depth s = 4 seen from outside, straight on.
     Snapshot snapshot =
         snapshot_of({homogeneous_medium(0.5f, {vec3(-50, -50, -4), vec3(50, 50, 0)})}, {}, vec3(0.5f, 1, 2));
-    snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(1, 0, 2);
+    snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f),
+    snapshot.media[0].optics.emission.radiance = vec3(1, 0, 2);
     const View view = view_of({0, 0, 6}, {0, 0, 0}, {65, 37});
     const Scatter result = scattered(froxels(view, snapshot, {}), {{{0, 0, 6}, {0, 0, -1}, 100}})[0];
     const double covered = -std::expm1(-2.0);

@@ -93,8 +93,8 @@ TEST(MarchExact, RayThroughTheLightItself) {
 
 TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
     Medium fog;
-    fog.kind = DensityKind::height, fog.optics = {vec3(0.4f), vec3(0.9f), {PhaseKind::isotropic, 0}, vec3(0)};
-    fog.height_base = 0.5f, fog.height_falloff = 2;
+    fog.density.kind = DensityKind::height, fog.optics = {vec3(0.4f), vec3(0.9f), {PhaseKind::isotropic, 0}, vec3(0)};
+    fog.density.height_base = 0.5f, fog.density.height_falloff = 2;
     const Light light = sun_light({0.6f, -0.8f, 0}, 5);
     const Stage stage = stage_of({fog}, {light}, {shade(-30, 30)}); // above everything that counts
     const vec3 direction = glm::normalize(vec3(2, 1, 0));
@@ -120,7 +120,7 @@ TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
 TEST(MarchExact, GlowNeedsNoLight) {
     // Ambient light and emission under a closed roof: (a·A + e/s)(1 - e^-s) for each medium, by its share of both.
     std::vector<Medium> media{homogeneous_medium(2, unit_box), homogeneous_medium(1, unit_box)};
-    media[0].optics.albedo = vec3(0.5f), media[1].optics.emission = vec3(0.25f);
+    media[0].optics.albedo = vec3(0.5f), media[1].optics.emission.radiance = vec3(0.25f);
     Stage stage = stage_of(media, {sun_light({0, -1, 0})}, {shade(50, 2)}, vec3(1, 2, 0));
     const vec3 radiance = marched(stage.snapshot, exact_settings(), {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).radiance;
     const double covered = 1 - std::exp(-3.0);

@@ -43,7 +43,7 @@ TEST(March, AmbientLightInEvenFogIsItsClosedForm) {
 TEST(March, EmissionAbsorptionMatchesClosedForm) {
     // j = 1, sigma = 0.5, s = 3: (j/sigma)(1 - exp(-sigma s)) = 1.553739680.
     Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)})}, {});
-    snapshot.media[0].optics.albedo = vec3(0), snapshot.media[0].optics.emission = vec3(1);
+    snapshot.media[0].optics.albedo = vec3(0), snapshot.media[0].optics.emission.radiance = vec3(1);
     Settings settings;
     settings.march.min_transmittance = 0;
     EXPECT_NEAR(marched(snapshot, settings, {{0, 0, 5}, {0, 0, -1}, 20}).radiance.x, 1.553739680, 2e-5);
@@ -109,7 +109,8 @@ TEST(March, PointLightWithAnisotropyAndSpotMatchQuadrature) {
 TEST(March, HeightFogTransmittanceMatchesClosedForm) {
     // s0 = 0.1, H = 10, upward cosine 0.5, length 40 from the base: tau = 1.729329434.
     Medium medium;
-    medium.kind = DensityKind::height, medium.optics = {vec3(0.1f), vec3(1), {}, vec3(0)}, medium.height_falloff = 10;
+    medium.density.kind = DensityKind::height, medium.optics = {vec3(0.1f), vec3(1), {}, vec3(0)},
+    medium.density.height_falloff = 10;
     Settings settings = sampled_settings();
     const Ray ray{{0, 0, 0}, {std::sqrt(0.75f), 0.5f, 0}, 40};
     EXPECT_NEAR(marched(snapshot_of({medium}, {}), settings, ray).transmittance / 0.177403331, 1, 1e-4);
@@ -195,7 +196,7 @@ TEST(March, EveryTermCanBeTurned) {
     Snapshot snapshot =
         snapshot_of({medium_of(unit_volume(32, [](vec3 p) { return p.x; }), 3)}, {sun_light({0, -1, 0})}, vec3(0.2f));
     snapshot.media[0].optics.phase = {PhaseKind::henyey_greenstein, 0.7f};
-    snapshot.media[0].optics.emission = vec3(0.3f);
+    snapshot.media[0].optics.emission.radiance = vec3(0.3f);
     const Ray ray{{0.9f, 0.3f, 3}, {0, 0, -1}, 10};
     const float full = marched(snapshot, Settings{}, ray).radiance.x;
     for (const char* change : {"terms.light=off", "terms.light=average", "terms.phase=off", "terms.heterogeneity=off",

@@ -168,7 +168,7 @@ TEST(Path, PointLightInEvenFogIsTheAirlightIntegral) {
 
 TEST(Path, EmissionAbsorptionIsItsClosedForm) {
     Snapshot snapshot = snapshot_of({with_albedo(homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
-    snapshot.media[0].optics.emission = vec3(1);
+    snapshot.media[0].optics.emission.radiance = vec3(1);
     expect_close(traced(snapshot, {{0, 0, 5}, {0, 0, -1}, 20}, 1024), 1.553739680, 0.005);
 }
 
@@ -239,7 +239,7 @@ TEST(Path, GridOfOneValueIsEvenFog) {
     const Ray ray{{0.4f, 0.45f, 3}, glm::normalize(vec3(0.02f, 0.05f, -1))};
     const SparseVolume full = unit_volume(32, [](vec3) { return 0.5f; });
     Medium grid = with_albedo(medium_of(full, 4), vec3(0.9f));
-    const Medium even = with_albedo(homogeneous_medium(2, grid.bricks->bounds), vec3(0.9f));
+    const Medium even = with_albedo(homogeneous_medium(2, grid.density.bricks->bounds), vec3(0.9f));
     const Light light = sun_light({0.3f, -1, -0.2f});
     const RayEstimate a = traced(snapshot_of({grid}, {light}), ray, 1024),
                       b = traced(snapshot_of({even}, {light}), ray, 1024);
@@ -274,7 +274,7 @@ TEST(Path, OneOrderEqualsTheMarchInShadowedFog) {
 TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
     // Level ray in height fog under a sun overhead: even along the ray. Light path above y: s e^-y.
     Medium fog = homogeneous_medium(0.2f);
-    fog.kind = DensityKind::height, fog.height_falloff = 1;
+    fog.density.kind = DensityKind::height, fog.density.height_falloff = 1;
     Snapshot snapshot = snapshot_of({fog}, {sun_light({0, -1, 0}, 3)});
     snapshot.bounds = Box{};
     const double density = 0.2 * std::exp(-0.5);
@@ -286,7 +286,7 @@ TEST(Path, SunInFogWithoutBoundsOrAnythingElse) {
 
 TEST(Path, MistFarBelowALevelSunTakesNothing) {
     Medium mist = homogeneous_medium(0.2f);
-    mist.kind = DensityKind::height, mist.height_falloff = 1;
+    mist.density.kind = DensityKind::height, mist.density.height_falloff = 1;
     const Box high{vec3(-1, 199, -1), vec3(1, 201, 1)};
     const Snapshot snapshot = snapshot_of({mist, homogeneous_medium(0.5f, high)}, {sun_light({1, 0, 0}, 3)});
     const double expected = 3 / (4 * M_PI) * std::exp(-0.5) * (1 - std::exp(-1.0));

@@ -120,7 +120,7 @@ TEST(ShadowMapMarch, RayThroughALightIsFinite) {
 
 TEST(ShadowMapMarch, FogThatEmitsAndAmbientLightAreTheirClosedForms) {
     Snapshot snapshot = snapshot_of({homogeneous_medium(2, unit_box)}, {}, vec3(0.5f, 1, 2));
-    snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission = vec3(0.4f);
+    snapshot.media[0].optics.albedo = vec3(0.9f, 0.6f, 0.3f), snapshot.media[0].optics.emission.radiance = vec3(0.4f);
     const Scatter result = run(snapshot, Settings{}, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10});
     const double covered = 1 - std::exp(-2.0);
     EXPECT_NEAR(result.radiance.x / ((0.5 * 0.9 + 0.2) * covered), 1, 1e-5);

@@ -110,8 +110,8 @@ TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
 
 TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
     Medium height = homogeneous_medium(0.4f, room);
-    height.kind = DensityKind::height, height.height_base = 0.5f, height.height_falloff = 0.8f;
-    height.optics.emission = vec3(0.02f, 0.01f, 0);
+    height.density.kind = DensityKind::height, height.density.height_base = 0.5f, height.density.height_falloff = 0.8f;
+    height.optics.emission.radiance = vec3(0.02f, 0.01f, 0);
     Medium other = homogeneous_medium(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
     other.optics.albedo = vec3(0.9f, 0.5f, 0.2f);
     const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
@@ -177,7 +177,7 @@ TEST(ShadowVolume, EndlessFogAndFarEnds) {
     // Closed form: an isotropic sun that nothing dims.
     Light light = sun_light({0, 0, -1}, 2);
     Medium fog = homogeneous_medium(1e-4f);
-    fog.bounds = fog.world_bounds = {vec3(-1e6f, -1e6f, -1), vec3(1e6f, 1e6f, 1)};
+    fog.density.bounds = fog.world_bounds = {vec3(-1e6f, -1e6f, -1), vec3(1e6f, 1e6f, 1)};
     Picture level;
     level.view.camera = look_at({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1);
     level.rays.assign(16, {{0, 0, 0}, {1, 0, 0}, 1e6f}), level.positions.assign(16, vec2(320, 180));

@@ -98,7 +98,7 @@ TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.
 TEST(Goal, AFrameIsHeldAgainstTermsThatAnotherDidNotNeed) {
     Medium fog = homogeneous_medium(0.1f, room);
-    fog.optics.emission = vec3(0.02f);
+    fog.optics.emission.radiance = vec3(0.02f);
     const Snapshot snapshot = snapshot_of({fog}, {point_light({0, 5, 0}, 20)});
     Settings settings;
     settings.terms.emission = false;

@@ -41,7 +41,7 @@ TEST(Frame, CompositesFogBetweenTransparentSurfaces) {
     add_plane(scene, -2, 50, first, 0.5f);
     add_plane(scene, -5, 50, second, 0.25f);
     Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(extinction, {vec3(-50), vec3(50, 50, 10)})});
-    snapshot.media[0].bounds.low.z = snapshot.media[0].world_bounds.low.z = -9;
+    snapshot.media[0].density.bounds.low.z = snapshot.media[0].world_bounds.low.z = -9;
     snapshot.background.color = behind;
 
     const Layers layers = rendered(mode_of(prepare_glow), plain_view({8, 8}, 2, 2.0f), snapshot);

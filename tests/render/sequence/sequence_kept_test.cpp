@@ -95,7 +95,7 @@ ScatterFunction prepare_counted(const View&, const Snapshot& snapshot, const Set
 
 std::vector<std::shared_ptr<const BrickPool>> fog_seen;
 ScatterFunction prepare_noting_fog(const View&, const Snapshot& snapshot, const Settings&, History*) {
-    fog_seen.push_back(snapshot.media.at(0).bricks);
+    fog_seen.push_back(snapshot.media.at(0).density.bricks);
     return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
 }
 }
@@ -185,7 +185,7 @@ TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
     LoadedFrame first = load_first_frame(scene, job);
     EXPECT_EQ(first.snapshot.frame, 1);
     EXPECT_GT(first.seconds, 0);
-    const auto bricks = first.snapshot.media.at(0).bricks;
+    const auto bricks = first.snapshot.media.at(0).density.bricks;
     fog_seen.clear();
     const RenderReport report = run(scene, job, mode_of(prepare_noting_fog), std::move(first));
     ASSERT_EQ(fog_seen.size(), 2u);

@@ -61,7 +61,7 @@ TEST(FrameStore, FramesThatWereLeftAreTakenUpWithAllThatWasMadeForThem) {
     EXPECT_FALSE(store.take(2, seconds));
     const auto again = store.take(1, seconds);
     ASSERT_TRUE(again);
-    EXPECT_EQ(again->media[0].bricks, one.media[0].bricks);
+    EXPECT_EQ(again->media[0].density.bricks, one.media[0].density.bricks);
     EXPECT_EQ(cached(*again, CacheKey().add(7), [] { return 43; }), made);
     EXPECT_EQ(seconds, 0);
 }
@@ -118,7 +118,7 @@ TEST(FrameStore, ALoopIsGrownOnceAndLooksTheSame) {
             Request request = playing(scene, frame);
             request.revision += static_cast<uint64_t>(10 * turn);
             ASSERT_TRUE(paint(painter, request, never));
-            const BrickPool* now = painter.snapshot.media[0].bricks.get();
+            const BrickPool* now = painter.snapshot.media[0].density.bricks.get();
             if (turn == 0) bricks[frame] = now;
             EXPECT_EQ(now, bricks[frame]) << frame;
         }

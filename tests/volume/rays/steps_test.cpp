@@ -89,7 +89,7 @@ TEST(Steps, BrickDepthConverges) {
     const Medium fog = medium_of(islands(), 0.5f);
     double coarse = 0, fine = 0, exact = 0;
     for (uint32_t i = 0; i < 200; ++i) {
-        const Ray ray = ray_through(fog.bricks->bounds, i);
+        const Ray ray = ray_through(fog.density.bricks->bounds, i);
         StepRule rule;
         rule.voxels = 0.5f;
         coarse += marched_depth(fog, ray, rule);
@@ -105,8 +105,8 @@ TEST(Steps, CoverAllFog) {
     const std::vector<Medium> media{medium_of(islands(), 0.5f),
                                     homogeneous_medium(0.2f, {vec3(-9, 0, 0), vec3(-4, 9, 9)}),
                                     height_fog(0.1f, -2, 0.7f, {vec3(0, -4, 0), vec3(9, 3, 9)})};
-    Box box = media[0].bricks->bounds;
-    box.grow(media[1].bounds), box.grow(media[2].bounds);
+    Box box = media[0].density.bricks->bounds;
+    box.grow(media[1].density.bounds), box.grow(media[2].density.bounds);
     for (uint32_t i = 0; i < 300; ++i) {
         const Ray ray = ray_through(box, i);
         const std::vector<Step> steps = steps_of(ray, media);
@@ -139,7 +139,7 @@ TEST(Steps, KeepWithinTheirBounds) {
     const Medium fog = medium_of(islands(), 5);
     const float voxel = 0.5f; // the longest axis of a voxel
     for (uint32_t i = 0; i < 200; ++i) {
-        const Ray ray = ray_through(fog.bricks->bounds, i);
+        const Ray ray = ray_through(fog.density.bricks->bounds, i);
         StepRule rule;
         rule.optical_depth = 1e6f, rule.length = 0.3f, rule.voxels = 1e6f;
         EXPECT_LE(longest(steps_of(ray, fog, rule)), 0.3f * 1.0001f);
@@ -172,7 +172,7 @@ TEST(Steps, HalvingTheRuleHalvesTheSteps) {
     const std::vector<Medium> media{medium_of(islands(), 0.5f), height_fog(0.1f, -2, 0.7f)};
     const vec3 lights[] = {vec3(3, 4, 5), vec3(0)};
     for (uint32_t i = 0; i < 100; ++i) {
-        const Ray ray = ray_through(media[0].bricks->bounds, i);
+        const Ray ray = ray_through(media[0].density.bricks->bounds, i);
         const StepRule whole{0.25f, 2, 1, 100000, lights, 0.25f}, half{0.125f, 1, 0.5f, 100000, lights, 0.125f};
         const double a = double(steps_of(ray, media, whole).size()), b = double(steps_of(ray, media, half).size());
         EXPECT_GE(b, 2 * a - 20); // a part of the last step of each of a few stretches
@@ -264,7 +264,7 @@ TEST(Steps, NeverMoreThanAllowed) {
         StepRule rule;
         rule.most = most, rule.voxels = 0.01f;
         for (uint32_t i = 0; i < 100; ++i) {
-            const Ray ray = ray_through(fog.bricks->bounds, i);
+            const Ray ray = ray_through(fog.density.bricks->bounds, i);
             const auto few = steps_of(ray, fog, rule), many = steps_of(ray, fog);
             ASSERT_LE(few.size(), size_t(most));
             ASSERT_TRUE(ascending(ray, few));
@@ -291,7 +291,7 @@ TEST(Steps, FogThatOnlyGlowsHasStepsAndWhatDoesNeitherHasNone) {
     Medium fog = homogeneous_medium(0, {vec3(-1), vec3(1)});
     const Ray ray{vec3(-3, 0, 0), vec3(1, 0, 0)};
     EXPECT_TRUE(steps_of(ray, fog).empty());
-    fog.optics.emission = vec3(1);
+    fog.optics.emission.radiance = vec3(1);
     const auto steps = steps_of(ray, fog);
     ASSERT_FALSE(steps.empty());
     EXPECT_FLOAT_EQ(steps.front().low, 2);
@@ -322,9 +322,9 @@ TEST(Steps, AxisParallelAndDegenerateRays) {
 TEST(Steps, DependOnTheRayAlone) {
     const std::vector<Medium> media{medium_of(islands(), 0.5f), height_fog(0.1f, -2, 0.7f)};
     std::vector<std::vector<Step>> first;
-    for (uint32_t i = 0; i < 50; ++i) first.push_back(steps_of(ray_through(media[0].bricks->bounds, i), media));
+    for (uint32_t i = 0; i < 50; ++i) first.push_back(steps_of(ray_through(media[0].density.bricks->bounds, i), media));
     for (uint32_t i = 50; i-- > 0;) {
-        const auto again = steps_of(ray_through(media[0].bricks->bounds, i), media);
+        const auto again = steps_of(ray_through(media[0].density.bricks->bounds, i), media);
         ASSERT_EQ(again.size(), first[i].size());
         for (size_t k = 0; k < again.size(); ++k) {
             ASSERT_EQ(again[k].low, first[i][k].low);
@@ -336,7 +336,7 @@ TEST(Steps, DependOnTheRayAlone) {
 TEST(Steps, ScaleWithTheScene) {
     SparseVolume volume = islands();
     const Medium unit = medium_of(volume, 0.5f);
-    const Ray ray = ray_through(unit.bricks->bounds, 4);
+    const Ray ray = ray_through(unit.density.bricks->bounds, 4);
     const size_t count = steps_of(ray, unit).size();
     ASSERT_GT(count, 10u);
     for (const float scale : {1e-3f, 1e3f}) {

@@ -31,7 +31,7 @@ struct Street {
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         Medium medium;
-        medium.bounds = medium.world_bounds = {vec3(-40, 0, -100), vec3(40, 10, 10)};
+        medium.density.bounds = medium.world_bounds = {vec3(-40, 0, -100), vec3(40, 10, 10)};
         snapshot.media = {medium};
         snapshot.bounds = medium.world_bounds;
         view.camera = look_at({0, 1.7f, 8}, {0, 1.7f, -100}, {0, 1, 0}, 0.8f);

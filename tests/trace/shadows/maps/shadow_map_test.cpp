@@ -35,7 +35,7 @@ struct Stage {
         snapshot.scene = &scene;
         snapshot.occluders = Occluders::make(scene, 0, nullptr);
         Medium medium;
-        medium.bounds = medium.world_bounds = fog;
+        medium.density.bounds = medium.world_bounds = fog;
         snapshot.media = {medium};
         snapshot.bounds = fog;
         snapshot.bounds.grow(snapshot.occluders->bounds());
