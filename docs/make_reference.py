@@ -52,17 +52,17 @@ def range_text(row):
     return f"{whole}{number(row['low'])} to {number(row['high'])}" + (f" {row['unit']}" if row["unit"] else "")
 
 
-def shortened(value):
-    """A number to four digits; anything else as it is."""
+def shortened(value, whole):
+    """A number to four digits, or whole; anything else as it is."""
     try:
-        return f"{float(value):.4g}"
+        return f"{float(value):.0f}" if whole else f"{float(value):.4g}"
     except ValueError:
         return value
 
 
 def values_text(row):
     """The default, and what other qualities change."""
-    values = {quality: shortened(value) for quality, value in row["values"].items()}
+    values = {quality: shortened(value, row.get("integer")) for quality, value in row["values"].items()}
     others = [f"{quality} {value}" for quality, value in values.items() if value != values["preview"]]
     return f"`{values['preview']}`" + (f" ({', '.join(others)})" if others else "")
 

@@ -30,10 +30,11 @@ void add_options(const CommandLine& program, Texts& texts) {
            "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
     option("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
     program.options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
-                    "ROW=VALUE");
+                    "NAME=VALUE");
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
     option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
-    option("--exposure", texts.exposure, "EV", "brighten (+) or darken (-) the picture, in stops");
+    option("--exposure", texts.exposure, "EV",
+           "brighten (+) or darken (-) the picture, in stops from the scene's exposure");
     option("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
     option("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
     option("--light-units", texts.units, "UNITS",
@@ -87,9 +88,9 @@ ViewerOptions read_options(const Texts& texts) {
 }
 
 int run(int argc, char** argv) {
-    const CommandLine program(
-        "tyndall view", "FroxelSamples at a scene's fog while it is lit: every technique, every setting, at once.",
-        "tyndall-view " TYNDALL_VERSION, "Options");
+    const CommandLine program("tyndall view",
+                              "look at a scene while it is lit: every technique, every setting, at once",
+                              "tyndall-view " TYNDALL_VERSION, "Options");
     Texts texts;
     add_options(program, texts);
     program.footer(footer());

@@ -144,7 +144,7 @@ Run add_chart(const Command& program) {
     command.options("--set", texts->settings,
                     "one setting for all modes, for instance terms.ambient=off; may be\n"
                     "repeated. What makes a mode quicker or more careful is the chart's own",
-                    "ROW=VALUE");
+                    "NAME=VALUE");
     command.footer("Example: a first look, then the whole story\n"
                    "  tyndall chart scenes/window.json -o out/chart --quick\n"
                    "  tyndall chart scenes/window.json -o out/chart\n"

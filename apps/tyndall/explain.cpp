@@ -129,7 +129,7 @@ Run add_explain(const Command& program) {
     command.options("--set", texts->settings,
                     "one setting by name, like froxel.tile=4; may be repeated\n"
                     "(tyndall modes lists them)",
-                    "ROW=VALUE");
+                    "NAME=VALUE");
     command.option("--modes", texts->modes, "the modes to ask, with commas between (default: all); or none", "NAMES");
     command.option("--svg", texts->svg, "a drawing of it", "FILE.svg");
     command.option("--csv", texts->csv, "a table of every step along the ray", "FILE.csv");

@@ -134,7 +134,7 @@ Run add_plan(const Command& program) {
                    "E");
     command.option("--time-budget", render.time_budget, "seconds a picture may take instead", "SECONDS");
     command.option("--quality", render.quality, "where other settings come from (default: preview)", "NAME");
-    command.options("--set", render.settings, "a setting that is to stay as it is; may be repeated", "ROW=VALUE");
+    command.options("--set", render.settings, "a setting that is to stay as it is; may be repeated", "NAME=VALUE");
     command.option("--orders", render.orders,
                    "how many times light may scatter, or all (default: 1); more than once only\n"
                    "where the fog needs it",

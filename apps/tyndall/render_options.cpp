@@ -102,7 +102,8 @@ void add_how(const Command& command, RenderOptions& texts) {
     option("--orders", texts.orders,
            "how many times light scatters, in fog or on surfaces, or all of them\n"
            "(default: 1; all for path). In march and froxel a grid of light that has\n"
-           "scattered before is added to exact single scattering",
+           "scattered before is added to the fog, on top of exact single scattering;\n"
+           "surfaces keep direct light",
            "N");
     option("--mode", texts.mode,
            "rendering technique (default: march), or auto: the quickest that gets to\n"
@@ -119,7 +120,7 @@ void add_how(const Command& command, RenderOptions& texts) {
         .options("--set", texts.settings,
                  "one setting, for instance march.step_depth=0.1; may be repeated;\n"
                  "tyndall modes lists them",
-                 "ROW=VALUE")
+                 "NAME=VALUE")
         .group("Quality");
     option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
     option("--isa", texts.isa,
@@ -139,7 +140,10 @@ void add_results(const Command& command, RenderOptions& texts) {
         .group(group);
     command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
     command.flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)").group(group);
-    command.option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops", "EV").group(group);
+    command
+        .option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops from the scene's exposure",
+                "EV")
+        .group(group);
     command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
     command.option("--stats-json", texts.stats, "write times and counts of every frame to a file", "FILE").group(group);
 }

@@ -101,7 +101,7 @@ Run add_verify(const Command& program) {
                    "more of them find smaller differences",
                    "N");
     command.option("--seed", texts->seed, "other random numbers (default: 0)", "N");
-    command.footer("Examples: this program in about a minute; then a scene\n"
+    command.footer("Examples: this program in half a minute; then a scene\n"
                    "  tyndall verify\n"
                    "  tyndall verify scenes/window.json --res 320x180 --samples 1024\n"
                    "Without a scene: closed forms, published tables, conservation of energy, invariances. With one:\n"

@@ -129,11 +129,13 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));
     if (snapshot.lights.empty() || fog.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
-    const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0) {
-        limitations.push_back({Severity::info, &kind, Subject::setting, row, {amount}});
+    const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0,
+                         Severity severity = Severity::info) {
+        limitations.push_back({severity, &kind, Subject::setting, row, {amount}});
     };
     add(limitation::cached_fluence, "fluence.resolution", cell);
-    add(limitation::fog_scatters_alone, "fluence.orders");
+    const bool surfaces = snapshot.occluders && snapshot.occluders->triangle_count() > 0;
+    add(limitation::fog_scatters_alone, "fluence.orders", 0, surfaces ? Severity::degraded : Severity::info);
     if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
 }

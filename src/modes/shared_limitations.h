@@ -12,7 +12,8 @@ struct View;
 namespace limitation {
 inline constexpr LimitationKind single_scattering_only{
     "single_scattering_only",
-    "single scattering only: with up to {} optical depths of scattering, real fog is brighter and softer"};
+    "single scattering only: with up to {} optical depths of scattering, real fog is brighter and softer (march and "
+    "froxel add it with --orders all)"};
 inline constexpr LimitationKind float_precision{
     "float_precision", "float precision at this distance from the origin is {} m: edges and shadows are no finer"};
 inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
@@ -31,8 +32,8 @@ inline constexpr LimitationKind cached_fluence{
     "multiple scattering is cached in cells of {} m: its detail is no finer, and within a cell it may "
     "leak around corners"};
 inline constexpr LimitationKind fog_scatters_alone{
-    "fog_scatters_alone", "multiple scattering covers fog only: surface interreflection, ambient light and emission "
-                          "are ignored"};
+    "fog_scatters_alone", "light that has scattered before is added to the fog only: surfaces show direct light, and "
+                          "ambient light and emission are not scattered again"};
 inline constexpr LimitationKind unbounded_fluence{
     "unbounded_fluence", "of unbounded fog only what lies in and around the scene scatters light again"};
 inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are left out"};
@@ -44,7 +45,7 @@ inline constexpr LimitationKind unattenuated_light{
 inline constexpr LimitationKind average_light{
     "average_light", "light-side transmittance is average: the light is dimmed alike everywhere"};
 inline constexpr LimitationKind hard_shadows{"hard_shadows",
-                                             "seen from one point: its soft shadows have hard edges in the fog"};
+                                             "its size is ignored: its shadows have hard edges in the fog"};
 }
 
 // Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places

@@ -60,7 +60,8 @@ void append_fluence_rows(std::vector<SettingRow>& rows) {
     rows.push_back(
         number_row("fluence.orders", "", 1, all_orders,
                    "most times light scatters in march and froxel, in fog or on surfaces; beyond 1 a grid of "
-                   "the light that has scattered before is added to exact single scattering",
+                   "the light that has scattered before is added to the fog, on top of exact single scattering; "
+                   "surfaces keep direct light",
                    TYNDALL_FIELD(fluence.orders)));
     rows.push_back(number_row("fluence.resolution", "cells", 4, 256, "cells of that grid along the fog's longest side",
                               TYNDALL_FIELD(fluence.resolution)));

@@ -39,6 +39,10 @@ class Help(ProgramTest):
                     self.assertIn(option, result.stdout)
                 self.assertLessEqual(max(map(len, result.stdout.splitlines())), 120, command)
 
+    def test_help_names_nothing_of_the_code(self):
+        for command in [*COMMANDS, "plan", "stress", "chart", "view"]:
+            self.assertNotRegex(self.succeed(command, "--help").stdout, r"\b[A-Z][a-z]+[A-Z][a-z]", command)
+
     def test_version(self):
         self.assertRegex(self.succeed("--version").stdout, r"^tyndall \d+\.\d+\.\d+\n$")
 

@@ -174,9 +174,8 @@ std::string method(const Chart& chart) {
             " Modes start each frame without history.",
         "Fog light at pixel centres: every ray of a pixel goes through its centre, in the reference too. What is left "
         "is the technique's own error and noise.",
-        "FroxelSamples (<code>billboard</code>, <code>radial-blur</code>) promise no light: they are shown as they "
-        "come, "
-        "and again, dashed and hollow, with their fog light multiplied by the one number that fits best.",
+        "The artistic modes (<code>billboard</code>, <code>radial-blur</code>) promise no light: they are shown as "
+        "they come, and again, dashed and hollow, with their fog light multiplied by the one number that fits best.",
         "<code>path</code> scatters light once here and is measured by the light of lamps and suns; ambient light, "
         "which it shadows and the reference does not, is left out on both sides.",
         "The grey steps join what no other setting beats in both time and error. Whiskers: the fastest and the slowest "

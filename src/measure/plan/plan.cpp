@@ -40,9 +40,11 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 
 // Why a mode that was measured lost, given its best candidate and the winner.
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
-    if (best.gets_there() && goal.error > 0)
+    if (best.gets_there() && goal.error > 0) {
+        const double ratio = best.seconds / winner.seconds;
         return "gets there in " + seconds_text(best.seconds) +
-               formatted(", %.2g times as long", best.seconds / winner.seconds);
+               (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));
+    }
     std::string text =
         goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)

@@ -20,7 +20,7 @@ struct FroxelStatics {
     std::vector<std::shared_ptr<const RecycledFloats>> extinctions;
 };
 
-// FroxelSamples at a frame's scene with what is known of the frame before (null: nothing). `snapshot` as the settings
+// Reads a frame's scene with what is known of the frame before (null: nothing). `snapshot` as the settings
 // see it. A grid without slices: no fog in view.
 FroxelStatics look_at_scene(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
                             const FroxelStatics* before);

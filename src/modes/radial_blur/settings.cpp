@@ -31,7 +31,7 @@ void append_radial_blur_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<RadialBlurSettings>().fade)));
     rows.push_back(choice_row("radial_blur.resolution", resolutions, "resolution of the blur along each side",
                               TYNDALL_FIELD(of<RadialBlurSettings>().resolution)));
-    rows.push_back(choice_row("radial_blur.fog", switches, "surfaces and background fade in fog, taken as even",
+    rows.push_back(choice_row("radial_blur.fog", switches, "surfaces and background fade in fog, taken as homogeneous",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fog)));
     mark_advanced(rows, {"decay", "weight", "exposure", "fade"});
 }

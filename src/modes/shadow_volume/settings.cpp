@@ -8,10 +8,11 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("shadow_volume.draw", {"exact", "shells"},
                               "exact = fog light integrated between the volumes; shells = their sides as bright sheets",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().draw)));
-    rows.push_back(choice_row("shadow_volume.fog", {"auto", "homogeneous", "sampled"},
-                              "even = every medium at its mean density, in closed form; sampled = true densities in "
-                              "steps; auto = sampled where there is a grid",
-                              TYNDALL_FIELD(of<ShadowVolumeSettings>().fog)));
+    rows.push_back(
+        choice_row("shadow_volume.fog", {"auto", "homogeneous", "sampled"},
+                   "homogeneous = every medium at its mean density, in closed form; sampled = true densities in "
+                   "steps; auto = sampled where there is a grid",
+                   TYNDALL_FIELD(of<ShadowVolumeSettings>().fog)));
     rows.push_back(number_row("shadow_volume.nodes", "", 1, 32,
                               "Gauss-Legendre nodes on each lit stretch of homogeneous fog",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().nodes)));
