@@ -15,7 +15,7 @@ namespace {
 // How far the angle seen from a local light may turn on one set of nodes: less where the phase function has a lobe.
 double widest_turn(const SingleScattering& frame) {
     float g = 0;
-    for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(medium.optics.phase.g));
+    for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(mean_cosine(medium.optics.phase)));
     return std::min(0.8, 4 * (1 - double(g)));
 }
 

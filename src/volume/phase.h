@@ -4,6 +4,7 @@
 #include "base/math.h"
 
 #include <numbers>
+#include <string_view>
 
 namespace tyndall {
 enum class PhaseKind { isotropic, henyey_greenstein, schlick, rayleigh };
@@ -13,8 +14,25 @@ struct Phase {
     float g = 0; // mean cosine, -1..1; above 0 scatters forward
 };
 
-inline constexpr float largest_g = 0.99f;        // beyond it the lobe is narrower than a pixel
-inline constexpr float largest_schlick_g = 0.5f; // beyond it Schlick's form departs from the one it stands for
+inline constexpr float largest_g = 0.99f; // beyond it the lobe is narrower than a pixel
+
+struct PhaseTraits {
+    std::string_view name;     // in scene files
+    float max_g = 0;           // 0 = takes no g
+    std::string_view beyond{}; // what is wrong with a larger one, and what to use
+};
+inline constexpr PhaseTraits phase_kinds[] = {
+    {.name = "isotropic"},
+    {.name = "henyey_greenstein", .max_g = 1, .beyond = "g lies between -1 and 1"},
+    {.name = "schlick",
+     .max_g = 0.5f,
+     .beyond = "Schlick's form departs from Henyey-Greenstein's beyond |g| = 0.5; use \"henyey_greenstein\""},
+    {.name = "rayleigh"},
+};
+constexpr const PhaseTraits& traits_of(PhaseKind kind) { return phase_kinds[static_cast<int>(kind)]; }
+constexpr bool takes_g(PhaseKind kind) { return traits_of(kind).max_g > 0; }
+
+inline float mean_cosine(Phase phase) { return takes_g(phase.kind) ? std::clamp(phase.g, -largest_g, largest_g) : 0; }
 
 // Value in 1/sr, to the rounding of T.
 template<class T> T phase_value_of(Phase phase, T cosine) {

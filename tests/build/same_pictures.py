@@ -51,8 +51,8 @@ def difference(old, new, scene, mode, quality, isa, size, directory):
         return "" if said[0] == said[1] else f"old: {said[0] or 'a picture'}, new: {said[1] or 'a picture'}"
     if stored_pixels(pictures[0]) == stored_pixels(pictures[1]):
         return ""
-    told = subprocess.run([str(new), "compare", *map(str, pictures)], capture_output=True, text=True).stdout
-    return "other pixels; " + "; ".join(told.split("\n"))
+    told = subprocess.run([str(new), "compare", "--json", *map(str, pictures)], capture_output=True, text=True).stdout
+    return f"other pixels, E = {json.loads(told)['metrics']['E']:.3g}"
 
 
 def middle_errors(program, directory):

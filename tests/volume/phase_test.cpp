@@ -47,7 +47,7 @@ TEST(Phase, IntegratesToOne) {
         EXPECT_NEAR(m.total, 1, 1e-3) << g;
         EXPECT_NEAR(m.cosine, g, 1e-3) << g;
     }
-    for (const float g : {-0.5f, -0.2f, 0.0f, 0.3f, largest_schlick_g})
+    for (const float g : {-0.5f, -0.2f, 0.0f, 0.3f, traits_of(PhaseKind::schlick).max_g})
         EXPECT_NEAR(moments({PhaseKind::schlick, g}).total, 1, 1e-3) << g;
     EXPECT_NEAR(moments({PhaseKind::isotropic, 0.7f}).total, 1, 1e-3);
     EXPECT_NEAR(moments({PhaseKind::rayleigh, 0}).total, 1, 1e-3);
@@ -77,7 +77,7 @@ TEST(Phase, VectorsEqualScalars) {
     for (const PhaseKind kind :
          {PhaseKind::isotropic, PhaseKind::henyey_greenstein, PhaseKind::schlick, PhaseKind::rayleigh})
         for (const float g : {-2.0f, -0.99f, -0.4f, 0.0f, 1e-4f, 0.3f, 0.49f, 0.9f, 0.99f, 1.0f}) {
-            if (kind == PhaseKind::schlick && std::abs(g) > largest_schlick_g) continue;
+            if (kind == PhaseKind::schlick && std::abs(g) > traits_of(kind).max_g) continue;
             for (int i = 0; i <= 64; ++i) {
                 alignas(64) float cosine[16], value[16];
                 for (int lane = 0; lane < 16; ++lane)

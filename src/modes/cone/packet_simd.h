@@ -182,8 +182,7 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
     for (const Medium& medium : packet.fog.media) {
         if (medium.density.kind == DensityKind::height)
             amount = amount + min(abs(packet.direction.y) * length * (1 / medium.density.height_falloff), 30.0f);
-        const float g = medium.optics.phase.kind == PhaseKind::isotropic ? 0 : std::abs(medium.optics.phase.g);
-        narrowest = std::min(narrowest, 1 - std::min(g, largest_g));
+        narrowest = std::min(narrowest, 1 - std::abs(mean_cosine(medium.optics.phase)));
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
     const float change_at_most = std::min(most(amount), 60.0f);

@@ -14,9 +14,7 @@ MediumKind kind_named(std::string_view name) {
 }
 
 PhaseKind phase_named(std::string_view name) {
-    if (name == "schlick") return PhaseKind::schlick;
-    if (name == "rayleigh") return PhaseKind::rayleigh;
-    return name == "isotropic" ? PhaseKind::isotropic : PhaseKind::henyey_greenstein;
+    return static_cast<PhaseKind>(std::ranges::find(phase_kinds, name, &PhaseTraits::name) - phase_kinds);
 }
 
 void read_transform(const Field& field, MediumSource& medium) {
@@ -39,17 +37,13 @@ void read_bounds(const Field& field, MediumSource& medium) {
             refuse(bounds.member("high").item(axis), "must be greater than low");
 }
 
-bool has_g(PhaseKind phase) { return phase == PhaseKind::henyey_greenstein || phase == PhaseKind::schlick; }
-
 void check_phase(const Field& field, const MediumSource& medium) {
     const Field phase = field.member("phase"), g = field.member("g");
-    if (g && !has_g(medium.phase)) refuse(g, "has no meaning for the phase function \"" + phase.json->string + "\"");
-    if (medium.phase != PhaseKind::schlick) return;
+    const PhaseTraits& traits = traits_of(medium.phase);
+    if (g && !takes_g(medium.phase)) refuse(g, "has no meaning for the phase function \"" + phase.json->string + "\"");
     for (const float value : medium.g.values)
-        if (std::abs(value) > largest_schlick_g)
-            refuse(g ? g : phase, "Schlick's form departs from Henyey-Greenstein's beyond |g| = 0.5" +
-                                      std::string(g ? "" : " (g comes from the fog's file)") +
-                                      "; use \"henyey_greenstein\"");
+        if (takes_g(medium.phase) && std::abs(value) > traits.max_g)
+            refuse(g ? g : phase, std::string(traits.beyond) + (g ? "" : " (g comes from the fog's file)"));
 }
 
 // What the file does not say stays what it was: the defaults of the recipe or the volume.
@@ -60,7 +54,7 @@ void read_optics(const Field& field, MediumSource& medium) {
     if (const Field emission = field.member("emission")) medium.emission = keyed_color(emission);
     if (const Field phase = field.member("phase")) medium.phase = phase_named(phase.json->string);
     check_phase(field, medium);
-    if (!has_g(medium.phase)) medium.g = 0.0f;
+    if (!takes_g(medium.phase)) medium.g = 0.0f;
 }
 
 void read_noise(const Field& field, MediumSource& medium, Scene& scene) {

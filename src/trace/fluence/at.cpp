@@ -4,11 +4,6 @@
 #include <algorithm>
 
 namespace tyndall {
-float mean_cosine(Phase phase) {
-    const bool even = phase.kind == PhaseKind::isotropic || phase.kind == PhaseKind::rayleigh;
-    return even ? 0 : std::clamp(phase.g, -largest_g, largest_g);
-}
-
 namespace {
 // Whether light gets from a cell to another one at a corner next to it, along x, then y, then z.
 bool is_open(const FluenceGrid& grid, ivec3 from, ivec3 to) {

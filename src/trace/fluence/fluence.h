@@ -53,7 +53,4 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
 // FrameCache while lights, media and surfaces stand still (trace/kept.h). Null when settings or scene ask for none.
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed = 0);
-
-// Mean cosine of a phase function.
-float mean_cosine(Phase phase);
 }

@@ -12,6 +12,7 @@
 #pragma once
 #include "scene/camera.h"
 #include "scene/light.h"
+#include "trace/light_projection.h"
 #include "trace/transmittance/light_transmittance.h"
 
 #include <memory>
@@ -26,9 +27,9 @@ struct View;
 using SharedFloats = std::shared_ptr<const std::vector<float>>;
 
 struct LightDepthGrid {
-    // How cells lie, by the three above. A point light that sees the fog under a small angle has a `spot` grid, a spot
-    // wider than 70° to each side a `point` grid.
-    LightKind kind = LightKind::sun;
+    // How cells lie, by the three above. A point light that sees the fog under a small angle has a `perspective` grid,
+    // a spot wider than 70° to each side an `all_around` grid.
+    LightProjection projection = LightProjection::parallel;
     mat3 world_to_grid{1};    // rotation to the grid's axes, after `position` is taken off
     vec3 position{0};         // a point by the fog (sun), the light
     ivec3 size{0};            // corners along u, v, w

@@ -85,9 +85,9 @@ HWY_INLINE Vec3s grid_coordinates(const LightDepthGrid& grid, const Vec3s& point
     const Vec3s p = point - splat(grid.position);
     const Vec3s q = {dot(p, {m[0].x, m[1].x, m[2].x}), dot(p, {m[0].y, m[1].y, m[2].y}),
                      dot(p, {m[0].z, m[1].z, m[2].z})};
-    if (grid.kind == LightKind::sun) return q;
+    if (grid.projection == LightProjection::parallel) return q;
     const Floats distance = sqrt(dot(q, q));
-    if (grid.kind == LightKind::spot) {
+    if (grid.projection == LightProjection::perspective) {
         valid = valid & (q.z > 0.0f);
         const Floats inverse = 1.0f / max(q.z, 1e-20f);
         return {q.x * inverse, q.y * inverse, distance};

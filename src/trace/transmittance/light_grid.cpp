@@ -167,7 +167,7 @@ void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
 // Columns along the sun's rays.
 void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, const Box& fog,
              float cells, LightDepthGrid& grid) {
-    grid.kind = LightKind::sun;
+    grid.projection = LightProjection::parallel;
     grid.position = stable_anchor(fog.center(), max_component(fog.size()) + blocks[0].radius);
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
@@ -187,7 +187,7 @@ void fit_distances(const Light& light, Fit fit, float cell, float width, LightDe
 
 void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, vec3 axis,
                    float angle, float cells, LightDepthGrid& grid) {
-    grid.kind = LightKind::spot;
+    grid.projection = LightProjection::perspective;
     const float tangent = std::tan(std::max(angle, 1e-3f));
     const Fit fit = tightest(media, axis, grid,
                              [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
@@ -199,7 +199,7 @@ void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> 
 // All directions: the octahedron's square of side 2 holds a solid angle of 4π; two thirds of it lie across the fog. An
 // even number of cells, as the square folds about its middle.
 void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, LightDepthGrid& grid) {
-    grid.kind = LightKind::point;
+    grid.projection = LightProjection::all_around;
     Fit fit;
     fit.grow(0, -1, 1), fit.grow(1, -1, 1);
     for (const Block& block : blocks) {

@@ -33,9 +33,9 @@ Columns columns_at(const LightDepthGrid& grid, int first, int row) {
         const float x = (static_cast<float>(column) - grid.offset.x) / grid.scale.x;
         const float y = (static_cast<float>(row) - grid.offset.y) / grid.scale.y;
         vec3 origin(0), direction(0, 0, 1);
-        if (grid.kind == LightKind::sun) origin = vec3(x, y, 0);
-        if (grid.kind == LightKind::spot) direction = glm::normalize(vec3(x, y, 1));
-        if (grid.kind == LightKind::point) direction = glm::normalize(octahedral_direction(x, y));
+        if (grid.projection == LightProjection::parallel) origin = vec3(x, y, 0);
+        if (grid.projection == LightProjection::perspective) direction = glm::normalize(vec3(x, y, 1));
+        if (grid.projection == LightProjection::all_around) direction = glm::normalize(octahedral_direction(x, y));
         origin = grid.position + grid_to_world * origin;
         direction = grid_to_world * direction;
         for (int axis = 0; axis < 3; ++axis) v[axis][lane] = origin[axis], v[3 + axis][lane] = direction[axis];

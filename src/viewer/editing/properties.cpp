@@ -14,10 +14,7 @@ bool is_local(const Scene& scene, size_t i) { return !is_sun(scene, i); }
 bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
 bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
 bool has_direction(const Scene& scene, size_t i) { return is_aimed(scene.lights[i]) && !has_target(scene, i); }
-bool has_mean_cosine(const Scene& scene, size_t i) {
-    const PhaseKind phase = scene.media[i].phase;
-    return phase == PhaseKind::henyey_greenstein || phase == PhaseKind::schlick;
-}
+bool has_mean_cosine(const Scene& scene, size_t i) { return takes_g(scene.media[i].phase); }
 bool is_height(const Scene& scene, size_t i) { return scene.media[i].kind == MediumKind::height; }
 bool is_noise(const Scene& scene, size_t i) { return scene.media[i].recipe.has_value(); }
 bool has_bounds(const Scene& scene, size_t i) {

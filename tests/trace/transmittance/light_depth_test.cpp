@@ -109,14 +109,14 @@ TEST(LightDepth, GridKnowsBeforeBesideAndBehind) {
     for (const Light& light :
          {spot_light(vec3(7.5f, 60, 7.5f), {0, -1, 0}, 1, 0, 0.3f), point_light(vec3(7.5f, 60, 7.5f))}) {
         const LightDepth depth = make_light_depth(snapshot, light, LightTransmittance::grid, 64);
-        EXPECT_EQ(depth.grid.kind, LightKind::spot);
+        EXPECT_EQ(depth.grid.projection, LightProjection::perspective);
         EXPECT_NEAR(depth_at(depth, vec3(7.5f, 40, 7.5f)), 0, 1e-6);
         EXPECT_NEAR(depth_at(depth, vec3(7.5f, -30, 7.5f)), across, 5e-3);
         EXPECT_NEAR(depth_at(depth, vec3(7.5f, 7.5f, 7.5f)), across / 2, 0.02f);
         EXPECT_EQ(depth_at(depth, vec3(7.5f, 80, 7.5f)), 0);
     }
     const LightDepth inside = make_light_depth(snapshot, point_light(vec3(7.5f)), LightTransmittance::grid, 64);
-    EXPECT_EQ(inside.grid.kind, LightKind::point);
+    EXPECT_EQ(inside.grid.projection, LightProjection::all_around);
     for (const vec3 axis : {vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)})
         EXPECT_NEAR(depth_at(inside, vec3(7.5f) + 50.0f * axis), across / 2, 5e-3);
 }

@@ -156,7 +156,7 @@ TEST(LightGrid, OctahedronHasNoSeams) {
     Light light;
     light.position = vec3(side / 2);
     const LightDepth depth = make_light_depth(snapshot, light, LightTransmittance::grid, 24);
-    ASSERT_EQ(depth.grid.kind, LightKind::point);
+    ASSERT_EQ(depth.grid.projection, LightProjection::all_around);
     double largest = 0, largest_elsewhere = 0;
     for (uint32_t i = 0; i < 4000; ++i) {
         vec3 direction = random_direction(i, 8);

@@ -26,9 +26,10 @@ struct Filling {
 Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, vec2 texel) {
     const vec2 at = (texel - picture.offset) / picture.scale;
     const ShadowMap& map = filling.map;
-    if (map.kind == LightKind::sun)
+    if (map.projection == LightProjection::parallel)
         return {map.position + filling.map_to_world * vec3(at, filling.start), filling.light.direction};
-    if (map.kind == LightKind::spot) return {map.position, filling.map_to_world * glm::normalize(vec3(at, 1))};
+    if (map.projection == LightProjection::perspective)
+        return {map.position, filling.map_to_world * glm::normalize(vec3(at, 1))};
     const int axis = static_cast<int>(face) / 2;
     vec3 direction;
     direction[axis] = face % 2 ? -1.0f : 1.0f;
@@ -53,7 +54,7 @@ float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, floa
 Interval<float> seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
     const float radius =
         (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(picture.scale.x, picture.scale.y);
-    const bool parallel = filling.map.kind == LightKind::sun;
+    const bool parallel = filling.map.projection == LightProjection::parallel;
     return seen_stretch(filling.seen, middle.origin - filling.seen.anchor, middle.direction, parallel ? radius : 0,
                         parallel ? 0 : radius);
 }
@@ -96,7 +97,7 @@ void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& li
     Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha(), {}};
     filling.seen = view_frustum(view, snapshot, map.position);
     filling.smallest_cosine = -2;
-    if (map.kind == LightKind::sun) {
+    if (map.projection == LightProjection::parallel) {
         const Box box = occluders.bounds();
         float first = infinity;
         for (int i = 0; i < 8; ++i) {

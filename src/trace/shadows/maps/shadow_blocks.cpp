@@ -84,7 +84,7 @@ void make_blocks(ShadowMap& map) {
 
 Lit lit_in_box(const ShadowMap& map, vec3 low, vec3 high) {
     if (map.empty()) return Lit::all;
-    if (map.kind != LightKind::sun || map.blocks.empty()) return Lit::some;
+    if (map.projection != LightProjection::parallel || map.blocks.empty()) return Lit::some;
     const float depth = low.z - std::abs(low.z) * rounding;
     const float filter = map.pcf == 0 ? 0.0f : map.pcf == 1 ? 0.5f : 1.5f;
     for (const ShadowPicture& picture : map.pictures) {

@@ -35,7 +35,7 @@ constexpr float widest_picture = 70 * pi / 180; // half angle of a spot
 // A spot's picture of its cone, or a cube's six.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
     const bool cube = shines_around(light) || light.outer_cone > widest_picture;
-    map.kind = cube ? LightKind::point : LightKind::spot;
+    map.projection = cube ? LightProjection::all_around : LightProjection::perspective;
     map.position = light.position;
     float half = 1;
     if (!cube) {

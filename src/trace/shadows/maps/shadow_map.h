@@ -9,7 +9,7 @@
 // filters never meet its border.
 #pragma once
 #include "base/math.h"
-#include "scene/light_kind.h"
+#include "trace/light_projection.h"
 
 #include <array>
 #include <vector>
@@ -45,9 +45,9 @@ struct DepthRange {
 };
 
 struct ShadowMap {
-    LightKind kind = LightKind::sun; // how pictures lie, by the three above
-    mat3 world_to_map{1};            // rotation to u, v, w, after `position` is taken off
-    vec3 position{0};                // the light; of a sun a point amid the surfaces
+    LightProjection projection = LightProjection::parallel; // how pictures lie, by the three above
+    mat3 world_to_map{1};                                   // rotation to u, v, w, after `position` is taken off
+    vec3 position{0};                                       // the light; of a sun a point amid the surfaces
     std::vector<ShadowPicture> pictures;
     std::vector<float> depth; // w of the nearest surface, infinite where there is none, unseen_depth where none looks
     std::vector<DepthRange> blocks; // of each picture: of 4×4 texels, of 8×8, and so on to one block

@@ -58,7 +58,7 @@ HWY_INLINE void place_in_cascades(const ShadowMap& map, const Vec3s& q, TexelPla
 HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
     const ShadowPicture& picture = map.pictures[0];
     Floats a = q.x, b = q.y, depth = q.z, face = 0.0f;
-    if (map.kind == LightKind::point) {
+    if (map.projection == LightProjection::all_around) {
         const Floats x = abs(q.x), y = abs(q.y), z = abs(q.z);
         const Mask16 along_x = (x >= y) & (x >= z), along_y = y >= z;
         a = select(along_x, q.y, select(along_y, q.z, q.x)), b = select(along_x, q.z, select(along_y, q.x, q.y));
@@ -87,7 +87,7 @@ HWY_INLINE Vec3s map_coordinates(const ShadowMap& map, const Vec3s& point) {
 
 HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
     TexelPlaces places;
-    map.kind == LightKind::sun ? place_in_cascades(map, q, places) : place_in_tangents(map, q, places);
+    map.projection == LightProjection::parallel ? place_in_cascades(map, q, places) : place_in_tangents(map, q, places);
     places.u = select(places.mapped, places.u, shadow_guard), places.v = select(places.mapped, places.v, shadow_guard);
     return places;
 }
@@ -97,7 +97,7 @@ HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
 HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
     if (map.empty()) return 1.0f;
     const TexelPlaces places = texel_places(map, q);
-    const Floats outside = map.kind == LightKind::sun ? 1.0f : 0.0f;
+    const Floats outside = map.projection == LightProjection::parallel ? 1.0f : 0.0f;
     if (!any(places.mapped)) return outside;
 
     // Surfaces lie a millionth further than stored: what floats round.

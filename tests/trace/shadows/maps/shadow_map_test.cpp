@@ -115,7 +115,7 @@ TEST(ShadowMap, WideSpotHasACube) {
     Light light = light_of(LightKind::spot, vec3(0), {0, -1, 0});
     light.outer_cone = 80 * pi / 180;
     const ShadowMap map = stage.map(light);
-    EXPECT_EQ(map.kind, LightKind::point);
+    EXPECT_EQ(map.projection, LightProjection::all_around);
     EXPECT_EQ(share_at(map, {1.9f, -1.9f, 0}), 1);
     EXPECT_EQ(share_at(map, {1.9f, -2.1f, 0}), 0);
 }
