@@ -1,9 +1,9 @@
 // Shadows at sixteen points by rays towards a light (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_SHADOW_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_SHADOW_RAYS_SIMD_H
-#undef TYNDALL_MODES_SHADOW_RAYS_SIMD_H
+#if defined(TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H
+#undef TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H
 #else
-#define TYNDALL_MODES_SHADOW_RAYS_SIMD_H
+#define TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H
 #endif
 
 #include "base/random.h"

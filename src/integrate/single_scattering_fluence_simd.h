@@ -1,10 +1,10 @@
 // Light that has been scattered before, inside the kernel of lit fog (see base/simd/simd.h for how such files are
 // compiled).
-#if defined(TYNDALL_MODES_LIT_FOG_FLUENCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_LIT_FOG_FLUENCE_SIMD_H
-#undef TYNDALL_MODES_LIT_FOG_FLUENCE_SIMD_H
+#if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H
+#undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H
 #else
-#define TYNDALL_MODES_LIT_FOG_FLUENCE_SIMD_H
+#define TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H
 #endif
 
 #include "integrate/single_scattering_simd.h"

@@ -1,10 +1,10 @@
 // Whole steps in the light of a sun, the same step of all rays at once, inside the kernel of lit fog (see
 // base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_LIT_FOG_ROWS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_LIT_FOG_ROWS_SIMD_H
-#undef TYNDALL_MODES_LIT_FOG_ROWS_SIMD_H
+#if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
+#undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
 #else
-#define TYNDALL_MODES_LIT_FOG_ROWS_SIMD_H
+#define TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
 #endif
 
 #include "integrate/single_scattering_simd.h"
@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Adds the steps noted in `whole`, each by its middle, where the fog's extinction is known already.
-void add_rows(Packet& packet, size_t index) {
+void add_full_steps(Packet& packet, size_t index) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
     const std::vector<Medium>& media = frame.snapshot.media;

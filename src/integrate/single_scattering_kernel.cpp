@@ -10,7 +10,7 @@
 #include "integrate/single_scattering_fluence_simd.h"
 #include "integrate/single_scattering_full_steps_simd.h"
 #include "integrate/single_scattering_quadrature_simd.h"
-#include "integrate/single_scattering_sheets_simd.h"
+#include "integrate/single_scattering_shells_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -63,7 +63,7 @@ void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[
     const uint32_t points = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
     Ray rays[16];
     LightPoint picked[16];
-    packet.part = 1.0 / points;
+    packet.light_share = 1.0 / points;
     for (uint32_t k = 0; k < points; ++k) {
         for (size_t i = 0; i < count; ++i) {
             rays[i] = packet.batch.rays[i];
@@ -74,7 +74,7 @@ void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[
                  packet.scratch.lit);
         push_all(packet, index, reached);
     }
-    packet.part = 1;
+    packet.light_share = 1;
 }
 
 // Shadows, if any, begin at the light's centre.
@@ -102,14 +102,14 @@ void add_light(Packet& packet, size_t index) {
     for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
     packet.spread = is_distant(light) ? Spread::length : Spread::angle;
     const ShadowsBy by = frame.shadows[index].by;
-    packet.by_rows = frame.sampled && is_distant(light) && by != ShadowsBy::rays && !frame.shells;
-    if (packet.by_rows) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.most), 0.0f);
+    packet.full_steps = frame.sampled && is_distant(light) && by != ShadowsBy::rays && !frame.shells;
+    if (packet.full_steps) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.most), 0.0f);
     if (by == ShadowsBy::slices)
         add_sliced(packet, index, reached);
     else
         add_cut_out(packet, index, reached);
     add_nodes(packet, static_cast<int>(index));
-    if (packet.by_rows) add_rows(packet, index);
+    if (packet.full_steps) add_full_steps(packet, index);
 }
 
 // Optical depth of sampled fog at every cut, by the density in the middle of each step.
@@ -170,7 +170,7 @@ void add_glow(Packet& packet, const Floats& depth) {
     for (size_t i = 0; i < count; ++i)
         for (int k = 0; k < cuts.pieces[i]; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;
-            if (counts(packet, i, k)) push_part(packet, {no_light, i, k, at[0], at[16]});
+            if (counts(packet, i, k)) push_piece(packet, {no_light, i, k, at[0], at[16]});
         }
     add_nodes(packet, no_light);
 }

@@ -1,10 +1,10 @@
 // Nodes on the lit stretches of rays, inside the kernel of lit fog (see base/simd/simd.h for how such files are
 // compiled).
-#if defined(TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
-#undef TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H
+#undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H
 #else
-#define TYNDALL_MODES_LIT_FOG_PARTS_SIMD_H
+#define TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H
 #endif
 
 #include "integrate/single_scattering_simd.h"
@@ -12,14 +12,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// How far the angle seen from a local light may turn on one set of nodes: less where the phase function has a lobe.
-double widest_turn(const SingleScattering& frame) {
+// How far the angle seen from a local light may change on one set of nodes: less where the phase function has a lobe.
+double widest_angle(const SingleScattering& frame) {
     float g = 0;
     for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(mean_cosine(medium.optics.phase)));
     return std::min(0.8, 4 * (1 - double(g)));
 }
 
-// Far along the ray the angle hardly turns while fog goes on: parts end at ±1, ±3, ±9 ... times the light's distance.
+// Far along the ray the angle hardly changes while fog goes on: parts end at ±1, ±3, ±9 ... times the light's distance.
 double next_bound(double x) {
     double bound = 1;
     while (bound <= std::abs(x)) bound *= 3;
@@ -27,8 +27,8 @@ double next_bound(double x) {
     return -bound / (bound / 3 < -x ? 3 : 9);
 }
 
-// A part of a ray in which nothing has a kink.
-struct Part {
+// A piece of a ray in which nothing has a kink.
+struct Piece {
     int light;
     size_t ray;
     int cut;
@@ -36,39 +36,39 @@ struct Part {
     bool soft = false; // in the soft edge of a spot
 };
 
-// How many turns of at most `widest` the angle between two slopes takes.
-double turns_of(double from, double to, double widest) {
+// Into how many parts of at most `widest` the angle between two slopes is cut.
+double angular_parts(double from, double to, double widest) {
     if (widest >= 0.8) return 1; // bounds are never further apart
     return std::ceil((std::atan(to) - std::atan(from)) / widest);
 }
 
 // The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
-std::span<const QuadratureNode> rule_for(const Packet& packet, const Part& part) {
-    if (part.light >= 0 && packet.frame.shadows[static_cast<size_t>(part.light)].by == ShadowsBy::rays)
-        return {&packet.jittered[part.ray], 1};
-    const int more = part.soft ? 2 : 0;
+std::span<const QuadratureNode> rule_for(const Packet& packet, const Piece& piece) {
+    if (piece.light >= 0 && packet.frame.shadows[static_cast<size_t>(piece.light)].by == ShadowsBy::rays)
+        return {&packet.jittered[piece.ray], 1};
+    const int more = piece.soft ? 2 : 0;
     if (!packet.frame.sampled) return gauss_legendre(packet.frame.nodes + more);
     return gauss_legendre(packet.spread == Spread::angle ? 2 + more / 2 : 1);
 }
 
-void push_turning(Packet& packet, const Part& part) {
-    const std::span<const QuadratureNode> rule = rule_for(packet, part);
-    const double nearest = packet.scratch.along[part.ray].nearest, away = packet.away[part.ray];
-    const double end = (part.high - nearest) / away, widest = packet.frame.sampled ? 1 : widest_turn(packet.frame);
-    for (double x = (part.low - nearest) / away; x < end;) {
-        const double next = std::min(next_bound(x), end), turns = turns_of(x, next, widest);
-        for (double i = 0; i < turns; ++i)
+void push_equi_angular(Packet& packet, const Piece& piece) {
+    const std::span<const QuadratureNode> rule = rule_for(packet, piece);
+    const double nearest = packet.scratch.along[piece.ray].nearest, away = packet.away[piece.ray];
+    const double end = (piece.high - nearest) / away, widest = packet.frame.sampled ? 1 : widest_angle(packet.frame);
+    for (double x = (piece.low - nearest) / away; x < end;) {
+        const double next = std::min(next_bound(x), end), parts = angular_parts(x, next, widest);
+        for (double i = 0; i < parts; ++i)
             for (const QuadratureNode& node : rule)
-                push_node(packet, part.light, part.ray, part.cut, x * away, next * away, (i + node.at) / turns,
-                          node.weight / turns);
+                push_node(packet, piece.light, piece.ray, piece.cut, x * away, next * away, (i + node.at) / parts,
+                          node.weight / parts);
         x = next;
     }
 }
 
-void push_part(Packet& packet, const Part& part) {
-    if (packet.spread == Spread::angle) return push_turning(packet, part);
-    for (const QuadratureNode& node : rule_for(packet, part))
-        push_node(packet, part.light, part.ray, part.cut, part.low, part.high, node.at, node.weight);
+void push_piece(Packet& packet, const Piece& piece) {
+    if (packet.spread == Spread::angle) return push_equi_angular(packet, piece);
+    for (const QuadratureNode& node : rule_for(packet, piece))
+        push_node(packet, piece.light, piece.ray, piece.cut, piece.low, piece.high, node.at, node.weight);
 }
 
 // Whether a piece between cuts can be seen to hold fog.
@@ -78,16 +78,16 @@ HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
     return depth[0] * packet.frame.style.view_depth < packet.frame.opaque && depth[16] > depth[0];
 }
 
-bool in_soft_edge(const LightAlong& along, Interval<double> part) {
+bool in_soft_edge(const LightAlong& along, Interval<double> piece) {
     if (!has_cone(*along.light)) return false;
-    const dvec3 from = along.origin + 0.5 * (part.low + part.high) * along.direction - dvec3(along.light->position);
+    const dvec3 from = along.origin + 0.5 * (piece.low + piece.high) * along.direction - dvec3(along.light->position);
     const double cosine = glm::dot(from, dvec3(along.light->direction)) / glm::length(from);
     return cosine * along.cone_scale + along.cone_offset < 1;
 }
 
 HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
     if (counts(packet, ray, cut))
-        packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.part);
+        packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.light_share);
 }
 
 // Cuts lit stretches at the cuts of the fog and at the kinks of the light, which divide what it reaches.
@@ -96,8 +96,8 @@ void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<do
     const float* at = packet.scratch.cuts.at.data() + ray;
     const int pieces = packet.scratch.cuts.pieces[ray];
     int cut = 0;
-    for (size_t part = 0; part < reached.size(); ++part) {
-        const Interval<double> within = reached[part];
+    for (size_t piece = 0; piece < reached.size(); ++piece) {
+        const Interval<double> within = reached[piece];
         const bool soft = packet.spread == Spread::angle && in_soft_edge(packet.scratch.along[ray], within);
         for (const Interval<double>& stretch : lit) {
             double low = std::max<double>({stretch.low, within.low, at[0]});
@@ -106,10 +106,10 @@ void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<do
                 while (cut < pieces && at[16 * (cut + 1)] <= low) ++cut;
                 if (cut == pieces) return;
                 const double high = std::min<double>(end, at[16 * (cut + 1)]);
-                if (packet.by_rows && low == at[16 * cut] && high == at[16 * (cut + 1)])
+                if (packet.full_steps && low == at[16 * cut] && high == at[16 * (cut + 1)])
                     note_whole(packet, ray, cut);
                 else if (counts(packet, ray, cut))
-                    push_part(packet, {light, ray, cut, low, high, soft});
+                    push_piece(packet, {light, ray, cut, low, high, soft});
                 low = high;
             }
         }

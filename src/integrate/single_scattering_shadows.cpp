@@ -24,7 +24,8 @@ int tile_of(const ShadowView& view, std::span<const vec2> positions, float margi
     return tile.y * view.tiles.x + tile.x;
 }
 
-void find_in_view(const ShadowView& view, ShadowRays& rays, std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
+void find_in_view(const ShadowView& view, ShadowViewRays& rays, std::vector<ShadowCrossing>& crossings,
+                  int (&dark)[16]) {
     find_crossings(view, rays, crossings);
     for (int i = 0; i < 16; ++i)
         if (rays.active >> i & 1) dark[i] = view.dark;
@@ -36,7 +37,7 @@ void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& b
     const LightShadows& caster = frame.shadows[light];
     crossings.clear(), std::fill(dark, dark + 16, 0);
     if (caster.by != ShadowsBy::volumes) return;
-    ShadowRays rays;
+    ShadowViewRays rays;
     rays.edges = frame.shells.has_value();
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         if (reached[i].empty()) continue;
@@ -46,7 +47,7 @@ void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& b
         if (comes_from(*caster.view, frame.camera, ray)) {
             place_ray(*caster.view, ray, lane, rays);
         } else { // not a ray of the camera: its origin is an eye of its own
-            ShadowRays alone;
+            ShadowViewRays alone;
             alone.edges = rays.edges;
             const ShadowView view = view_from(*caster.volumes, dvec3(ray.origin));
             place_ray(view, ray, lane, alone);

@@ -1,10 +1,10 @@
 // The integrand of lit fog at sixteen points of any rays, inside its kernel (see base/simd/simd.h for how such files
 // are compiled).
-#if defined(TYNDALL_MODES_LIT_FOG_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_LIT_FOG_SIMD_H
-#undef TYNDALL_MODES_LIT_FOG_SIMD_H
+#if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H
+#undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H
 #else
-#define TYNDALL_MODES_LIT_FOG_SIMD_H
+#define TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H
 #endif
 
 #include "integrate/equi_angular_simd.h"
@@ -57,8 +57,8 @@ struct Packet {
     alignas(64) float origin[3][16], direction[3][16];
     QuadratureNode jittered[16]; // the one node of each ray where shadows are sampled
     Spread spread = Spread::length;
-    double part = 1;      // of the light that the current nodes are asked for
-    bool by_rows = false; // whether steps that are lit from end to end are noted in `whole`
+    double light_share = 1;  // of the light that the current nodes are asked for
+    bool full_steps = false; // whether steps that are lit from end to end are noted in `whole`
     alignas(64) float nearest[16] = {}, away[16] = {}; // where the rays pass the light, and how near; 0 unless `angle`
     vec3 radiance[16] = {};                            // of the current light
     int asked[16] = {};
@@ -177,7 +177,7 @@ HWY_INLINE void push_node(Packet& packet, int light, size_t ray, int cut, double
     Nodes& nodes = packet.scratch.nodes;
     const int i = nodes.count++;
     nodes.low[i] = static_cast<float>(low), nodes.high[i] = static_cast<float>(high);
-    nodes.share[i] = static_cast<float>(share), nodes.weight[i] = static_cast<float>(weight * packet.part);
+    nodes.share[i] = static_cast<float>(share), nodes.weight[i] = static_cast<float>(weight * packet.light_share);
     nodes.ray[i] = static_cast<int32_t>(ray), nodes.cut[i] = 16 * cut + static_cast<int32_t>(ray);
     if (nodes.count == 16) add_nodes(packet, light);
 }

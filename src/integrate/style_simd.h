@@ -1,9 +1,9 @@
 // Artist's controls at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
-#if defined(TYNDALL_MODES_STYLE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_STYLE_SIMD_H
-#undef TYNDALL_MODES_STYLE_SIMD_H
+#if defined(TYNDALL_INTEGRATE_STYLE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_STYLE_SIMD_H
+#undef TYNDALL_INTEGRATE_STYLE_SIMD_H
 #else
-#define TYNDALL_MODES_STYLE_SIMD_H
+#define TYNDALL_INTEGRATE_STYLE_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

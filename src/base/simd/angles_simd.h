@@ -1,9 +1,9 @@
 // Tangents and their angles for kernels (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_ANGLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_ANGLES_SIMD_H
-#undef TYNDALL_MODES_ANGLES_SIMD_H
+#if defined(TYNDALL_BASE_SIMD_ANGLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_BASE_SIMD_ANGLES_SIMD_H
+#undef TYNDALL_BASE_SIMD_ANGLES_SIMD_H
 #else
-#define TYNDALL_MODES_ANGLES_SIMD_H
+#define TYNDALL_BASE_SIMD_ANGLES_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

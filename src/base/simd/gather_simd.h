@@ -1,9 +1,9 @@
 // Neighbouring floats gathered together (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_BASE_GATHER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_BASE_GATHER_SIMD_H
-#undef TYNDALL_BASE_GATHER_SIMD_H
+#if defined(TYNDALL_BASE_SIMD_GATHER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_BASE_SIMD_GATHER_SIMD_H
+#undef TYNDALL_BASE_SIMD_GATHER_SIMD_H
 #else
-#define TYNDALL_BASE_GATHER_SIMD_H
+#define TYNDALL_BASE_SIMD_GATHER_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

@@ -1,10 +1,10 @@
 // Geometry of sixteen rays and a cone (see base/simd/simd.h for how such files are compiled). Everything is measured
 // from the point of the ray next to the light, in the plane of ray and light, where the cone is a wedge.
-#if defined(TYNDALL_MODES_CONE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_CONE_SIMD_H
-#undef TYNDALL_MODES_CONE_SIMD_H
+#if defined(TYNDALL_MODES_CONE_GEOMETRY_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_CONE_GEOMETRY_SIMD_H
+#undef TYNDALL_MODES_CONE_GEOMETRY_SIMD_H
 #else
-#define TYNDALL_MODES_CONE_SIMD_H
+#define TYNDALL_MODES_CONE_GEOMETRY_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

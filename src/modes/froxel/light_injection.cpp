@@ -97,7 +97,7 @@ void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, 
     const bool shadows = scene.snapshot.lights[light].shadows;
     if (shadows && light < scene.views.size() && scene.views[light]) {
         static thread_local std::vector<ShadowCrossing> crossings;
-        ShadowRays rays;
+        ShadowViewRays rays;
         Interval<double> ranges[16];
         int dark[16];
         std::fill(dark, dark + 16, scene.views[light]->dark);

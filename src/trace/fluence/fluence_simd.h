@@ -1,9 +1,9 @@
 // Fluence at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
-#if defined(TYNDALL_TRACE_FLUENCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_TRACE_FLUENCE_SIMD_H
-#undef TYNDALL_TRACE_FLUENCE_SIMD_H
+#if defined(TYNDALL_TRACE_FLUENCE_FLUENCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_TRACE_FLUENCE_FLUENCE_SIMD_H
+#undef TYNDALL_TRACE_FLUENCE_FLUENCE_SIMD_H
 #else
-#define TYNDALL_TRACE_FLUENCE_SIMD_H
+#define TYNDALL_TRACE_FLUENCE_FLUENCE_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

@@ -1,9 +1,9 @@
 // Optical depth to a light for kernels (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_TRACE_LIGHT_DEPTH_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_TRACE_LIGHT_DEPTH_SIMD_H
-#undef TYNDALL_TRACE_LIGHT_DEPTH_SIMD_H
+#if defined(TYNDALL_TRACE_TRANSMITTANCE_LIGHT_DEPTH_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_TRACE_TRANSMITTANCE_LIGHT_DEPTH_SIMD_H
+#undef TYNDALL_TRACE_TRANSMITTANCE_LIGHT_DEPTH_SIMD_H
 #else
-#define TYNDALL_TRACE_LIGHT_DEPTH_SIMD_H
+#define TYNDALL_TRACE_TRANSMITTANCE_LIGHT_DEPTH_SIMD_H
 #endif
 
 #include "base/simd/gather_simd.h"

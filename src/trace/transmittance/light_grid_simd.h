@@ -1,10 +1,10 @@
 // Columns of a light's grid, integrated as sixteen points first ask for them (see base/simd/simd.h for how such files
 // are compiled).
-#if defined(TYNDALL_TRACE_LIGHT_GRID_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_TRACE_LIGHT_GRID_SIMD_H
-#undef TYNDALL_TRACE_LIGHT_GRID_SIMD_H
+#if defined(TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H
+#undef TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H
 #else
-#define TYNDALL_TRACE_LIGHT_GRID_SIMD_H
+#define TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H
 #endif
 
 #include "trace/transmittance/light_depth_simd.h"

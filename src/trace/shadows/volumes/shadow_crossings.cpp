@@ -36,7 +36,7 @@ struct Scratch {
 
 struct Crossing16 {
     const ShadowView& view;
-    const ShadowRays& rays;
+    const ShadowViewRays& rays;
     Scratch& scratch;
     std::vector<ShadowCrossing>& found;
 
@@ -170,7 +170,7 @@ struct Crossing16 {
     }
 };
 
-void find_crossings_kernel(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& found) {
+void find_crossings_kernel(const ShadowView& view, const ShadowViewRays& rays, std::vector<ShadowCrossing>& found) {
     static thread_local Scratch scratch;
     scratch.begin(view);
     double end = -double(infinity);
@@ -191,7 +191,7 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(find_crossings_kernel);
 
-void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& crossings) {
+void find_crossings(const ShadowView& view, const ShadowViewRays& rays, std::vector<ShadowCrossing>& crossings) {
     HWY_DYNAMIC_DISPATCH(find_crossings_kernel)(view, rays, crossings);
 }
 }

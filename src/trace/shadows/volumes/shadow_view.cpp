@@ -143,7 +143,7 @@ ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 s
     return view;
 }
 
-void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays) {
+void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays& rays) {
     const dvec3 origin = dvec3(ray.origin) - view.place, direction(ray.direction);
     const double along = glm::dot(origin, direction) / glm::dot(direction, direction);
     dvec3 p = view.parallel ? origin - along * direction : direction;

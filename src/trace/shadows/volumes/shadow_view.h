@@ -80,7 +80,7 @@ struct ShadowCrossing {
 };
 
 // Up to 16 rays of a view.
-struct ShadowRays {
+struct ShadowViewRays {
     alignas(64) double p[3][16] = {};  // see RayProduct
     alignas(64) double start[16] = {}; // of each ray: from the eye, or from the plane of `place` when rays are parallel
     alignas(64) double end[16] = {};   // how far crossings are wanted, counted as `start`
@@ -91,10 +91,10 @@ struct ShadowRays {
 
 // Makes a ray that the view's eye sees the lane-th of `rays`, up to its t_max. A ray along or through the light is
 // turned off it by a hair.
-void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowRays& rays);
+void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays& rays);
 
 // Appends the crossings of the active rays up to their ends, in no order.
-void find_crossings(const ShadowView& view, const ShadowRays& rays, std::vector<ShadowCrossing>& crossings);
+void find_crossings(const ShadowView& view, const ShadowViewRays& rays, std::vector<ShadowCrossing>& crossings);
 
 // Sorts the crossings of each ray (but not `behind`) and appends its stretches of low..high in no volume; `dark`: the
 // counts before all crossings.

@@ -56,7 +56,7 @@ struct Counted {
 };
 
 Counted crossings_of(const ShadowView& view, const Ray& ray, int tile = -1) {
-    ShadowRays rays;
+    ShadowViewRays rays;
     rays.tile = tile;
     place_ray(view, ray, lane, rays);
     std::vector<ShadowCrossing> found;
