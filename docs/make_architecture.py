@@ -28,8 +28,8 @@ def folder_of(path):
 
 
 def read_includes():
-    """Includes between folders with their counts, and the libraries of each folder."""
-    edges, libraries = collections.Counter(), collections.defaultdict(set)
+    """The pairs of folders of which one includes the other, and the libraries of each folder."""
+    edges, libraries = set(), collections.defaultdict(set)
     for base in ("src", "apps"):
         for path in sorted((ROOT / base).rglob("*")):
             if path.suffix not in (".h", ".cpp") or path.parent == ROOT / "apps":
@@ -39,7 +39,7 @@ def read_includes():
             for name in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', path.read_text(), re.M):
                 libraries[own] |= {library for prefix, library in LIBRARIES.items() if name.startswith(prefix)}
                 if name.split("/")[0] in LAYERS and "/" in name and folder_of(name) != own:
-                    edges[own, folder_of(name)] += 1
+                    edges.add((own, folder_of(name)))
     return edges, libraries
 
 
@@ -73,7 +73,7 @@ def drawing():
         offset += GAP
     size = offset - GAP
     parts = [text(24, 34, "Layers, folders and what they include", 18, "#0f172a", more='font-weight="600"'),
-             text(24, 54, "Rows and columns are the same folders; a square says that the row includes the column, the darker the more often. "
+             text(24, 54, "Rows and columns are the same folders; a square says that the row includes the column. "
                           "A layer"),
              text(24, 70, "includes itself and the layers above it, so that nothing lies right of the coloured blocks. "
                           "A technique includes no other technique.")]
@@ -91,11 +91,10 @@ def drawing():
                   box(LEFT + start + 4, TOP + start + 4, CELL - 8, CELL - 8, LAYERS[layer], 4)]
         if libraries[folder]:
             parts.append(text(LEFT + size + 12, TOP + start + CELL - 4, ", ".join(sorted(libraries[folder])), 10, "#64748b"))
-    for (own, other), count in sorted(edges.items()):
+    for own, other in sorted(edges):
         same = own.split("/")[0] == other.split("/")[0]
-        strength = 0.3 if count <= 3 else 0.6 if count <= 15 else 1
         parts.append(box(LEFT + places[other] + 2, TOP + places[own] + 2, CELL - 4, CELL - 4,
-                         LAYERS[own.split("/")[0]] if same else TEXT, 2, f'fill-opacity="{strength}"'))
+                         LAYERS[own.split("/")[0]] if same else TEXT, 2, 'fill-opacity="0.7"'))
     for layer, (start, length) in bands.items():  # a column's name stands over its block, where nothing else is
         parts.append(text(LEFT + start + 1, TOP + start - 4, layer, 11, LAYERS[layer], more='font-weight="600"'))
     parts.append(text(LEFT + size + 12, TOP - 4, "libraries", 10, "#64748b", more='font-style="italic"'))
