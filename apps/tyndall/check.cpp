@@ -80,10 +80,11 @@ void check_gltf(const std::string& file, Problems& problems) {
     for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
 }
 
-// A numbered name stands for all its files and for the gaps between them.
-void check_sequence(const std::string& pattern, Problems& problems) {
+// A numbered name stands for `frames`, or without them for all its files and the gaps between them. Returns how many.
+size_t check_sequence(const std::string& pattern, std::vector<int> frames, Problems& problems) {
     const VdbSequence sequence = find_sequence(pattern, ".");
-    for (int frame = sequence.files.front(); frame <= sequence.files.back(); ++frame)
+    if (frames.empty()) frames = frames_between(sequence.files.front(), sequence.files.back());
+    for (const int frame : frames)
         guarded(pattern, problems, [&] {
             if (!std::ranges::count(sequence.files, frame))
                 fail(ExitCode::unreadable, "", "frame " + std::to_string(frame) + " is missing");
@@ -93,13 +94,10 @@ void check_sequence(const std::string& pattern, Problems& problems) {
             else if (file)
                 check_vdb(*file, "", problems);
         });
+    return frames.size();
 }
 
 void check_file(const std::string& file, Problems& problems) {
-    std::error_code ignored;
-    const bool numbered = file.ends_with(".vdb") || file.ends_with(".exr");
-    if (!std::filesystem::exists(file, ignored) && numbered && has_frame_token(file))
-        return check_sequence(file, problems);
     switch (file_kind(file)) {
     case FileKind::vdb:
         return check_vdb(file, "", problems);
@@ -116,6 +114,12 @@ void check_file(const std::string& file, Problems& problems) {
     }
 }
 
+bool is_sequence(const std::string& file) {
+    std::error_code ignored;
+    const bool numbered = file.ends_with(".vdb") || file.ends_with(".exr");
+    return numbered && has_frame_token(file) && !std::filesystem::exists(file, ignored);
+}
+
 std::string problems_json(const std::vector<std::string>& files, const Problems& problems) {
     std::vector<Json> items;
     for (const Problem& problem : problems)
@@ -124,14 +128,33 @@ std::string problems_json(const std::vector<std::string>& files, const Problems&
     return format_json(json_object({{"files", json_of(files)}, {"problems", json_array(std::move(items))}})) + "\n";
 }
 
-int run_check(const std::vector<std::string>& files, const Globals& globals) {
+struct Options {
+    std::vector<std::string> files;
+    std::string frames;
+};
+
+int run_check(const Options& texts, const Globals& globals) {
+    const std::vector<std::string>& files = texts.files;
+    const std::vector<int> frames = texts.frames.empty() ? std::vector<int>() : parse_frames(texts.frames);
+    if (!frames.empty() && !std::ranges::any_of(files, is_sequence))
+        fail(ExitCode::usage, "--frames", "none of the files is a sequence, like x.####.exr");
     Problems problems;
-    for (const std::string& file : files) guarded(file, problems, [&] { check_file(file, problems); });
+    size_t checked = 0;
+    for (const std::string& file : files) {
+        size_t count = 1;
+        guarded(file, problems, [&] {
+            if (is_sequence(file))
+                count = check_sequence(file, frames, problems);
+            else
+                check_file(file, problems);
+        });
+        checked += count;
+    }
 
     std::string text;
     for (const Problem& problem : problems) text += problem_line(problem) + "\n";
     print_report(globals.json ? problems_json(files, problems) : text);
-    if (!globals.quiet) say(count_text(files.size(), "file") + " checked, " + count_text(problems.size(), "problem"));
+    if (!globals.quiet) say(count_text(checked, "file") + " checked, " + count_text(problems.size(), "problem"));
     const auto unreadable = [](const Problem& problem) { return problem.unreadable; };
     if (problems.empty()) return 0;
     const bool only_unreadable = std::all_of(problems.begin(), problems.end(), unreadable);
@@ -141,14 +164,19 @@ int run_check(const std::vector<std::string>& files, const Globals& globals) {
 
 Run add_check(const Command& program) {
     const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and pictures");
-    auto files = std::make_shared<std::vector<std::string>>();
-    command.options("FILES", *files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence", "")
+    auto texts = std::make_shared<Options>();
+    command
+        .options("FILES", texts->files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence", "")
         .required();
+    command.option("--frames", texts->frames,
+                   "frames a sequence should have (default: from the first that is there to the last)", "RANGE");
     command.footer("Example: before a long render\n"
                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
+                   "After one: are all frames there, and whole?\n"
+                   "  tyndall check 'out/shot.####.exr' --frames 1-24\n"
                    "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and pictures are read whole.\n"
                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
                    "missing or cannot be read.");
-    return [files](const Globals& globals) { return run_check(*files, globals); };
+    return [texts](const Globals& globals) { return run_check(*texts, globals); };
 }
 }

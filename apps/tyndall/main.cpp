@@ -72,7 +72,9 @@ struct GlobalTexts {
 constexpr const char* global_group = "For every command";
 
 void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
-    program.option("--threads", texts.threads, "threads to use, 1 to 1024 (default: every core)", "N")
+    program
+        .option("--threads", texts.threads,
+                "threads to use, 1 to 1024 (default: as many as affinity\nand control group allow)", "N")
         .group(global_group);
     program
         .option("--progress", texts.progress,
@@ -94,6 +96,7 @@ void apply_globals(Globals& globals, const GlobalTexts& texts) {
     if (globals.quiet && (texts.progress.empty() || globals.progress == ProgressStyle::none))
         globals.progress = ProgressStyle::silent;
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
+    if (globals.verbose && !globals.quiet) say(formatted("threads: %d", thread_count()));
 }
 
 int run(int argc, char** argv) {

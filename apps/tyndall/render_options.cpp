@@ -124,8 +124,8 @@ void add_how(const Command& command, RenderOptions& texts) {
         .group("Quality");
     option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
     option("--isa", texts.isa,
-           "instruction set: auto (default), avx2 or avx512. Pictures are equal bit\n"
-           "for bit only with the same one",
+           "instruction set: auto (default), avx2 or avx512. auto and avx2 give the\n"
+           "same bits on every machine, avx512 gives others",
            "NAME");
 }
 
@@ -145,7 +145,12 @@ void add_results(const Command& command, RenderOptions& texts) {
                 "EV")
         .group(group);
     command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
-    command.option("--stats-json", texts.stats, "write times and counts of every frame to a file", "FILE").group(group);
+    command
+        .option("--stats-json", texts.stats,
+                "write times and counts of every frame to a file; with several modes each\n"
+                "writes its own, FILE with the mode in its name",
+                "FILE")
+        .group(group);
 }
 }
 

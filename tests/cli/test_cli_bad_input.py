@@ -319,6 +319,8 @@ class Check(ProgramTest):
             for word in words:
                 self.assertIn(word, line)
         self.assertEqual(len(self.check(1, self.path("fog.####.vdb"))), 2)
+        self.assertEqual(len(self.check(4, self.path("fog.####.vdb"), "--frames", "1,4-6")), 2)  # 5 and 6
+        self.check(2, bad, "--frames", "1-4")
         report = json.loads(run("check", "--json", path, bad).stdout)
         self.assertEqual(len(report["problems"]), 3)
 

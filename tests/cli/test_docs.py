@@ -54,11 +54,12 @@ class Docs(ProgramTest):
         self.assertEqual(len(scripts), 2)
         places = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_CPUS_PER_TASK": "2",
                   "PATH": f"{pathlib.Path(TYNDALL).parent}:{os.environ['PATH']}"}
-        for script in scripts:
-            result = subprocess.run(["bash", "-ec", script], cwd=self.directory, env={**os.environ, **places},
-                                    capture_output=True, text=True)
-            self.assertEqual(result.returncode, 0, result.stderr)
+        task, check = [subprocess.run(["bash", "-ec", script], cwd=self.directory, env={**os.environ, **places},
+                                      capture_output=True, text=True) for script in scripts]
+        self.assertEqual(task.returncode, 0, task.stderr)
         self.assertTrue(self.path("out/shot.0008.exr").exists())
+        self.assertEqual(check.returncode, 4, check.stderr)
+        self.assertEqual(len(check.stdout.splitlines()), 22, "two of 24 frames are there")
 
     @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
     @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb-run is not installed")
