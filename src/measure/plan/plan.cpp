@@ -48,7 +48,7 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     std::string text =
         goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
-        text = "too noisy: " + formatted("%.0f", 1.0 * max_target_samples) + " samples would not do";
+        text = "too noisy: needs more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples a pixel";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
