@@ -94,11 +94,14 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
     if (method == LightTransmittance::off) return depth;
     std::vector<const Medium*> bricks;
     for (const Medium& medium : snapshot.media)
-        (medium.density.kind == DensityKind::bricks ? bricks : depth.analytic).push_back(&medium);
+        if (medium.density.kind == DensityKind::bricks)
+            bricks.push_back(&medium);
+        else
+            depth.analytic.push_back(medium);
     if (method == LightTransmittance::froxel && !bricks.empty())
         depth.froxels = kept_froxels(snapshot, bricks, light, resolution, *view);
     if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {
-        depth.marched = std::move(bricks);
+        for (const Medium* medium : bricks) depth.marched.push_back(*medium);
         return depth;
     }
     if (filled || method != LightTransmittance::grid)
@@ -133,7 +136,7 @@ void marched_depths(const LightDepth& depth, const float* x, const float* y, con
             ray.direction = towards / distance, ray.t_max = distance - depth.light.radius;
         }
         double sum = 0;
-        for (const Medium* medium : depth.marched) sum += optical_depth(*medium, ray);
+        for (const Medium& medium : depth.marched) sum += optical_depth(medium, ray);
         result[lane] = static_cast<float>(sum);
     }
 }

@@ -14,12 +14,12 @@
 #include "scene/light.h"
 #include "trace/light_projection.h"
 #include "trace/transmittance/light_transmittance.h"
+#include "volume/medium.h"
 
 #include <memory>
 #include <vector>
 
 namespace tyndall {
-struct Medium;
 struct Snapshot;
 struct View;
 
@@ -57,18 +57,16 @@ struct LightDepthFroxels {
 };
 
 // Everything a mode needs to ask for light-side transmittance of one light: closed forms for homogeneous and height
-// fog, one grid for all brick media together, or
-// froxels with the fog marched outside them. Points into the snapshot's media, which must outlive it and stay in
-// place.
+// fog, one grid for all brick media together, or froxels with the fog marched outside them.
 struct LightDepth {
     LightTransmittance method = LightTransmittance::grid;
     Light light;
     LightDepthGrid grid;
     LightDepthFroxels froxels;
-    std::vector<const Medium*> analytic; // homogeneous and height media
-    std::vector<const Medium*> marched;  // brick media, when marched: everywhere, or outside the froxels
-    float average = 0;                   // optical depth used for every point, when average
-    float scale = 1;                     // factor on all depths
+    std::vector<Medium> analytic; // homogeneous and height media
+    std::vector<Medium> marched;  // brick media, when marched: everywhere, or outside the froxels
+    float average = 0;            // optical depth used for every point, when average
+    float scale = 1;              // factor on all depths
 };
 
 // `resolution`: cells across the longer side of the fog as the light sees it; of froxels, across the longer side of the

@@ -187,7 +187,7 @@ HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, con
     Floats sum = 0.0f;
     if (!depth.analytic.empty()) {
         const LightPaths paths = light_paths(depth.light, point);
-        for (const Medium* medium : depth.analytic) sum = sum + analytic_depth16(*medium, paths);
+        for (const Medium& medium : depth.analytic) sum = sum + analytic_depth16(medium, paths);
     }
     if (!depth.grid.empty()) sum = sum + grid_depth16(depth.grid, point);
     if (!depth.marched.empty()) sum = sum + froxel_depth16(depth, point, active);
