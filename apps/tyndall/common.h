@@ -1,6 +1,6 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
-#include "base/io/json.h"
+#include "base/io/json_values.h"
 #include "base/io/progress.h"
 #include "base/math.h"
 #include "base/text.h"
@@ -60,18 +60,4 @@ ivec2 resolution_option(std::string_view option, std::string_view text);
 std::string chosen_isa(const std::string& text);
 // The pieces between commas.
 std::vector<std::string> comma_list(std::string_view text);
-
-// JSON values for reports; numbers JSON cannot hold (infinite) become null.
-Json json_of(std::string_view text);
-Json json_of(const char* text);
-Json json_of(bool value);
-Json json_of(double value);
-Json json_of(int value);
-Json json_of(uint64_t value);
-Json json_of(vec3 value);
-Json json_of(const Box& box);
-Json json_of(const std::vector<std::string>& texts);
-Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts);
-Json json_array(std::vector<Json> items);
-Json json_object(std::vector<std::pair<std::string, Json>> members);
 }
