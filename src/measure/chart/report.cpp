@@ -3,27 +3,16 @@
 
 #include "base/io/json.h"
 #include "base/io/json_values.h"
+#include "base/text.h"
 #include "measure/chart/earlier_points.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
-// The shortest text that reads back the same; empty for what was not measured.
-std::string csv_number(double value) {
-    if (std::isnan(value)) return {};
-    char digits[32];
-    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-std::string printed(const char* format, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
+// Empty for what was not measured.
+std::string csv_number(double value) { return std::isnan(value) ? "" : shortest_text(value); }
 
 Json modes_json(const Chart& chart) {
     return json_list(chart.modes, [](const ChartedMode& mode) {
@@ -76,20 +65,24 @@ std::vector<Advice> advice_of(const Chart& chart) {
 }
 
 std::string seconds_words(double seconds) {
-    if (seconds < 0.00995) return printed("%.1f ms", 1000 * seconds);
-    if (seconds < 0.9995) return printed("%.0f ms", 1000 * seconds);
-    return printed(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
+    if (seconds < 0.00995) return formatted("%.1f ms", 1000 * seconds);
+    if (seconds < 0.9995) return formatted("%.0f ms", 1000 * seconds);
+    return formatted(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
 }
 
 std::string share_words(double share) {
     if (!std::isfinite(share)) return "-";
     const double percent = 100 * share, size = std::abs(percent);
-    return printed(size < 0.0995 ? "%.3f %%" : size < 0.995 ? "%.2f %%" : size < 9.95 ? "%.1f %%" : "%.0f %%", percent);
+    return formatted(size < 0.0995  ? "%.3f %%"
+                     : size < 0.995 ? "%.2f %%"
+                     : size < 9.95  ? "%.1f %%"
+                                    : "%.0f %%",
+                     percent);
 }
 
 std::string bytes_words(double bytes) {
     if (!std::isfinite(bytes)) return "-";
-    return printed(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
+    return formatted(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
 }
 
 std::string need_words(const Advice& advice) {
