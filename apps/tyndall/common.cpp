@@ -6,9 +6,9 @@
 #include "trace/occlusion/occluders.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <new>
 
 namespace tyndall {
 std::atomic<bool>& cancel_flag() {
@@ -18,6 +18,24 @@ std::atomic<bool>& cancel_flag() {
 
 void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
+}
+
+int exit_code_of(const std::function<int()>& work) {
+    const auto report = [](std::string_view text, ExitCode code) {
+        say("error: " + printable(text, 480));
+        return static_cast<int>(code);
+    };
+    try {
+        return work();
+    } catch (const std::bad_alloc&) {
+        return report("out of memory: fewer pixels, coarser voxels or a machine with more memory help",
+                      ExitCode::out_of_memory);
+    } catch (const Error& error) {
+        if (!cancel_flag()) return report(error.what(), error.code);
+    } catch (const std::exception& error) {
+        if (!cancel_flag()) return report("internal: " + std::string(error.what()), ExitCode::internal);
+    }
+    return static_cast<int>(ExitCode::stopped);
 }
 
 void say(std::string_view line) { std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(line.size()), line.data()); }
@@ -30,22 +48,22 @@ void print_report(std::string_view text) {
 }
 
 int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high) {
-    int64_t value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || value < low || value > high)
+    const auto value = parsed<int64_t>(text);
+    if (!value || *value < low || *value > high)
         fail(ExitCode::usage, option,
              formatted("expected a whole number from %lld to %lld, got '%s'", static_cast<long long>(low),
                        static_cast<long long>(high), printable(text, 40).c_str()));
-    return value;
+    return *value;
 }
 
+int frame_option(std::string_view text) { return static_cast<int>(integer_option("--frame", text, -9999999, 9999999)); }
+
 double number_option(std::string_view option, std::string_view text, double low, double high) {
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+    const auto value = parsed<double>(text);
+    if (!value || !(*value >= low && *value <= high))
         fail(ExitCode::usage, option,
              formatted("expected a number from %g to %g, got '%s'", low, high, printable(text, 40).c_str()));
-    return value;
+    return *value;
 }
 
 ivec2 resolution_option(std::string_view option, std::string_view text) {

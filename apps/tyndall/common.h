@@ -44,6 +44,10 @@ std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.
 void stop_if_cancelled();
 
+// Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
+// that a signal has caused.
+int exit_code_of(const std::function<int()>& work);
+
 // One line for people on stderr; foreign text in it has to be printable already.
 void say(std::string_view line);
 // The data a command was asked for, on stdout. Throws Error (unwritable); a reader that has gone away is no error.
@@ -51,6 +55,7 @@ void print_report(std::string_view text);
 
 // An option's value as a number in low..high. Throws Error (usage) naming the option.
 int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high);
+int frame_option(std::string_view text); // of --frame
 double number_option(std::string_view option, std::string_view text, double low, double high);
 // WIDTHxHEIGHT in pixels, each up to largest_side.
 inline constexpr int largest_side = 16384; // what EXR readers take

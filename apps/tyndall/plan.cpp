@@ -89,8 +89,7 @@ int run_plan(const Options& texts, const Globals& globals) {
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(request.scene_file, options);
     request.frames = {scene.first_frame};
-    if (!texts.frame.empty())
-        request.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;

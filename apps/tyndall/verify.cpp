@@ -49,7 +49,7 @@ SceneProof proof_of(const Options& texts) {
     if (!texts.samples.empty())
         proof.samples = static_cast<int>(integer_option("--samples", texts.samples, 64, 65536) + 63) / 64 * 64;
     if (!texts.seed.empty()) proof.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    if (!texts.frame.empty()) proof.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
+    if (!texts.frame.empty()) proof.frame = frame_option(texts.frame);
     proof.camera = texts.camera;
     return proof;
 }
