@@ -8,7 +8,6 @@
 #include "viewer.h"
 
 #include <cstdio>
-#include <new>
 
 namespace tyndall {
 namespace {
@@ -98,24 +97,11 @@ int run(int argc, char** argv) {
     run_viewer(read_options(texts));
     return 0;
 }
-
-int report_error(std::string_view text, ExitCode code) {
-    say("error: " + printable(text, 480));
-    return static_cast<int>(code);
-}
 }
 }
 
 int main(int argc, char** argv) {
     using namespace tyndall;
     flush_denormals();
-    try {
-        return run(argc, argv);
-    } catch (const Error& error) {
-        return report_error(error.what(), error.code);
-    } catch (const std::bad_alloc&) {
-        return report_error("out of memory", ExitCode::out_of_memory);
-    } catch (const std::exception& error) {
-        return report_error("internal: " + std::string(error.what()), ExitCode::internal);
-    }
+    return exit_code_of([&] { return run(argc, argv); });
 }

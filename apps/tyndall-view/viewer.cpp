@@ -1,5 +1,6 @@
 // The frames of the interface.
 #include "../tyndall/common.h"
+#include "base/clock.h"
 #include "base/error.h"
 #include "render/image/png.h"
 #include "viewer/painting/volume_picture.h"
@@ -64,7 +65,7 @@ void take_pictures(Viewer& viewer) {
             if (!viewer.script.finished()) fail(picture->code, viewer.script_place, picture->error);
             announce(viewer, picture->error, true);
         } else {
-            if (viewer.times.first_picture < 0) viewer.times.first_picture = seconds_now() - viewer.started;
+            if (viewer.times.first_picture < 0) viewer.times.first_picture = steady_seconds() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode)
                 viewer.resources.limitations = picture->limitations;
             if (picture->ray) viewer.resources.ray = picture->ray;
@@ -138,7 +139,7 @@ void take_wishes(Viewer& viewer) {
 // One frame of the interface. Everything up to GL is its own time.
 void run_frame(Viewer& viewer) {
     viewer.window.wait(wait_of(viewer));
-    const double start = seconds_now();
+    const double start = steady_seconds();
     viewer.frame_seconds = std::min(start - viewer.now, 0.1);
     viewer.now = start;
     take_wishes(viewer);
@@ -157,12 +158,12 @@ void run_frame(Viewer& viewer) {
     show_title(viewer);
     viewer.window.end_frame();
 
-    const double drawn = seconds_now();
+    const double drawn = steady_seconds();
     if (viewer.new_picture) viewer.window.set_picture(viewer.resources.picture->codes);
     if (viewer.new_volume) viewer.window.set_picture(viewer.resources.volume->codes, 1);
     viewer.new_picture = viewer.new_volume = false;
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
-    const double done = seconds_now();
+    const double done = steady_seconds();
     viewer.times.interface.push_back(drawn - start);
     if (!is_new) return;
     viewer.times.gl.push_back(done - drawn);
@@ -174,9 +175,9 @@ void run_frame(Viewer& viewer) {
 void run_viewer(const ViewerOptions& options) {
     Viewer viewer(options);
     viewer.script.actions = options.script;
-    viewer.started = viewer.now = seconds_now();
+    viewer.started = viewer.now = steady_seconds();
     while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
-    viewer.times.seconds = seconds_now() - viewer.started;
+    viewer.times.seconds = steady_seconds() - viewer.started;
     viewer.window.hide(); // what is being made takes a moment to end
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
 }

@@ -5,19 +5,12 @@
 
 #include <imgui.h>
 
-#include <chrono>
-
 namespace tyndall {
 namespace {
 constexpr double settle = 0.15; // seconds after a motion until pictures count as still
 constexpr int drag_frames = 12;
 constexpr double reading = 8; // seconds that news stay
 constexpr double flying = 25; // key presses a second that holding a key counts as
-}
-
-double seconds_now() {
-    using namespace std::chrono;
-    return duration<double>(steady_clock::now().time_since_epoch()).count();
 }
 
 void tell(Viewer& viewer, const std::string& message, bool is_error) {

@@ -47,7 +47,6 @@ struct Viewer {
           thread(Window::wake) {}
 };
 
-double seconds_now();                                                 // of a clock
 void tell(Viewer& viewer, const std::string& message, bool is_error); // until the next action
 
 // What came about by itself: it stays long enough to be read.

@@ -22,15 +22,14 @@ BakeOptions bake_options(const Options& texts) {
 }
 
 std::string report_json(const Options& texts, const std::vector<int>& frames, const BakeReport& report) {
-    return format_json(json_object({{"recipe", json_of(std::string_view(texts.recipe))},
-                                    {"output", json_of(std::string_view(texts.output))},
-                                    {"frames", json_of(std::string_view(format_frames(frames)))},
-                                    {"written", json_of(report.written)},
-                                    {"kept", json_of(report.kept)},
-                                    {"seconds", json_of(report.seconds)},
-                                    {"voxels", json_of(report.voxels)},
-                                    {"bytes", json_of(report.bytes)}})) +
-           "\n";
+    return json_line({{"recipe", texts.recipe},
+                      {"output", texts.output},
+                      {"frames", format_frames(frames)},
+                      {"written", report.written},
+                      {"kept", report.kept},
+                      {"seconds", report.seconds},
+                      {"voxels", report.voxels},
+                      {"bytes", report.bytes}});
 }
 
 int run_bake(const Options& texts, const Globals& globals) {

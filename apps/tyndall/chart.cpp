@@ -7,6 +7,7 @@
 #include "common.h"
 #include "measure/chart/report.h"
 #include "modes/mode.h"
+#include "render_options.h"
 #include "scene/scene.h"
 #include "trace/moment.h"
 
@@ -30,20 +31,6 @@ ivec2 chart_size(const Scene& scene, bool quick) {
     return {width, std::max(1, static_cast<int>(std::lround(width * shape)))};
 }
 
-std::vector<const Mode*> asked_modes(const std::string& text) {
-    std::vector<const Mode*> result;
-    std::vector<std::string> names;
-    for (const Mode& mode : modes()) result.push_back(&mode), names.emplace_back(mode.name);
-    if (text == "all") return result;
-    result.clear();
-    for (const std::string& name : comma_list(text)) {
-        const Mode* mode = &modes()[choice_among("--modes", name, names)];
-        if (std::ranges::count(result, mode)) fail(ExitCode::usage, "--modes", name + " is named twice");
-        result.push_back(mode);
-    }
-    return result;
-}
-
 ChartJob make_job(const Options& texts) {
     ChartJob job;
     job.render.scene_file = texts.scene;
@@ -51,7 +38,7 @@ ChartJob make_job(const Options& texts) {
     for (const std::string& assignment : texts.settings) apply_setting(job.render.settings, assignment);
     job.render.camera = texts.camera;
     job.render.isa = isa_name();
-    job.modes = asked_modes(texts.modes);
+    job.modes = asked_modes("--modes", texts.modes);
     job.directory = texts.output;
     if (texts.quick) job.reference.noise = 0.05, job.reference.seconds = 4, job.runs = 2, job.longest = 0.7;
     if (!texts.noise.empty()) job.reference.noise = number_option("--reference-noise", texts.noise, 1e-5, 1);
@@ -62,7 +49,7 @@ ChartJob make_job(const Options& texts) {
     if (!texts.reference_seconds.empty())
         job.reference.seconds = number_option("--reference-seconds", texts.reference_seconds, 0.1, 1e6);
     if (!texts.resolution.empty()) job.render.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.frame.empty()) job.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
+    if (!texts.frame.empty()) job.frame = frame_option(texts.frame);
     return job;
 }
 

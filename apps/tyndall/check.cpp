@@ -121,11 +121,10 @@ bool is_sequence(const std::string& file) {
 }
 
 std::string problems_json(const std::vector<std::string>& files, const Problems& problems) {
-    std::vector<Json> items;
-    for (const Problem& problem : problems)
-        items.push_back(json_object(
-            {{"file", json_of(std::string_view(problem.file))}, {"problem", json_of(std::string_view(problem.text))}}));
-    return format_json(json_object({{"files", json_of(files)}, {"problems", json_array(std::move(items))}})) + "\n";
+    const auto problem_json = [](const Problem& problem) {
+        return json_object({{"file", problem.file}, {"problem", problem.text}});
+    };
+    return json_line({{"files", files}, {"problems", json_list(problems, problem_json)}});
 }
 
 struct Options {

@@ -6,9 +6,9 @@
 #include "trace/occlusion/occluders.h"
 
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <new>
 
 namespace tyndall {
 std::atomic<bool>& cancel_flag() {
@@ -18,6 +18,24 @@ std::atomic<bool>& cancel_flag() {
 
 void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
+}
+
+int exit_code_of(const std::function<int()>& work) {
+    const auto report = [](std::string_view text, ExitCode code) {
+        say("error: " + printable(text, 480));
+        return static_cast<int>(code);
+    };
+    try {
+        return work();
+    } catch (const std::bad_alloc&) {
+        return report("out of memory: fewer pixels, coarser voxels or a machine with more memory help",
+                      ExitCode::out_of_memory);
+    } catch (const Error& error) {
+        if (!cancel_flag()) return report(error.what(), error.code);
+    } catch (const std::exception& error) {
+        if (!cancel_flag()) return report("internal: " + std::string(error.what()), ExitCode::internal);
+    }
+    return static_cast<int>(ExitCode::stopped);
 }
 
 void say(std::string_view line) { std::fprintf(stderr, "tyndall: %.*s\n", static_cast<int>(line.size()), line.data()); }
@@ -30,22 +48,22 @@ void print_report(std::string_view text) {
 }
 
 int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high) {
-    int64_t value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || value < low || value > high)
+    const auto value = parsed<int64_t>(text);
+    if (!value || *value < low || *value > high)
         fail(ExitCode::usage, option,
              formatted("expected a whole number from %lld to %lld, got '%s'", static_cast<long long>(low),
                        static_cast<long long>(high), printable(text, 40).c_str()));
-    return value;
+    return *value;
 }
 
+int frame_option(std::string_view text) { return static_cast<int>(integer_option("--frame", text, -9999999, 9999999)); }
+
 double number_option(std::string_view option, std::string_view text, double low, double high) {
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+    const auto value = parsed<double>(text);
+    if (!value || !(*value >= low && *value <= high))
         fail(ExitCode::usage, option,
              formatted("expected a number from %g to %g, got '%s'", low, high, printable(text, 40).c_str()));
-    return value;
+    return *value;
 }
 
 ivec2 resolution_option(std::string_view option, std::string_view text) {
@@ -71,64 +89,4 @@ std::vector<std::string> comma_list(std::string_view text) {
         start = comma + 1;
     }
 }
-
-Json json_of(std::string_view text) {
-    Json value;
-    value.kind = Json::Kind::string;
-    value.string = text;
-    return value;
-}
-
-Json json_of(const char* text) { return json_of(std::string_view(text)); }
-
-Json json_of(bool boolean) {
-    Json value;
-    value.kind = Json::Kind::boolean;
-    value.boolean = boolean;
-    return value;
-}
-
-Json json_of(double number) {
-    Json value;
-    value.kind = std::isfinite(number) ? Json::Kind::number : Json::Kind::null;
-    value.number = number;
-    return value;
-}
-
-Json json_of(int number) { return json_of(static_cast<double>(number)); }
-Json json_of(uint64_t number) { return json_of(static_cast<double>(number)); }
-
-Json json_of(vec3 v) { return json_array({json_of(double{v.x}), json_of(double{v.y}), json_of(double{v.z})}); }
-
-Json json_of(const Box& box) {
-    if (box.empty()) return Json();
-    return json_object({{"low", json_of(box.low)}, {"high", json_of(box.high)}});
-}
-
-Json json_of(const std::vector<std::string>& texts) {
-    std::vector<Json> items;
-    for (const std::string& text : texts) items.push_back(json_of(std::string_view(text)));
-    return json_array(std::move(items));
-}
-
-Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts) {
-    std::vector<std::pair<std::string, Json>> members;
-    for (const auto& [name, text] : named_texts) members.emplace_back(name, json_of(std::string_view(text)));
-    return json_object(std::move(members));
-}
-
-Json json_array(std::vector<Json> items) {
-    Json value;
-    value.kind = Json::Kind::array;
-    value.items = std::move(items);
-    return value;
-}
-
-Json json_object(std::vector<std::pair<std::string, Json>> members) {
-    Json value;
-    value.kind = Json::Kind::object;
-    value.members = std::move(members);
-    return value;
-}
-
 }

@@ -1,6 +1,6 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
-#include "base/io/json.h"
+#include "base/io/json_values.h"
 #include "base/io/progress.h"
 #include "base/math.h"
 #include "base/text.h"
@@ -44,6 +44,10 @@ std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.
 void stop_if_cancelled();
 
+// Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
+// that a signal has caused.
+int exit_code_of(const std::function<int()>& work);
+
 // One line for people on stderr; foreign text in it has to be printable already.
 void say(std::string_view line);
 // The data a command was asked for, on stdout. Throws Error (unwritable); a reader that has gone away is no error.
@@ -51,6 +55,7 @@ void print_report(std::string_view text);
 
 // An option's value as a number in low..high. Throws Error (usage) naming the option.
 int64_t integer_option(std::string_view option, std::string_view text, int64_t low, int64_t high);
+int frame_option(std::string_view text); // of --frame
 double number_option(std::string_view option, std::string_view text, double low, double high);
 // WIDTHxHEIGHT in pixels, each up to largest_side.
 inline constexpr int largest_side = 16384; // what EXR readers take
@@ -60,18 +65,4 @@ ivec2 resolution_option(std::string_view option, std::string_view text);
 std::string chosen_isa(const std::string& text);
 // The pieces between commas.
 std::vector<std::string> comma_list(std::string_view text);
-
-// JSON values for reports; numbers JSON cannot hold (infinite) become null.
-Json json_of(std::string_view text);
-Json json_of(const char* text);
-Json json_of(bool value);
-Json json_of(double value);
-Json json_of(int value);
-Json json_of(uint64_t value);
-Json json_of(vec3 value);
-Json json_of(const Box& box);
-Json json_of(const std::vector<std::string>& texts);
-Json json_of(const std::vector<std::pair<std::string, std::string>>& named_texts);
-Json json_array(std::vector<Json> items);
-Json json_object(std::vector<std::pair<std::string, Json>> members);
 }

@@ -7,25 +7,23 @@ namespace tyndall {
 namespace {
 std::string percent(double error, double mean) { return formatted("%.4g %%", 100 * relative(error, mean)); }
 
-Json window_json(ivec2 size) { return json_array({json_of(size.x), json_of(size.y)}); }
-
 Json non_finite_json(const Errors& e) {
-    return json_object({{"test", json_of(e.non_finite_test)}, {"reference", json_of(e.non_finite_reference)}});
+    return json_object({{"test", e.non_finite_test}, {"reference", e.non_finite_reference}});
 }
 
 Json errors_json(const Errors& e) {
-    return json_object({{"rmse_rel", json_of(relative(e.rmse, e.mean_reference))},
-                        {"bias_rel", json_of(relative(e.bias, e.mean_reference))},
-                        {"rmse", json_of(e.rmse)},
-                        {"bias", json_of(e.bias)},
-                        {"max", json_of(e.most)},
-                        {"mean", json_of(e.mean_test)},
-                        {"mean_reference", json_of(e.mean_reference)},
+    return json_object({{"rmse_rel", relative(e.rmse, e.mean_reference)},
+                        {"bias_rel", relative(e.bias, e.mean_reference)},
+                        {"rmse", e.rmse},
+                        {"bias", e.bias},
+                        {"max", e.most},
+                        {"mean", e.mean_test},
+                        {"mean_reference", e.mean_reference},
                         {"non_finite", non_finite_json(e)}});
 }
 
 Json layers_json(const Comparison& comparison) {
-    std::vector<std::pair<std::string, Json>> members;
+    JsonMembers members;
     for (const auto& [name, errors] : comparison.layers) members.emplace_back(name, errors_json(errors));
     return json_object(std::move(members));
 }
@@ -33,23 +31,23 @@ Json layers_json(const Comparison& comparison) {
 Json frame_json(const FrameResult& frame) {
     const Comparison& c = frame.comparison;
     Json json = errors_json(c.beauty);
-    json.members.insert(json.members.begin(), {"E", json_of(c.worst_rmse())});
-    json.members.insert(json.members.begin(), {"frame", json_of(frame.frame)});
-    json.members.emplace_back("rel_mse", json_of(c.beauty.rel_mse));
-    json.members.emplace_back("ssim", json_of(c.ssim));
-    json.members.emplace_back("flip", json_of(c.flip));
+    json.members.insert(json.members.begin(), {"E", c.worst_rmse()});
+    json.members.insert(json.members.begin(), {"frame", frame.frame});
+    json.members.emplace_back("rel_mse", c.beauty.rel_mse);
+    json.members.emplace_back("ssim", c.ssim);
+    json.members.emplace_back("flip", c.flip);
     json.members.emplace_back("layers", layers_json(c));
     return json;
 }
 
 Json metrics_json(const CompareResult& result) {
-    std::vector<std::pair<std::string, Json>> members;
+    JsonMembers members;
     for (const Metric& metric : metrics())
-        if (const auto value = metric.value(result)) members.emplace_back(metric.name, json_of(*value));
-    members.emplace_back("ssim", json_of(result.overall.ssim));
-    if (result.overall.mse) members.emplace_back("mse_unbiased_error", json_of(result.overall.mse->standard_error));
+        if (const auto value = metric.value(result)) members.emplace_back(metric.name, *value);
+    members.emplace_back("ssim", result.overall.ssim);
+    if (result.overall.mse) members.emplace_back("mse_unbiased_error", result.overall.mse->standard_error);
     if (result.overall.bias_squared)
-        members.emplace_back("bias_squared_error", json_of(result.overall.bias_squared->standard_error));
+        members.emplace_back("bias_squared_error", result.overall.bias_squared->standard_error);
     return json_object(std::move(members));
 }
 
@@ -122,30 +120,26 @@ std::string compare_text(const CompareResult& result) {
 
 std::string compare_json(const CompareResult& result, const std::vector<Exceeded>& exceeded) {
     const Errors& e = result.overall.beauty;
-    std::vector<Json> frames, failures;
-    for (const FrameResult& frame : result.frames) frames.push_back(frame_json(frame));
-    for (const Exceeded& f : exceeded)
-        failures.push_back(json_object({{"metric", json_of(std::string_view(f.metric))},
-                                        {"value", json_of(f.value)},
-                                        {"limit", json_of(f.limit)}}));
+    const auto failure_json = [](const Exceeded& f) {
+        return json_object({{"metric", f.metric}, {"value", f.value}, {"limit", f.limit}});
+    };
     const FlipExposures& exposures = result.viewing.exposures;
-    std::vector<std::pair<std::string, Json>> members{
-        {"test", json_of(std::string_view(result.test))},
-        {"reference", json_of(std::string_view(result.reference))},
-        {"size", window_json(result.size)},
-        {"pixels", json_of(e.pixels)},
-        {"stylised", json_of(result.overall.stylised)},
-        {"non_finite", non_finite_json(e)},
-        {"mean", json_of(e.mean_test)},
-        {"mean_reference", json_of(e.mean_reference)},
-        {"metrics", metrics_json(result)},
-        {"layers", layers_json(result.overall)},
-        {"viewing", json_object({{"pixels_per_degree", json_of(result.viewing.pixels_per_degree)},
-                                 {"start_exposure", json_of(exposures.start)},
-                                 {"stop_exposure", json_of(exposures.stop)},
-                                 {"exposures", json_of(exposures.count)}})},
-        {"exceeded", json_array(std::move(failures))}};
-    if (result.sequence) members.emplace_back("frames", json_array(std::move(frames)));
-    return format_json(json_object(std::move(members))) + "\n";
+    JsonMembers members{{"test", result.test},
+                        {"reference", result.reference},
+                        {"size", result.size},
+                        {"pixels", e.pixels},
+                        {"stylised", result.overall.stylised},
+                        {"non_finite", non_finite_json(e)},
+                        {"mean", e.mean_test},
+                        {"mean_reference", e.mean_reference},
+                        {"metrics", metrics_json(result)},
+                        {"layers", layers_json(result.overall)},
+                        {"viewing", json_object({{"pixels_per_degree", result.viewing.pixels_per_degree},
+                                                 {"start_exposure", exposures.start},
+                                                 {"stop_exposure", exposures.stop},
+                                                 {"exposures", exposures.count}})},
+                        {"exceeded", json_list(exceeded, failure_json)}};
+    if (result.sequence) members.emplace_back("frames", json_list(result.frames, frame_json));
+    return json_line(std::move(members));
 }
 }

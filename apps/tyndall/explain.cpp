@@ -40,11 +40,6 @@ void check_inside(ivec2 pixel, ivec2 size) {
                        pixel.x, pixel.y, size.x, size.y, size.x - 1, size.y - 1));
 }
 
-std::vector<const Mode*> modes_option(const std::string& text) {
-    if (text == "none") return {};
-    return asked_modes(text);
-}
-
 RenderRequest make_request(const Options& texts) {
     RenderRequest request;
     request.scene_file = texts.scene;
@@ -53,8 +48,7 @@ RenderRequest make_request(const Options& texts) {
     for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
     request.camera = texts.camera;
     if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.frame.empty())
-        request.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     return request;
 }
 
@@ -78,7 +72,7 @@ int run_explain(const Options& texts, const Globals& globals) {
     const ivec2 pixel = pixel_option(texts.pixel);
     RenderRequest request = make_request(texts);
     ExplainOptions options;
-    options.modes = modes_option(texts.modes);
+    if (texts.modes != "none") options.modes = asked_modes("--modes", texts.modes);
     if (request.resolution.x > 0) check_inside(pixel, request.resolution);
     OutputPlaces places;
     check_outputs(texts, places);

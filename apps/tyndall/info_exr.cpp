@@ -30,11 +30,8 @@ ChannelStatistics statistics_of(const Image<float>& image) {
 }
 
 Json channel_json(const std::string& name, const ChannelStatistics& s) {
-    return json_object({{"name", json_of(std::string_view(name))},
-                        {"minimum", json_of(s.low)},
-                        {"maximum", json_of(s.high)},
-                        {"mean", json_of(s.mean)},
-                        {"non_finite", json_of(s.non_finite)}});
+    return json_object(
+        {{"name", name}, {"minimum", s.low}, {"maximum", s.high}, {"mean", s.mean}, {"non_finite", s.non_finite}});
 }
 
 std::string channel_text(const std::string& name, const ChannelStatistics& s) {
@@ -55,17 +52,14 @@ std::string exr_report(const std::filesystem::path& file, bool json) {
         lines += channel_text(name, statistics);
     }
     if (json) {
-        const std::vector<std::pair<std::string, std::string>> attributes(exr.attributes.begin(), exr.attributes.end());
-        const auto pair = [](ivec2 v) { return json_array({json_of(v.x), json_of(v.y)}); };
-        return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
-                                        {"kind", json_of("exr")},
-                                        {"display", pair(exr.display)},
-                                        {"low", pair(exr.low)},
-                                        {"size", pair(exr.size)},
-                                        {"compression", json_of(std::string_view(exr.compression))},
-                                        {"channels", json_array(std::move(channels))},
-                                        {"attributes", json_of(attributes)}})) +
-               "\n";
+        return json_line({{"file", file.native()},
+                          {"kind", "exr"},
+                          {"display", exr.display},
+                          {"low", exr.low},
+                          {"size", exr.size},
+                          {"compression", exr.compression},
+                          {"channels", channels},
+                          {"attributes", json_object({exr.attributes.begin(), exr.attributes.end()})}});
     }
     std::string text = formatted("%s: OpenEXR, %d x %d pixels, %s compression\n", printable(file.string()).c_str(),
                                  exr.display.x, exr.display.y, printable(exr.compression, 40).c_str());

@@ -38,27 +38,25 @@ Totals totals_of(const Scene& scene) {
 }
 
 Json lights_json(const Scene& scene) {
-    std::vector<Json> lights;
-    for (const LightSource& light : scene.lights)
-        lights.push_back(json_object({{"name", json_of(std::string_view(light.name))},
-                                      {"kind", json_of(traits_of(light.kind).name)},
-                                      {"intensity", json_of(double{light.intensity.at(0)})},
-                                      {"unit", json_of(traits_of(light.kind).unit)},
-                                      {"color", json_of(light.color.at(0))},
-                                      {"range", json_of(double{light.range})}}));
-    return json_array(std::move(lights));
+    return json_list(scene.lights, [](const LightSource& light) {
+        return json_object({{"name", light.name},
+                            {"kind", traits_of(light.kind).name},
+                            {"intensity", light.intensity.at(0)},
+                            {"unit", traits_of(light.kind).unit},
+                            {"color", light.color.at(0)},
+                            {"range", light.range}});
+    });
 }
 
 Json media_json(const Scene& scene) {
-    std::vector<Json> media;
-    for (const MediumSource& medium : scene.media)
-        media.push_back(json_object({{"name", json_of(std::string_view(medium.name))},
-                                     {"kind", json_of(medium_names[static_cast<int>(medium.kind)])},
-                                     {"extinction", json_of(double{medium.extinction.at(0)})},
-                                     {"albedo", json_of(medium.albedo.at(0))},
-                                     {"g", json_of(double{medium.g.at(0)})},
-                                     {"file", json_of(std::string_view(medium.sequence.pattern))}}));
-    return json_array(std::move(media));
+    return json_list(scene.media, [](const MediumSource& medium) {
+        return json_object({{"name", medium.name},
+                            {"kind", medium_names[static_cast<int>(medium.kind)]},
+                            {"extinction", medium.extinction.at(0)},
+                            {"albedo", medium.albedo.at(0)},
+                            {"g", medium.g.at(0)},
+                            {"file", medium.sequence.pattern}});
+    });
 }
 
 std::string content_json(const std::filesystem::path& file, const char* kind, const Scene& scene) {
@@ -66,26 +64,25 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
     std::vector<std::string> cameras, inputs;
     for (const CameraSource& camera : scene.cameras) cameras.push_back(camera.name);
     for (const auto& input : scene.inputs) inputs.push_back(input.string());
-    return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
-                                    {"kind", json_of(kind)},
-                                    {"frame_rate", json_of(scene.frame_rate)},
-                                    {"first_frame", json_of(scene.first_frame)},
-                                    {"last_frame", json_of(scene.last_frame)},
-                                    {"meshes", json_of(scene.meshes.size())},
-                                    {"instances", json_of(scene.instances.size())},
-                                    {"triangles", json_of(totals.triangles)},
-                                    {"materials", json_of(scene.materials.size())},
-                                    {"textures", json_of(scene.textures.size())},
-                                    {"bounds", json_of(totals.bounds)},
-                                    {"animated_nodes", json_of(totals.animated_nodes)},
-                                    {"animation_seconds", json_of(double{totals.last_key})},
-                                    {"cameras", json_of(cameras)},
-                                    {"lights", lights_json(scene)},
-                                    {"media", media_json(scene)},
-                                    {"light_units", json_of(std::string_view(light_units_hint(scene)))},
-                                    {"inputs", json_of(inputs)},
-                                    {"warnings", json_of(scene.warnings)}})) +
-           "\n";
+    return json_line({{"file", file.native()},
+                      {"kind", kind},
+                      {"frame_rate", scene.frame_rate},
+                      {"first_frame", scene.first_frame},
+                      {"last_frame", scene.last_frame},
+                      {"meshes", scene.meshes.size()},
+                      {"instances", scene.instances.size()},
+                      {"triangles", totals.triangles},
+                      {"materials", scene.materials.size()},
+                      {"textures", scene.textures.size()},
+                      {"bounds", totals.bounds},
+                      {"animated_nodes", totals.animated_nodes},
+                      {"animation_seconds", totals.last_key},
+                      {"cameras", cameras},
+                      {"lights", lights_json(scene)},
+                      {"media", media_json(scene)},
+                      {"light_units", light_units_hint(scene)},
+                      {"inputs", inputs},
+                      {"warnings", scene.warnings}});
 }
 
 std::string content_text(const Scene& scene) {
@@ -146,19 +143,18 @@ std::string recipe_report(const std::filesystem::path& file, bool json) {
     const dvec3 size = dvec3(recipe.bounds.high) - dvec3(recipe.bounds.low);
     const vec3 across = glm::ceil(size / recipe.voxel_size - 1e-6);
     if (json)
-        return format_json(json_object({{"file", json_of(std::string_view(file.native()))},
-                                        {"kind", json_of("recipe")},
-                                        {"name", json_of(std::string_view(recipe.name))},
-                                        {"bounds", json_of(recipe.bounds)},
-                                        {"voxel_size", json_of(double{recipe.voxel_size})},
-                                        {"voxels", json_of(across)},
-                                        {"period", json_of(recipe.period)},
-                                        {"frame_rate", json_of(recipe.frame_rate)},
-                                        {"extinction", json_of(double{recipe.extinction})},
-                                        {"albedo", json_of(recipe.albedo)},
-                                        {"g", json_of(double{recipe.g})},
-                                        {"hash", json_of(std::string_view(recipe_hash(recipe)))}})) +
-               "\n";
+        return json_line({{"file", file.native()},
+                          {"kind", "recipe"},
+                          {"name", recipe.name},
+                          {"bounds", recipe.bounds},
+                          {"voxel_size", recipe.voxel_size},
+                          {"voxels", across},
+                          {"period", recipe.period},
+                          {"frame_rate", recipe.frame_rate},
+                          {"extinction", recipe.extinction},
+                          {"albedo", recipe.albedo},
+                          {"g", recipe.g},
+                          {"hash", recipe_hash(recipe)}});
     std::string text = printable(file.string()) + ": fog recipe for a grid named " + printable(recipe.name, 80) + "\n";
     text += "  world         " + vector_text(recipe.bounds.low) + " to " + vector_text(recipe.bounds.high) + " m\n";
     text += formatted("  voxels        %.0f x %.0f x %.0f of %g m\n", double{across.x}, double{across.y},

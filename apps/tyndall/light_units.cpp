@@ -1,6 +1,6 @@
 #include "light_units.h"
+#include "base/text.h"
 
-#include <cstdio>
 #include <cstdlib>
 
 namespace tyndall {
@@ -9,9 +9,7 @@ constexpr double lumens_per_watt = 683, sphere = 4 * 3.14159265358979323846;
 
 // Whether a person could have typed the number: at most three significant digits.
 bool typed(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2e", value);
-    return std::abs(std::strtod(text, nullptr) - value) <= 2e-6 * value;
+    return std::abs(std::strtod(formatted("%.2e", value).c_str(), nullptr) - value) <= 2e-6 * value;
 }
 
 // The number a Blender user would have typed for a light, by kind of export.

@@ -6,7 +6,6 @@
 
 #include <csignal>
 #include <cstdio>
-#include <new>
 #include <optional>
 
 #include <fcntl.h>
@@ -117,11 +116,6 @@ int run(int argc, char** argv) {
     print_report(introduction);
     return 0;
 }
-
-int report_error(std::string_view text, ExitCode code) {
-    say("error: " + printable(text, 480));
-    return static_cast<int>(code);
-}
 }
 }
 
@@ -130,18 +124,8 @@ int main(int argc, char** argv) {
     flush_denormals();
     open_standard_streams();
     handle_signals();
-    int code = 0;
-    try {
-        code = run(argc, argv);
-    } catch (const Error& error) {
-        if (!stop_signal) return report_error(error.what(), error.code);
-    } catch (const std::bad_alloc&) {
-        return report_error("out of memory: fewer pixels, coarser voxels or a machine with more memory help",
-                            ExitCode::out_of_memory);
-    } catch (const std::exception& error) {
-        if (!stop_signal) return report_error("internal: " + std::string(error.what()), ExitCode::internal);
-    }
-    if (!stop_signal) return code;
+    const int code = exit_code_of([&] { return run(argc, argv); });
+    if (!stop_signal || code == static_cast<int>(ExitCode::out_of_memory)) return code;
     say(formatted("stopped by signal %d; finished files are kept, --resume continues", static_cast<int>(stop_signal)));
     return static_cast<int>(ExitCode::stopped) + stop_signal;
 }

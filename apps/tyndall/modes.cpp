@@ -13,38 +13,33 @@ std::string range_of(const SettingRow& row) {
     return joined(row.choices, "|");
 }
 
-Json json_of_row(const SettingRow& row) {
-    Json result = json_object({{"name", json_of(std::string_view(row.name))},
-                               {"unit", json_of(std::string_view(row.unit))},
-                               {"doc", json_of(std::string_view(row.doc))},
-                               {"advanced", json_of(row.advanced)}});
+Json row_json(const SettingRow& row) {
+    Json result = json_object({{"name", row.name}, {"unit", row.unit}, {"doc", row.doc}, {"advanced", row.advanced}});
     if (row.choices.empty()) {
-        result.members.emplace_back("low", json_of(row.low));
-        result.members.emplace_back("high", json_of(row.high));
-        result.members.emplace_back("integer", json_of(row.integer));
+        result.members.emplace_back("low", row.low);
+        result.members.emplace_back("high", row.high);
+        result.members.emplace_back("integer", row.integer);
     } else {
-        result.members.emplace_back("choices", json_of(row.choices));
+        result.members.emplace_back("choices", row.choices);
     }
-    std::vector<std::pair<std::string, std::string>> values;
-    for (const Quality quality : qualities)
-        values.emplace_back(std::string(name_of(quality)), row.get(settings_for(quality)));
-    result.members.emplace_back("values", json_of(values));
+    JsonMembers values;
+    for (const Quality quality : qualities) values.emplace_back(name_of(quality), row.get(settings_for(quality)));
+    result.members.emplace_back("values", json_object(std::move(values)));
     std::vector<std::string> readers;
     for (const Mode& mode : modes())
         if (reads(mode, row.name)) readers.emplace_back(mode.name);
-    result.members.emplace_back("modes", json_of(readers));
+    result.members.emplace_back("modes", readers);
     return result;
 }
 
 std::string modes_json(std::span<const Mode* const> shown, const std::vector<SettingRow>& rows) {
-    std::vector<Json> techniques, settings;
-    for (const Mode* mode : shown)
-        techniques.push_back(json_object({{"name", json_of(mode->name)},
-                                          {"promise", json_of(name_of(mode->accuracy))},
-                                          {"summary", json_of(mode->summary)},
-                                          {"use", json_of(mode->use)}}));
-    for (const SettingRow& row : rows) settings.push_back(json_of_row(row));
-    return format_json(json_object({{"modes", json_array(techniques)}, {"settings", json_array(settings)}})) + "\n";
+    const auto mode_json = [](const Mode* mode) {
+        return json_object({{"name", mode->name},
+                            {"promise", name_of(mode->accuracy)},
+                            {"summary", mode->summary},
+                            {"use", mode->use}});
+    };
+    return json_line({{"modes", json_list(shown, mode_json)}, {"settings", json_list(rows, row_json)}});
 }
 
 std::string rows_text(const std::vector<SettingRow>& rows) {

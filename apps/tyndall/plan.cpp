@@ -22,50 +22,45 @@ struct Options {
 };
 
 Json term_json(const Term& term) {
-    return json_object({{"name", json_of(std::string_view(term.name))},
-                        {"where", json_of(std::string_view(term.where))},
-                        {"simpler", json_of(std::string_view(term.simpler))},
-                        {"needed", json_of(term.needed)},
-                        {"error", json_of(term.error)},
-                        {"bound", json_of(term.bound)},
-                        {"rigorous", json_of(term.rigorous)},
-                        {"why", json_of(std::string_view(term.why))}});
+    return json_object({{"name", term.name},
+                        {"where", term.where},
+                        {"simpler", term.simpler},
+                        {"needed", term.needed},
+                        {"error", term.error},
+                        {"bound", term.bound},
+                        {"rigorous", term.rigorous},
+                        {"why", term.why}});
 }
 
 Json standing_json(const Standing& standing) {
-    std::vector<std::pair<std::string, Json>> members{{"mode", json_of(standing.mode->name)},
-                                                      {"why", json_of(std::string_view(standing.why))}};
+    JsonMembers members{{"mode", standing.mode->name}, {"why", standing.why}};
     if (const auto& best = standing.best) {
         const Measured& measured = best->choice.measured;
-        members.emplace_back("candidate", json_of(std::string_view(best->choice.candidate.name)));
-        members.emplace_back("gets_there", json_of(best->gets_there()));
-        members.emplace_back("samples", json_of(best->samples));
-        members.emplace_back("seconds", json_of(best->seconds));
-        members.emplace_back("error", json_of(best->error));
-        members.emplace_back("integrator_error", json_of(std::sqrt(measured.integrator.value)));
-        members.emplace_back("integrator_bound", json_of(std::sqrt(measured.integrator.bound)));
-        members.emplace_back("prepare_seconds", json_of(measured.prepare_seconds));
-        members.emplace_back("sample_seconds", json_of(measured.sample_seconds));
+        members.emplace_back("candidate", std::string_view(best->choice.candidate.name));
+        members.emplace_back("gets_there", best->gets_there());
+        members.emplace_back("samples", best->samples);
+        members.emplace_back("seconds", best->seconds);
+        members.emplace_back("error", best->error);
+        members.emplace_back("integrator_error", std::sqrt(measured.integrator.value));
+        members.emplace_back("integrator_bound", std::sqrt(measured.integrator.bound));
+        members.emplace_back("prepare_seconds", measured.prepare_seconds);
+        members.emplace_back("sample_seconds", measured.sample_seconds);
     }
     return json_object(std::move(members));
 }
 
 std::string plan_json(const Plan& plan, const RenderRequest& request) {
-    std::vector<Json> terms, modes;
-    for (const Term& term : plan.terms) terms.push_back(term_json(term));
-    for (const Standing& standing : plan.standings) modes.push_back(standing_json(standing));
-    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
-                                    {"scene", json_of(std::string_view(request.scene_file.string()))},
-                                    {"frame", json_of(request.frames[0])},
-                                    {"target_error", json_of(plan.goal.error)},
-                                    {"time_budget", json_of(plan.goal.seconds)},
-                                    {"mode", json_of(plan.chosen.mode->name)},
-                                    {"certificate", json_of(std::string_view(plan.certificate()))},
-                                    {"terms", json_array(std::move(terms))},
-                                    {"modes", json_array(std::move(modes))},
-                                    {"terms_seconds", json_of(plan.terms_seconds)},
-                                    {"contest_seconds", json_of(plan.contest_seconds)}})) +
-           "\n";
+    return json_line({{"version", TYNDALL_VERSION},
+                      {"scene", request.scene_file.string()},
+                      {"frame", request.frames[0]},
+                      {"target_error", plan.goal.error},
+                      {"time_budget", plan.goal.seconds},
+                      {"mode", plan.chosen.mode->name},
+                      {"certificate", plan.certificate()},
+                      {"terms", json_list(plan.terms, term_json)},
+                      {"modes", json_list(plan.standings, standing_json)},
+                      {"terms_seconds", plan.terms_seconds},
+                      {"contest_seconds", plan.contest_seconds}});
 }
 
 // How to render what was planned: all frames of the scene unless one was asked for.
@@ -94,8 +89,7 @@ int run_plan(const Options& texts, const Globals& globals) {
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(request.scene_file, options);
     request.frames = {scene.first_frame};
-    if (!texts.frame.empty())
-        request.frames = {static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999))};
+    if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;

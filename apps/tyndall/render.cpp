@@ -176,7 +176,7 @@ std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
     std::vector<RenderRequest> requests;
     // Until the scene is known, what is to be chosen is the main renderer.
     const std::vector<const Mode*> asked =
-        asked_modes(texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
+        asked_modes("--mode", texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
     for (const Mode* mode : asked) {
         requests.push_back(make_request(texts, *mode));
         if (asked.size() > 1) requests.back().output = with_word(texts.output, mode->name);

@@ -165,19 +165,18 @@ void check_crop(const RenderRequest& request, ivec2 picture) {
         fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
 }
 
-std::vector<const Mode*> asked_modes(const std::string& text) {
+std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text) {
     std::vector<const Mode*> result;
     if (text == "all") {
         for (const Mode& mode : modes()) result.push_back(&mode);
         return result;
     }
     for (const std::string& name : comma_list(text)) {
-        if (name == automatic) fail(ExitCode::usage, "--mode", "auto is one mode of its choice: name it alone");
-        const Mode& mode = find_mode(name);
-        if (std::ranges::count(result, &mode)) fail(ExitCode::usage, "--mode", name + " is named twice");
+        if (name == automatic) fail(ExitCode::usage, option, "auto is one mode of its choice: name it alone");
+        const Mode& mode = find_mode(name, option);
+        if (std::ranges::count(result, &mode)) fail(ExitCode::usage, option, name + " is named twice");
         result.push_back(&mode);
     }
-    if (result.empty()) find_mode("");
     return result;
 }
 

@@ -16,8 +16,8 @@ struct RenderOptions {
 
 void add_render_options(const Command& command, RenderOptions& texts);
 
-// The modes of --mode: a name, several with commas between, or all. Throws Error (usage).
-std::vector<const Mode*> asked_modes(const std::string& text);
+// The modes of an option: a name, several with commas between, or all. Throws Error (usage).
+std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text);
 
 // Everything the command line alone decides; throws Error (usage) before any file is touched.
 RenderRequest make_request(const RenderOptions& texts, const Mode& mode);

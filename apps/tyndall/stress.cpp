@@ -1,11 +1,10 @@
 // tyndall stress: the stability suite, mode by case.
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/output.h"
 #include "modes/mode.h"
 #include "stress_report.h"
-
-#include <chrono>
 
 namespace tyndall {
 namespace {
@@ -76,15 +75,14 @@ int run(const Options& texts, const Globals& globals) {
     if (!texts.output.empty())
         for (const char* name : {"stress.txt", "stress.json", "stress.html"}) places.check(directory / name);
 
-    using Clock = std::chrono::steady_clock;
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     Progress progress(globals.progress, "stress", 1, true);
     StressReport report;
     report.results = run_stress(cases, chosen, {&cancel_flag(), [&](double done) { progress.set(done); }});
     stop_if_cancelled();
     progress.finish();
     report.modes = columns(report.results);
-    report.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    report.seconds = steady_seconds() - start;
     if (!texts.output.empty()) write_files(directory, report);
     print_report(globals.json ? stress_json(report) : stress_text(report));
     return static_cast<int>(report.count(Verdict::fails) ? ExitCode::differs : ExitCode::ok);

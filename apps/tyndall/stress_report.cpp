@@ -36,41 +36,39 @@ std::string details(const StressReport& report, Verdict verdict, const char* hea
 }
 
 Json point_json(const StressPoint& point) {
-    return json_object({{"value", json_of(point.value)},
-                        {"error", json_of(point.error)},
-                        {"allowed", json_of(point.allowed)},
-                        {"holds", json_of(point.holds())},
-                        {"said", json_of(point.said())},
-                        {"excused_up_to", point.said() ? json_of(point.excused_up_to) : Json{}},
-                        {"warning", json_of(std::string_view(point.warning))},
-                        {"wrong", json_of(point.wrong)},
-                        {"rmse_rel", point.measured < 0 ? Json{} : json_of(point.measured)},
-                        {"non_finite", json_of(point.non_finite)},
-                        {"negative", json_of(point.negative)}});
+    return json_object({{"value", point.value},
+                        {"error", point.error},
+                        {"allowed", point.allowed},
+                        {"holds", point.holds()},
+                        {"said", point.said()},
+                        {"excused_up_to", point.said() ? Json(point.excused_up_to) : Json()},
+                        {"warning", point.warning},
+                        {"wrong", point.wrong},
+                        {"rmse_rel", point.measured < 0 ? Json() : Json(point.measured)},
+                        {"non_finite", point.non_finite},
+                        {"negative", point.negative}});
 }
 
 Json result_json(const StressResult& result) {
-    std::vector<Json> points;
-    for (const StressPoint& point : result.points) points.push_back(point_json(point));
     const StressPoint* first = result.first();
-    return json_object({{"mode", json_of(std::string_view(result.mode))},
-                        {"verdict", json_of(name_of(result.verdict()))},
-                        {"from", first ? json_of(first->value) : Json{}},
-                        {"seconds", json_of(result.seconds)},
-                        {"points", json_array(std::move(points))}});
+    return json_object({{"mode", result.mode},
+                        {"verdict", name_of(result.verdict())},
+                        {"from", first ? Json(first->value) : Json()},
+                        {"seconds", result.seconds},
+                        {"points", json_list(result.points, point_json)}});
 }
 
 Json case_json(const StressReport& report, const StressCase& stress) {
     std::vector<Json> results;
     for (const std::string& mode : report.modes)
         if (const StressResult* result = report.find(stress, mode)) results.push_back(result_json(*result));
-    return json_object({{"case", json_of(stress.id)},
-                        {"group", json_of(stress.group)},
-                        {"title", json_of(stress.title)},
-                        {"sweep", json_of(stress.sweep)},
-                        {"unit", json_of(stress.unit)},
-                        {"criterion", json_of(stress.measure.criterion)},
-                        {"results", json_array(std::move(results))}});
+    return json_object({{"case", stress.id},
+                        {"group", stress.group},
+                        {"title", stress.title},
+                        {"sweep", stress.sweep},
+                        {"unit", stress.unit},
+                        {"criterion", stress.measure.criterion},
+                        {"results", results}});
 }
 }
 
@@ -122,18 +120,16 @@ std::string stress_text(const StressReport& report) {
 }
 
 std::string stress_json(const StressReport& report) {
-    std::vector<Json> cases;
-    for (const StressCase* stress : report.cases()) cases.push_back(case_json(report, *stress));
+    const auto case_of = [&](const StressCase* stress) { return case_json(report, *stress); };
     const WrongWarnings warnings = wrong_warnings(report.results);
-    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
-                                    {"holds", json_of(report.count(Verdict::holds))},
-                                    {"degrades", json_of(report.count(Verdict::degrades))},
-                                    {"fails", json_of(report.count(Verdict::fails))},
-                                    {"wrong_warnings", json_of(warnings.count)},
-                                    {"idle_warnings", json_of(warnings.idle)},
-                                    {"seconds", json_of(report.seconds)},
-                                    {"cases", json_array(std::move(cases))}})) +
-           "\n";
+    return json_line({{"version", TYNDALL_VERSION},
+                      {"holds", report.count(Verdict::holds)},
+                      {"degrades", report.count(Verdict::degrades)},
+                      {"fails", report.count(Verdict::fails)},
+                      {"wrong_warnings", warnings.count},
+                      {"idle_warnings", warnings.idle},
+                      {"seconds", report.seconds},
+                      {"cases", json_list(report.cases(), case_of)}});
 }
 
 std::string stress_list(std::span<const StressCase* const> cases) {

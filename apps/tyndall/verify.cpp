@@ -31,19 +31,16 @@ std::string table(const std::vector<Check>& checks) {
 }
 
 std::string checks_json(const std::vector<Check>& checks, size_t off) {
-    std::vector<Json> items;
-    for (const Check& check : checks)
-        items.push_back(json_object({{"topic", json_of(std::string_view(check.topic))},
-                                     {"name", json_of(std::string_view(check.name))},
-                                     {"measured", json_of(check.measured)},
-                                     {"expected", json_of(check.expected)},
-                                     {"tolerance", json_of(check.tolerance)},
-                                     {"basis", json_of(std::string_view(check.basis))},
-                                     {"holds", json_of(check.holds())}}));
-    return format_json(json_object({{"version", json_of(TYNDALL_VERSION)},
-                                    {"off", json_of(static_cast<uint64_t>(off))},
-                                    {"checks", json_array(std::move(items))}})) +
-           "\n";
+    const auto check_json = [](const Check& check) {
+        return json_object({{"topic", check.topic},
+                            {"name", check.name},
+                            {"measured", check.measured},
+                            {"expected", check.expected},
+                            {"tolerance", check.tolerance},
+                            {"basis", check.basis},
+                            {"holds", check.holds()}});
+    };
+    return json_line({{"version", TYNDALL_VERSION}, {"off", off}, {"checks", json_list(checks, check_json)}});
 }
 
 SceneProof proof_of(const Options& texts) {
@@ -52,7 +49,7 @@ SceneProof proof_of(const Options& texts) {
     if (!texts.samples.empty())
         proof.samples = static_cast<int>(integer_option("--samples", texts.samples, 64, 65536) + 63) / 64 * 64;
     if (!texts.seed.empty()) proof.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    if (!texts.frame.empty()) proof.frame = static_cast<int>(integer_option("--frame", texts.frame, -9999999, 9999999));
+    if (!texts.frame.empty()) proof.frame = frame_option(texts.frame);
     proof.camera = texts.camera;
     return proof;
 }

@@ -1,7 +1,9 @@
 // Small helpers for messages that name things.
 #pragma once
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +13,19 @@ namespace tyndall {
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
+
+// The fewest digits that read back the same.
+template<class T> std::string shortest_text(T value) {
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+// A text that is a number from its first to its last letter.
+template<class T> std::optional<T> parsed(std::string_view text) {
+    T value{};
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return problem == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
+}
 
 // "2.1 min", "1.5 MB", "2 leaves": for people.
 std::string seconds_text(double seconds);

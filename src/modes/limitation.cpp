@@ -1,7 +1,7 @@
 #include "modes/limitation.h"
 
 #include "base/error.h"
-#include "base/io/json.h"
+#include "base/io/json_values.h"
 #include "base/text.h"
 
 #include <algorithm>
@@ -81,22 +81,11 @@ std::string line_of(const LimitationGroup& group) {
 }
 
 Json json_of(const Limitations& limitations) {
-    Json array;
-    array.kind = Json::Kind::array;
-    for (const Limitation& limitation : limitations) {
-        const auto text = [](std::string_view value) {
-            Json json;
-            json.kind = Json::Kind::string, json.string = value;
-            return json;
-        };
-        Json json;
-        json.kind = Json::Kind::object;
-        json.members = {{"severity", text(name_of(limitation.severity))},
-                        {"id", text(limitation.kind->id)},
-                        {"where", text(where_of(limitation))},
-                        {"why", text(sentence_of(limitation))}};
-        array.items.push_back(std::move(json));
-    }
-    return array;
+    return json_list(limitations, [](const Limitation& limitation) {
+        return json_object({{"severity", name_of(limitation.severity)},
+                            {"id", limitation.kind->id},
+                            {"where", where_of(limitation)},
+                            {"why", sentence_of(limitation)}});
+    });
 }
 }

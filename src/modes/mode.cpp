@@ -13,13 +13,13 @@ const Mode& interactive_mode() { return *std::ranges::find(modes(), true, &Mode:
 std::string main_mode_name() { return std::string(main_mode().name); }
 std::string interactive_mode_name() { return std::string(interactive_mode().name); }
 
-const Mode& find_mode(std::string_view name) {
+const Mode& find_mode(std::string_view name, std::string_view where) {
     std::vector<std::string> names;
     for (const Mode& mode : modes()) {
         if (mode.name == name) return mode;
         names.emplace_back(mode.name);
     }
-    fail(ExitCode::usage, "", unknown_name("mode", name, names));
+    fail(ExitCode::usage, where, unknown_name("mode", name, names));
 }
 
 bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }

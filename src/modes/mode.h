@@ -79,7 +79,7 @@ inline const Mode& main_mode() { return modes().front(); }
 const Mode& mode_of_all_orders();
 const Mode& interactive_mode();
 
-const Mode& find_mode(std::string_view name); // throws Error (usage) listing the names
+const Mode& find_mode(std::string_view name, std::string_view where = {}); // throws Error (usage) listing the names
 
 // Whether style.* changes its pictures: the truth has none.
 bool honours_style(const Mode& mode);

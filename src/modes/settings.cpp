@@ -5,25 +5,17 @@
 #include "base/text.h"
 
 #include <cassert>
-#include <charconv>
-#include <cstdio>
 
 namespace tyndall {
-std::string short_number(double value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, static_cast<float>(value)).ptr;
-    return std::string(text, end);
-}
+std::string short_number(double value) { return shortest_text(static_cast<float>(value)); }
 
 double parsed_number(std::string_view row, std::string_view text, double low, double high, bool integer) {
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = problem == std::errc() && end == text.data() + text.size();
-    if (!whole || !(value >= low && value <= high) || (integer && value != std::floor(value)))
+    const auto value = parsed<double>(text);
+    if (!value || !(*value >= low && *value <= high) || (integer && *value != std::floor(*value)))
         fail(ExitCode::usage, row,
              "expected " + std::string(integer ? "a whole number" : "a number") + " from " + short_number(low) +
                  " to " + short_number(high) + ", got '" + printable(text, 40) + "'");
-    return value;
+    return *value;
 }
 
 vec3 parsed_color(std::string_view row, std::string_view text, double low, double high) {

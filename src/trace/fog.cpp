@@ -2,6 +2,7 @@
 #include "trace/fog.h"
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/text.h"
 #include "scene/scene.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
@@ -9,8 +10,6 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -34,11 +33,7 @@ bool changes(const FogRecipe& recipe) {
     return recipe.wind != vec3(0) || recipe.noise.evolve != 0 || (recipe.swirl != 0 && recipe.swirl_speed != 0);
 }
 
-std::string number_key(double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%a", value);
-    return text;
-}
+std::string number_key(double value) { return formatted("%a", value); }
 
 FogSource source_of(const SparseVolume& volume, std::string key) {
     FogSource source;

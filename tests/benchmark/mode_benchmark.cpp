@@ -7,6 +7,7 @@
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=light,camera tyndall_benchmark ...
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=fog TYNDALL_SET=froxel.amortise=on tyndall_benchmark ...
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/simd/isa.h"
 #include "modes/history.h"
@@ -26,7 +27,6 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <sstream>
@@ -152,20 +152,16 @@ void scatter_picture(const ScatterFunction& scatter, const PictureRays& picture,
     });
 }
 
-double milliseconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 // Milliseconds of a stage: that pass, and the work of all threads (on a busy machine, half of it is what two cores
 // take).
 struct Stage {
     double real = 0, work = 0;
 
     template<class Body> void time(const Body& body) {
-        const auto start = std::chrono::steady_clock::now();
+        const double start = steady_seconds();
         const std::clock_t work_start = std::clock();
         body();
-        real += milliseconds_since(start);
+        real += 1000 * (steady_seconds() - start);
         work += 1000.0 * static_cast<double>(std::clock() - work_start) / CLOCKS_PER_SEC;
     }
 };

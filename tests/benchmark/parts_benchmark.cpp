@@ -2,6 +2,7 @@
 // light-side depth, each kind alone over all points of the frame. `ratio` is what the frame takes over what they take.
 //
 //     TYNDALL_SCENE=scenes/pillars.json TYNDALL_QUALITY=final tyndall_benchmark --benchmark_filter=march_and_its_parts
+#include "base/clock.h"
 #include "base/simd/isa.h"
 #include "integrate/march_steps.h"
 #include "modes/mode.h"
@@ -17,7 +18,6 @@
 
 #include <benchmark/benchmark.h>
 
-#include <chrono>
 #include <cstdlib>
 
 namespace {
@@ -86,9 +86,9 @@ void trace_shadows(const Occluders& occluders, const Light& light, const Points&
 }
 
 template<class Body> double seconds_of(const Body& body) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = steady_seconds();
     body();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return steady_seconds() - start;
 }
 
 void march_and_its_parts(benchmark::State& state) {

@@ -1,4 +1,5 @@
 // Light that scatters more than once, by the grid of fluence: closed forms, conservation, and path tracing.
+#include "base/clock.h"
 #include "base/gauss_legendre.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -23,8 +24,6 @@
 #include "volume/medium.h"
 
 #include <gtest/gtest.h>
-
-#include <chrono>
 
 namespace tyndall::test {
 namespace {
@@ -268,8 +267,6 @@ std::vector<vec3> picture(const char* mode, const Snapshot& snapshot, const View
     return pixels;
 }
 
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 TEST(FluenceOfCloud, NightlyIsWithinFivePerCentOfPathAndTenTimesAsFast) {
     const Scene scene = load_scene(std::string(TYNDALL_SOURCE_DIR) + "/scenes/cloud.json");
     Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
@@ -279,12 +276,12 @@ TEST(FluenceOfCloud, NightlyIsWithinFivePerCentOfPathAndTenTimesAsFast) {
     view.size = {80, 45}, view.pixel_samples = 16;
     Settings settings = settings_for(Quality::final);
     settings.fluence.orders = all_orders;
-    const double start = seconds();
+    const double start = steady_seconds();
     const std::vector<vec3> march = picture("march", snapshot, view, settings);
-    const double march_seconds = seconds() - start;
+    const double march_seconds = steady_seconds() - start;
     view.pixel_samples = 1024;
     const std::vector<vec3> first = picture("path", snapshot, view, settings);
-    const double path_seconds = seconds() - start - march_seconds;
+    const double path_seconds = steady_seconds() - start - march_seconds;
     view.seed = 1;
     const std::vector<vec3> second = picture("path", snapshot, view, settings);
 

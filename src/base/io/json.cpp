@@ -8,6 +8,10 @@
 #include <cmath>
 
 namespace tyndall {
+Json::Json(const Box& box) {
+    if (!box.empty()) kind = Kind::object, members = {{"low", box.low}, {"high", box.high}};
+}
+
 const Json* Json::find(std::string_view key) const {
     for (const auto& [name, value] : members)
         if (name == key) return &value;

@@ -1,11 +1,16 @@
 // JSON read safely: parsed with limits, checked against a schema, then read through a plain tree of values.
 // An error names the file, the JSON pointer and what was expected.
 #pragma once
+#include "base/math.h"
+
+#include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -20,6 +25,24 @@ public:
     std::string string;
     std::vector<Json> items;                           // of an array
     std::vector<std::pair<std::string, Json>> members; // of an object, in file order
+
+    Json() = default;
+    template<class T>
+    requires std::is_arithmetic_v<T> Json(T value) { // null when it is infinite or undefined
+        const double wide = static_cast<double>(value);
+        kind = std::is_same_v<T, bool> ? Kind::boolean : std::isfinite(wide) ? Kind::number : Kind::null;
+        if constexpr (std::is_same_v<T, bool>)
+            boolean = value;
+        else
+            number = wide;
+    }
+    template<class T>
+    requires std::convertible_to<T, std::string_view> Json(const T& text)
+        : kind(Kind::string), string(std::string_view(text)) {}
+    template<class T> Json(const std::vector<T>& values) : kind(Kind::array), items(values.begin(), values.end()) {}
+    Json(ivec2 v) : Json(std::vector{v.x, v.y}) {}
+    Json(vec3 v) : Json(std::vector{v.x, v.y, v.z}) {}
+    Json(const Box& box); // {low, high}, null when it is empty
 
     const Json* find(std::string_view key) const; // member of an object, or null
     bool has(std::string_view key) const { return find(key) != nullptr; }

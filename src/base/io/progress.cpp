@@ -1,7 +1,9 @@
 #include "base/io/progress.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/json.h"
+#include "base/text.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -12,17 +14,11 @@
 
 namespace tyndall {
 namespace {
-using Seconds = std::chrono::duration<double>;
-
 // 1:05:09, 2:07 or 0:09
 std::string clock_text(double seconds) {
     const long long whole = static_cast<long long>(std::min(std::max(seconds, 0.0), 3.6e8) + 0.5);
-    char text[40];
-    if (whole >= 3600)
-        std::snprintf(text, sizeof text, "%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
-    else
-        std::snprintf(text, sizeof text, "%lld:%02lld", whole / 60, whole % 60);
-    return text;
+    if (whole >= 3600) return formatted("%lld:%02lld:%02lld", whole / 3600, whole / 60 % 60, whole % 60);
+    return formatted("%lld:%02lld", whole / 60, whole % 60);
 }
 
 size_t terminal_width(int descriptor) {
@@ -32,10 +28,11 @@ size_t terminal_width(int descriptor) {
 
 // "render [######------]  50%  0:10  0:10 left", never wider than the terminal.
 std::string bar_text(const std::string& what, double fraction, double elapsed, double left, size_t width) {
-    char tail[80];
-    std::snprintf(tail, sizeof tail, " %3d%%  %s  ", static_cast<int>(100 * fraction + 1e-9),
-                  clock_text(elapsed).c_str());
-    std::string right = tail + (fraction >= 1 ? "done" : left >= 0 ? clock_text(left) + " left" : "");
+    std::string right =
+        formatted(" %3d%%  %s  ", static_cast<int>(100 * fraction + 1e-9), clock_text(elapsed).c_str()) +
+        (fraction >= 1 ? "done"
+         : left >= 0   ? clock_text(left) + " left"
+                       : "");
     const size_t taken = what.size() + right.size() + 4;
     const size_t cells = width > taken + 10 ? std::min<size_t>(width - taken, 40) : 0;
     const size_t full = static_cast<size_t>(fraction * static_cast<double>(cells));
@@ -51,7 +48,7 @@ Progress::Progress(ProgressStyle style, std::string_view what, double total, boo
     : style_(style), what_(printable(what, 60)), total_(total), to_stderr_(to_stderr) {
     if (style_ == ProgressStyle::automatic)
         style_ = isatty(to_stderr_ ? STDERR_FILENO : STDOUT_FILENO) ? ProgressStyle::bar : ProgressStyle::alf;
-    start_ = last_print_ = std::chrono::steady_clock::now();
+    start_ = last_print_ = steady_seconds();
     print(false);
 }
 
@@ -101,8 +98,8 @@ void Progress::finish() {
 
 void Progress::print(bool last) {
     if (style_ == ProgressStyle::none || style_ == ProgressStyle::silent) return;
-    const auto now = std::chrono::steady_clock::now();
-    const double elapsed = Seconds(now - start_).count(), since = Seconds(now - last_print_).count();
+    const double now = steady_seconds();
+    const double elapsed = now - start_, since = now - last_print_;
     const double fraction = total_ > 0 ? done_ / total_ : last ? 1.0 : 0.0;
     const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : -1;
     const int percent = total_ > 0 ? static_cast<int>(100 * done_ / total_ + 1e-9) : last ? 100 : 0;
@@ -119,10 +116,9 @@ void Progress::print(bool last) {
         std::fprintf(stream, "\r%-*s", static_cast<int>(last_length_), text.c_str());
         last_length_ = text.size();
     } else if (style_ == ProgressStyle::json) {
-        char left_text[32] = "null";
-        if (left >= 0) std::snprintf(left_text, sizeof left_text, "%.1f", left);
         std::fprintf(stream, "{\"what\":%s,\"progress\":%.4f,\"elapsed\":%.1f,\"left\":%s}\n",
-                     quote_json(what_).c_str(), fraction, elapsed, left_text);
+                     quote_json(what_).c_str(), fraction, elapsed,
+                     left >= 0 ? formatted("%.1f", left).c_str() : "null");
     } else {
         std::fprintf(stream, "ALF_PROGRESS %d%%\n", percent);
     }

@@ -1,6 +1,5 @@
 // Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise.
 #pragma once
-#include <chrono>
 #include <cstddef>
 #include <mutex>
 #include <string>
@@ -28,6 +27,6 @@ private:
     bool to_stderr_, finished_ = false;
     int last_percent_ = -1;
     size_t last_length_ = 0;
-    std::chrono::steady_clock::time_point start_, last_print_;
+    double start_ = 0, last_print_ = 0;
 };
 }

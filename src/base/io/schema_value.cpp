@@ -21,12 +21,6 @@ std::string type_name(const Json& value) {
     return names[static_cast<size_t>(value.kind)];
 }
 
-std::string number_text(double number) {
-    Json value;
-    value.kind = Json::Kind::number, value.number = number;
-    return format_json(value);
-}
-
 std::string short_text(const Json& value) {
     const bool composed = value.kind == Json::Kind::array || value.kind == Json::Kind::object;
     return composed ? with_article(type_name(value)) : printable(format_json(value), 60);
@@ -59,7 +53,7 @@ std::string number_problem(double number, const Json& schema) {
     for (const auto& [keyword, text, holds] : bounds) {
         const Json* bound = schema.find(keyword);
         if (bound && !holds(number, bound->number))
-            return text + number_text(bound->number) + " (is " + number_text(number) + ")";
+            return text + format_json(bound->number) + " (is " + format_json(number) + ")";
     }
     return {};
 }
@@ -71,8 +65,8 @@ std::string size_problem(size_t size, double least, double most, const std::stri
     if (size == 0 && least == 1) return "must not be empty";
     const double bound = have < least ? least : most;
     const char* relation = least == most ? "exactly " : have < least ? "at least " : "at most ";
-    return "must have " + (relation + number_text(bound)) + " " + what + (bound == 1 ? "" : "s") + " (has " +
-           number_text(have) + ")";
+    return "must have " + (relation + format_json(bound)) + " " + what + (bound == 1 ? "" : "s") + " (has " +
+           format_json(have) + ")";
 }
 
 std::string string_problem(const std::string& text, const Json& schema) {
@@ -157,7 +151,7 @@ std::string expected_types(const std::vector<std::string>& types, const Json& va
             names.push_back(with_article(type));
     const bool fraction = value.kind == Json::Kind::number; // where only an integer would do
     return "expected " + joined(names, " or ") + ", got " +
-           (fraction ? number_text(value.number) : with_article(type_name(value)));
+           (fraction ? format_json(value.number) : with_article(type_name(value)));
 }
 
 std::string quoted_list(const std::vector<std::string>& names) {

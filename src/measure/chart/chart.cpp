@@ -1,3 +1,4 @@
+#include "base/clock.h"
 #include "measure/chart/earlier_points.h"
 
 #include "base/error.h"
@@ -14,13 +15,10 @@
 #include "trace/view.h"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <cstdlib>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
 constexpr int fewest_pixels = 16; // across a frame of the sequence
 
 double load_average() {
@@ -174,10 +172,8 @@ std::vector<ChartedMode> charted_modes(const ChartStage& stage) {
 }
 
 std::string line_on(const ChartPoint& point) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%-14s %3d rays a pixel  %8.4f s  error %.4f", point_name(point).c_str(),
-                  static_cast<int>(point.samples), point.seconds_1, point.errors.error);
-    return text;
+    return formatted("%-14s %3d rays a pixel  %8.4f s  error %.4f", point_name(point).c_str(),
+                     static_cast<int>(point.samples), point.seconds_1, point.errors.error);
 }
 
 // What is there already, what would take too long, and how long the rest will take. What comes after a rung of a mode
@@ -209,7 +205,7 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
 }
 
 Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& control) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     flush_denormals();
     Chart chart;
     chart.job = job_for(scene, asked, control);
@@ -252,7 +248,7 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
     }
     mark_best(chart.points);
     chart.load_after = load_average();
-    chart.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    chart.seconds = steady_seconds() - start;
     return chart;
 }
 }

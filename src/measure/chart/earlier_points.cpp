@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/io/json_values.h"
 #include "base/parallel.h"
 #include "base/shrink.h"
 #include "measure/metrics/heatmap.h"
-#include "measure/report/json_values.h"
 #include "modes/mode.h"
 #include "render/image/png.h"
 #include "render/sequence/job.h"
@@ -35,9 +35,8 @@ Image<float> shrunk(const Image<float>& values, ivec2 size) {
 }
 
 Json json_of_point(const ChartPoint& point) {
-    Json result = report::object({{"mode", report::text(point.mode)}, {"settings", report::text(point.settings)}});
-    for (const ChartField& field : chart_fields())
-        result.members.emplace_back(field.name, report::number(value_of(field, point)));
+    Json result = json_object({{"mode", point.mode}, {"settings", point.settings}});
+    for (const ChartField& field : chart_fields()) result.members.emplace_back(field.name, value_of(field, point));
     return result;
 }
 
@@ -90,7 +89,7 @@ void keep_point(const std::filesystem::path& directory, const MeasuredPoint& mea
     write_jpeg(directory / files.small_errors, heat_map(shrunk(measured.errors, small), error_scale), jpeg_quality);
 
     Json json = json_of_point(measured.point);
-    json.members.emplace_back("hash", report::text(hash));
+    json.members.emplace_back("hash", hash);
     write_file_atomically(directory / files.values, format_json(json) + "\n");
 }
 }

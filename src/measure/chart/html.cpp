@@ -1,4 +1,5 @@
 // The page of a chart.
+#include "base/text.h"
 #include "measure/chart/page.h"
 #include "measure/chart/report.h"
 #include "measure/report/svg.h"
@@ -6,7 +7,6 @@
 #include "base/io/file.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -27,12 +27,7 @@ std::string element(const std::string& name, const std::string& content) {
     return "<" + name + ">" + content + "</" + name.substr(0, name.find(' ')) + ">";
 }
 
-std::string number_words(double value) {
-    if (!std::isfinite(value)) return "-";
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g", value);
-    return text;
-}
+std::string number_words(double value) { return std::isfinite(value) ? formatted("%.3g", value) : "-"; }
 
 std::string size_words(ivec2 size) { return std::to_string(size.x) + " × " + std::to_string(size.y); }
 
@@ -140,11 +135,10 @@ std::string gallery(const Chart& chart) {
 
 // --- words -----------------------------------------------------------------------------------------------------------
 std::string summary(const Chart& chart) {
-    char loads[80];
-    std::snprintf(loads, sizeof loads, "%.1f before, %.1f after", chart.load_before, chart.load_after);
     return "Frame " + std::to_string(chart.job.frame) + ", camera " + xml_text(chart.camera) + ", " +
            size_words(chart.size) + " pixels, " + std::to_string(chart.threads) + " threads, " + xml_text(chart.isa) +
-           ". Load of the machine: " + loads + ". Light scatters once everywhere.";
+           formatted(". Load of the machine: %.1f before, %.1f after. Light scatters once everywhere.",
+                     chart.load_before, chart.load_after);
 }
 
 std::string reference_words(const ReferenceSamples& reference) {

@@ -1,5 +1,6 @@
 #include "measure/chart/point.h"
 
+#include "base/clock.h"
 #include "measure/metrics/heatmap.h"
 #include "measure/verify/memory_growth.h"
 #include "modes/mode.h"
@@ -12,16 +13,12 @@
 #include "volume/medium.h"
 
 #include <algorithm>
-#include <chrono>
 #include <ctime>
 
 namespace tyndall {
 namespace {
 constexpr double shortest_measurement = 0.25; // seconds of runs, which quick pictures take more of
 constexpr int max_runs = 5;
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 double median(std::vector<double> values) {
     std::ranges::sort(values);
@@ -75,9 +72,9 @@ Layers timed_run(const ChartStage& stage, const Mode& mode, const Settings& sett
     Snapshot next = seen_by(mode, stage.next);
     next.cache_before = now.cache;
     const View next_view = view_for(stage, settings, size, stage.next_frame);
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     const Prepared prepared = prepare_frame(mode, next_view, next, settings, nullptr);
-    times.warm.push_back(seconds_since(start));
+    times.warm.push_back(steady_seconds() - start);
     return layers;
 }
 
@@ -181,8 +178,9 @@ MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
 
     Times times;
     ColorLayers picture;
-    const auto start = Clock::now();
-    for (int run = 0; run < stage.job.runs || (run < max_runs && seconds_since(start) < shortest_measurement); ++run) {
+    const double start = steady_seconds();
+    for (int run = 0; run < stage.job.runs || (run < max_runs && steady_seconds() - start < shortest_measurement);
+         ++run) {
         const auto part = [&](double done) { progress((std::min(run, stage.job.runs - 1) + done) / stage.job.runs); };
         Layers layers = timed_run(stage, mode, settings, part, times, point.non_finite);
         picture = {std::move(layers.color), std::move(layers.inscatter)};

@@ -2,64 +2,40 @@
 #include "measure/chart/report.h"
 
 #include "base/io/json.h"
+#include "base/io/json_values.h"
+#include "base/text.h"
 #include "measure/chart/earlier_points.h"
-#include "measure/report/json_values.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
-// The shortest text that reads back the same; empty for what was not measured.
-std::string csv_number(double value) {
-    if (std::isnan(value)) return {};
-    char digits[32];
-    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-std::string printed(const char* format, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
-Json size_json(ivec2 size) { return report::array({report::number(size.x), report::number(size.y)}); }
+// Empty for what was not measured.
+std::string csv_number(double value) { return std::isnan(value) ? "" : shortest_text(value); }
 
 Json modes_json(const Chart& chart) {
-    std::vector<Json> modes;
-    for (const ChartedMode& mode : chart.modes) {
-        modes.push_back(report::object({{"name", report::text(mode.name)},
-                                        {"promise", report::text(name_of(mode.accuracy))},
-                                        {"limitations", json_of(mode.limitations)}}));
-    }
-    return report::array(std::move(modes));
+    return json_list(chart.modes, [](const ChartedMode& mode) {
+        return json_object(
+            {{"name", mode.name}, {"promise", name_of(mode.accuracy)}, {"limitations", json_of(mode.limitations)}});
+    });
 }
 
 Json advice_json(const Chart& chart) {
-    std::vector<Json> items;
-    const auto name = [](const std::optional<ChartPoint>& point) {
-        return point ? report::text(point_name(*point)) : Json();
-    };
-    for (const Advice& advice : advice_of(chart)) {
-        Json item = advice.error > 0 ? report::object({{"error", report::number(advice.error)}})
-                                     : report::object({{"seconds", report::number(advice.seconds)}});
-        item.members.emplace_back("single", name(advice.single));
-        item.members.emplace_back("sequence", name(advice.sequence));
-        item.members.emplace_back("fog", name(advice.fog));
-        items.push_back(std::move(item));
-    }
-    return report::array(std::move(items));
+    const auto name = [](const std::optional<ChartPoint>& point) { return point ? Json(point_name(*point)) : Json(); };
+    return json_list(advice_of(chart), [&](const Advice& advice) {
+        const bool by_error = advice.error > 0;
+        return json_object({{by_error ? "error" : "seconds", by_error ? advice.error : advice.seconds},
+                            {"single", name(advice.single)},
+                            {"sequence", name(advice.sequence)},
+                            {"fog", name(advice.fog)}});
+    });
 }
 
 Json left_out_json(const Chart& chart) {
-    std::vector<Json> items;
-    for (const LeftOut& rung : chart.left_out)
-        items.push_back(report::object({{"mode", report::text(rung.mode)},
-                                        {"rung", report::number(rung.rung)},
-                                        {"expected_seconds", report::number(rung.seconds)}}));
-    return report::array(std::move(items));
+    return json_list(chart.left_out, [](const LeftOut& rung) {
+        return json_object({{"mode", rung.mode}, {"rung", rung.rung}, {"expected_seconds", rung.seconds}});
+    });
 }
 
 // The point that answers a need, by the time and the error that count; none that is as far off as a black picture.
@@ -89,20 +65,24 @@ std::vector<Advice> advice_of(const Chart& chart) {
 }
 
 std::string seconds_words(double seconds) {
-    if (seconds < 0.00995) return printed("%.1f ms", 1000 * seconds);
-    if (seconds < 0.9995) return printed("%.0f ms", 1000 * seconds);
-    return printed(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
+    if (seconds < 0.00995) return formatted("%.1f ms", 1000 * seconds);
+    if (seconds < 0.9995) return formatted("%.0f ms", 1000 * seconds);
+    return formatted(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
 }
 
 std::string share_words(double share) {
     if (!std::isfinite(share)) return "-";
     const double percent = 100 * share, size = std::abs(percent);
-    return printed(size < 0.0995 ? "%.3f %%" : size < 0.995 ? "%.2f %%" : size < 9.95 ? "%.1f %%" : "%.0f %%", percent);
+    return formatted(size < 0.0995  ? "%.3f %%"
+                     : size < 0.995 ? "%.2f %%"
+                     : size < 9.95  ? "%.1f %%"
+                                    : "%.0f %%",
+                     percent);
 }
 
 std::string bytes_words(double bytes) {
     if (!std::isfinite(bytes)) return "-";
-    return printed(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
+    return formatted(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
 }
 
 std::string need_words(const Advice& advice) {
@@ -125,34 +105,29 @@ std::string chart_csv(const Chart& chart) {
 std::string chart_json(const Chart& chart) {
     const ChartJob& job = chart.job;
     const bool fixed = job.reference.count > 0;
-    std::vector<Json> points, fields;
-    for (const ChartPoint& point : chart.points) points.push_back(json_of_point(point));
-    for (const ChartField& field : chart_fields())
-        fields.push_back(report::object({{"name", report::text(field.name)}, {"doc", report::text(field.doc)}}));
-    return format_json(report::object(
-               {{"version", report::text(TYNDALL_VERSION)},
-                {"scene", report::text(job.render.scene_file.filename().string())},
-                {"frame", report::number(job.frame)},
-                {"camera", report::text(chart.camera)},
-                {"size", size_json(chart.size)},
-                {"threads", report::number(chart.threads)},
-                {"isa", report::text(chart.isa)},
-                {"load_before", report::number(chart.load_before)},
-                {"load_after", report::number(chart.load_after)},
-                {"reference",
-                 report::object({{"samples", report::number(fixed ? job.reference.count : not_measured)},
-                                 {"noise_wanted", report::number(fixed ? not_measured : job.reference.noise)},
-                                 {"noise_rel", report::number(chart.reference_noise)},
-                                 {"flip_between_halves", report::number(chart.reference_flip)}})},
-                {"sequence", report::object({{"frames", report::number(job.sequence)},
-                                             {"size", size_json(chart.sequence_size)},
-                                             {"moves", report::boolean(chart.moves)}})},
-                {"fields", report::array(std::move(fields))},
-                {"modes", modes_json(chart)},
-                {"advice", advice_json(chart)},
-                {"left_out", left_out_json(chart)},
-                {"points", report::array(std::move(points))}})) +
-           "\n";
+    const auto field_json = [](const ChartField& field) {
+        return json_object({{"name", field.name}, {"doc", field.doc}});
+    };
+    return json_line(
+        {{"version", TYNDALL_VERSION},
+         {"scene", job.render.scene_file.filename().string()},
+         {"frame", job.frame},
+         {"camera", chart.camera},
+         {"size", chart.size},
+         {"threads", chart.threads},
+         {"isa", chart.isa},
+         {"load_before", chart.load_before},
+         {"load_after", chart.load_after},
+         {"reference", json_object({{"samples", fixed ? job.reference.count : not_measured},
+                                    {"noise_wanted", fixed ? not_measured : job.reference.noise},
+                                    {"noise_rel", chart.reference_noise},
+                                    {"flip_between_halves", chart.reference_flip}})},
+         {"sequence", json_object({{"frames", job.sequence}, {"size", chart.sequence_size}, {"moves", chart.moves}})},
+         {"fields", json_list(chart_fields(), field_json)},
+         {"modes", modes_json(chart)},
+         {"advice", advice_json(chart)},
+         {"left_out", left_out_json(chart)},
+         {"points", json_list(chart.points, json_of_point)}});
 }
 
 std::string chart_text(const Chart& chart) {

@@ -1,9 +1,9 @@
 // The picture of a chart, as SVG.
+#include "base/text.h"
 #include "measure/chart/report.h"
 #include "modes/mode.h"
 
 #include <algorithm>
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -23,11 +23,7 @@ struct Place {
     double x, y;
 };
 
-std::string n(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f", value);
-    return text;
-}
+std::string n(double value) { return formatted("%.1f", value); }
 
 bool drawn(const ChartPoint& point) { return std::isfinite(point.errors.error) && point.seconds_1 > 0; }
 
@@ -91,15 +87,7 @@ std::vector<Tick> ticks_of(const Axis& axis) {
 }
 
 std::string tick_words(double seconds) {
-    char text[32];
-    std::snprintf(text, sizeof text, seconds < 0.9 ? "%g ms" : "%g s", seconds < 0.9 ? 1000 * seconds : seconds);
-    return text;
-}
-
-std::string percent_words(double share) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g %%", 100 * share);
-    return text;
+    return seconds < 0.9 ? formatted("%g ms", 1000 * seconds) : formatted("%g s", seconds);
 }
 
 std::string line(double x1, double y1, double x2, double y2, const char* style) {
@@ -121,7 +109,7 @@ std::string grid(const Frame& frame) {
     for (const Tick& tick : ticks_of(frame.y)) {
         const double y = frame.y.at(tick.value);
         svg += line(left, y, width - right, y, tick.strong ? "grid strong" : "grid");
-        svg += text(left - 8, y + 4, "tick", percent_words(tick.value), " text-anchor='end'");
+        svg += text(left - 8, y + 4, "tick", formatted("%g %%", 100 * tick.value), " text-anchor='end'");
     }
     const std::string what = frame.time == FrameTime::single ? "time of a single frame, set-up included"
                                                              : "time of each of 100 frames, set-up shared among them";

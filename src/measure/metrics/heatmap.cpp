@@ -1,9 +1,9 @@
 #include "measure/metrics/heatmap.h"
 
+#include "base/text.h"
 #include "measure/metrics/metrics.h"
 #include "render/image/lettering.h"
 
-#include <cstdio>
 #include <string>
 
 namespace tyndall {
@@ -23,10 +23,9 @@ std::vector<Tick> ticks_of(const HeatScale& scale) {
     std::vector<Tick> ticks;
     for (int i = 0; i <= steps; ++i) {
         const double share = static_cast<double>(i) / steps;
-        char text[32];
-        std::snprintf(text, sizeof text, "%g",
-                      scale.logarithmic ? scale.low * std::pow(10, i) : scale.low + share * (scale.high - scale.low));
-        ticks.push_back({share, text});
+        const double value =
+            scale.logarithmic ? scale.low * std::pow(10, i) : scale.low + share * (scale.high - scale.low);
+        ticks.push_back({share, formatted("%g", value)});
     }
     return ticks;
 }

@@ -1,6 +1,7 @@
 // Runs the cases and judges them.
 #include "measure/stress/stress.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "measure/stress/trial.h"
 #include "modes/limitation.h"
@@ -8,8 +9,6 @@
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/phase.h"
-
-#include <chrono>
 
 namespace tyndall {
 namespace {
@@ -102,7 +101,6 @@ bool takes_part(const StressCase& stress, const Mode& mode) {
 
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
                                      const StressControl& control) {
-    using Clock = std::chrono::steady_clock;
     std::vector<const Mode*> taking;
     for (const Mode& mode : modes)
         if (takes_part(stress, mode)) taking.push_back(&mode);
@@ -115,9 +113,9 @@ std::vector<StressResult> run_stress(const StressCase& stress, std::span<const M
         const StressScene scene = stress.scene ? stress.scene(value) : StressScene{};
         std::optional<Truth> truth;
         for (size_t i = 0; i < taking.size(); ++i) {
-            const auto start = Clock::now();
+            const double start = steady_seconds();
             results[i].points.push_back(run_point(stress, taking[i], value, scene, truth, control));
-            results[i].seconds += std::chrono::duration<double>(Clock::now() - start).count();
+            results[i].seconds += steady_seconds() - start;
         }
     }
     return results;

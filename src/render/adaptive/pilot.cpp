@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <limits>
 
 namespace tyndall {
@@ -147,10 +146,6 @@ View view_for(const Mode& mode, const Pilot& pilot) {
 }
 
 SquaredError worse(SquaredError a, SquaredError b) { return {std::max(a.value, b.value), std::max(a.bound, b.bound)}; }
-}
-
-double steady_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 double tiles_stood_for(const Pilot& pilot, size_t tile) {

@@ -6,6 +6,7 @@
 // samples is the variance of one. One sample alone lies at the pixel's centre; its differences from both samples of the
 // truth multiply to its squared error, whatever the reason.
 #pragma once
+#include "base/clock.h"
 #include "render/frame/frame.h"
 #include "trace/view.h"
 
@@ -20,7 +21,6 @@ inline constexpr int max_lamp_tiles = 16;
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 
 using Seconds = std::function<double()>; // a clock
-double steady_seconds();                 // since some moment
 
 // Squared errors as shares of the squared mean of the truth: for colour or fog light, whichever is worse. The bound
 // holds with a confidence of 97.5 % (jackknife over tiles).

@@ -1,6 +1,7 @@
 // The pixel loop: blocks of pixels in parallel, each pixel owned by one task and filtered in sample order.
 #include "render/frame/frame.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
@@ -15,11 +16,9 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
 constexpr int tile_side = 4;   // a tile's 16 rays are traced together
 constexpr int block_side = 32; // a task's pixels
 
@@ -27,8 +26,8 @@ constexpr int block_side = 32; // a task's pixels
 struct FrameTask {
     std::shared_ptr<const Prepared> prepared; // holds what the tracer points at
     FrameTracer tracer;
-    double mode_seconds = 0;                                // its preparation
-    std::shared_ptr<std::atomic<int64_t>> mode_nanoseconds; // then, of all threads
+    double mode_seconds = 0;                              // its preparation
+    std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
     std::vector<size_t> light_layers; // the layer each light of the snapshot adds to; empty unless asked for
     Layers layers;
 };
@@ -121,16 +120,12 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
 }
 
 // Counts the time of every call.
-ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<int64_t>> nanoseconds) {
-    return [scatter = std::move(scatter), nanoseconds](const RayBatch& batch, std::span<Scatter> results) {
-        const auto start = Clock::now();
+ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<double>> seconds) {
+    return [scatter = std::move(scatter), seconds](const RayBatch& batch, std::span<Scatter> results) {
+        const double start = steady_seconds();
         scatter(batch, results);
-        nanoseconds->fetch_add(std::chrono::nanoseconds(Clock::now() - start).count(), std::memory_order_relaxed);
+        seconds->fetch_add(steady_seconds() - start, std::memory_order_relaxed);
     };
-}
-
-double seconds_between(Clock::time_point a, Clock::time_point b) {
-    return std::chrono::duration<double>(b - a).count();
 }
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -140,12 +135,12 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     std::shared_ptr<const Prepared> prepared = options.prepared;
     if (!prepared)
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
-    auto nanoseconds = std::make_shared<std::atomic<int64_t>>(0);
+    auto scatter_seconds = std::make_shared<std::atomic<double>>(0);
     FrameTask task{prepared,
-                   {view, snapshot, timed(prepared->scatter, nanoseconds), mode.surfaces, settings.terms.light_points,
-                    prepared->light_depths},
+                   {view, snapshot, timed(prepared->scatter, scatter_seconds), mode.surfaces,
+                    settings.terms.light_points, prepared->light_depths},
                    options.prepared ? 0 : prepared->mode_seconds,
-                   nanoseconds,
+                   scatter_seconds,
                    {},
                    std::move(layers)};
     if (view.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
@@ -156,9 +151,9 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
 
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     Prepared result{mode.prepare(view, snapshot, settings, history), {}, 0};
-    result.mode_seconds = seconds_between(start, Clock::now());
+    result.mode_seconds = steady_seconds() - start;
     if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
         for (const Light& light : snapshot.lights)
             result.light_depths.push_back(
@@ -185,9 +180,9 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
                      const FrameOptions& options, FrameStats& stats) {
     View view = given;
     assert(view.pixel_samples > 0 && view.batches > 0 && view.pixel_samples % view.batches == 0);
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
-    const auto prepared = Clock::now();
+    const double prepared = steady_seconds();
 
     // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
     Layers& layers = task.layers;
@@ -211,10 +206,10 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     });
 
     stats = {};
-    stats.prepare_seconds = seconds_between(start, prepared);
-    stats.render_seconds = seconds_between(prepared, Clock::now());
+    stats.prepare_seconds = prepared - start;
+    stats.render_seconds = steady_seconds() - prepared;
     stats.samples = view.pixel_samples;
-    stats.fog_seconds = task.mode_seconds + 1e-9 * static_cast<double>(*task.mode_nanoseconds) / thread_count();
+    stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
     for (const FrameStats& block : block_stats) stats.add(block);
     stats.add(probed);
     if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
@@ -250,7 +245,7 @@ Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot,
     whole.crop_low = whole.crop_high = ivec2(0);
     Layers layers = render_pixels(mode, whole, snapshot, settings, options, stats);
 
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     const Addition addition = mode.prepare_post(view, snapshot, settings)({layers.color, layers.alpha, layers.depth});
     add(addition.radiance, layers.color), add(addition.radiance, layers.inscatter);
     for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
@@ -259,7 +254,7 @@ Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot,
         const std::vector<size_t> places = make_light_layers(snapshot, layers);
         for (size_t l = 0; l < places.size(); ++l) add(addition.per_light[l], layers.lights[places[l]].second);
     }
-    const double seconds = seconds_between(start, Clock::now());
+    const double seconds = steady_seconds() - start;
     stats.render_seconds += seconds, stats.fog_seconds += seconds;
     if (view.crop_low != view.crop_high) crop(layers, view.crop_low, view.crop_high);
     return layers;

@@ -1,6 +1,8 @@
 // OpenEXR's standard attributes: windows, colour space, time and camera.
 #include "render/image/exr_header.h"
 
+#include "base/text.h"
+
 #include <ImfBoxAttribute.h>
 #include <ImfChromaticitiesAttribute.h>
 #include <ImfDoubleAttribute.h>
@@ -12,8 +14,6 @@
 #include <ImfStringAttribute.h>
 #include <ImfTimeCodeAttribute.h>
 #include <ImfVecAttribute.h>
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -60,11 +60,7 @@ void add_time_code(Imf::Header& header, int frame, double frame_rate) {
 
 std::string numbers(const float* values, int count) {
     std::string text;
-    for (int i = 0; i < count; ++i) {
-        char number[32];
-        std::snprintf(number, sizeof number, i ? " %.9g" : "%.9g", values[i]);
-        text += number;
-    }
+    for (int i = 0; i < count; ++i) text += formatted(i ? " %.9g" : "%.9g", values[i]);
     return text;
 }
 
@@ -74,9 +70,7 @@ std::string chromaticities_text(const Imf::Chromaticities& c) {
 }
 
 std::string time_code_text(const Imf::TimeCode& t) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%02d:%02d:%02d:%02d", t.hours(), t.minutes(), t.seconds(), t.frame());
-    return text;
+    return formatted("%02d:%02d:%02d:%02d", t.hours(), t.minutes(), t.seconds(), t.frame());
 }
 
 template<class T> const T* value_of(const Imf::Attribute& attribute) {

@@ -16,17 +16,12 @@
 #include "trace/moment.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 
 namespace tyndall {
 namespace {
-std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.9g", value);
-    return text;
-}
+std::string number(double value) { return formatted("%.9g", value); }
 std::string numbers(vec3 v) { return number(v.x) + "," + number(v.y) + "," + number(v.z); }
 std::string pair_text(ivec2 v, const char* between) { return std::to_string(v.x) + between + std::to_string(v.y); }
 

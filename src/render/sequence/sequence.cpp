@@ -1,9 +1,11 @@
 // The pipeline over frames: one is rendered while the one before is written and the one after is loaded.
 #include "render/sequence/sequence.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
@@ -17,8 +19,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -26,8 +26,6 @@
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // A frame ready to render, and after that ready to write.
 struct Work {
@@ -99,11 +97,11 @@ bool keep(Pipeline& pipeline, Work& work) {
 LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     LoadedFrame first = std::exchange(pipeline.first, {});
     if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     if (!previous) previous = &first.snapshot;
     Snapshot snapshot =
         make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.request.missing);
-    return {std::move(snapshot), seconds_since(start)};
+    return {std::move(snapshot), steady_seconds() - start};
 }
 
 void report_frame(Pipeline& pipeline, const Work& work) {
@@ -121,7 +119,7 @@ void report_notes(Pipeline& pipeline, const Snapshot& snapshot) {
 // The next frame that has to be rendered; kept ones on the way are reported.
 std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
     while (pipeline.next < pipeline.request.frames.size() && !pipeline.cancel) {
-        const auto start = Clock::now();
+        const double start = steady_seconds();
         Work work;
         work.index = pipeline.next++;
         const int frame = work.report.frame = pipeline.request.frames[work.index];
@@ -130,12 +128,12 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             work.view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, frame);
             work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, pipeline.files);
             if (pipeline.request.resume && keep(pipeline, work)) {
-                work.report.load_seconds = seconds_since(start);
+                work.report.load_seconds = steady_seconds() - start;
                 report_frame(pipeline, work);
                 pipeline.progress.set(++pipeline.settled);
                 continue;
             }
-            work.report.load_seconds = seconds_since(start);
+            work.report.load_seconds = steady_seconds() - start;
             LoadedFrame frame_now = loaded(pipeline, frame, previous);
             work.report.load_seconds += frame_now.seconds;
             work.snapshot = std::move(frame_now.snapshot);
@@ -170,7 +168,7 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
 void render(Pipeline& pipeline, Work& work) {
     const RenderRequest& request = pipeline.request;
     const RenderPlan& plan = pipeline.plan;
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     FrameOptions options{wants_layer(request, "halves"), nullptr, &pipeline.cancel, {}, {}};
     options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
     FrameStats& stats = work.report.stats;
@@ -187,36 +185,28 @@ void render(Pipeline& pipeline, Work& work) {
         fail_in_frame(work.report.frame, error);
     }
     ++pipeline.settled;
-    work.report.seconds = seconds_since(start);
-}
-
-std::string short_text(const char* format, double value) {
-    char text[80];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
+    work.report.seconds = steady_seconds() - start;
 }
 
 // What is known of the error, its parts and what was asked for.
 std::string error_text(const FrameStats& stats, const RenderRequest& request, const RenderPlan& plan) {
     if (!stats.noise) return {};
     std::string text = stats.integrator ? ", error " : ", noise ";
-    text += short_text("%.3g", stats.error()->error) + short_text(", at most %.3g", stats.error()->bound);
-    if (request.target_error > 0) text += short_text(" (wanted %.3g)", request.target_error);
+    text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
+    if (request.target_error > 0) text += formatted(" (wanted %.3g)", request.target_error);
     if (stats.integrator)
-        text += short_text(": noise %.3g", stats.noise->error) +
-                short_text(", integrator %.3g", stats.integrator->error.error) + " (" + stats.integrator->candidate +
-                ")";
-    text += short_text(stats.samples == 1 ? ", %.0f sample per pixel" : ", %.0f samples per pixel", stats.samples);
+        text += formatted(": noise %.3g, integrator %.3g (%s)", stats.noise->error, stats.integrator->error.error,
+                          stats.integrator->candidate.c_str());
+    text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
     if (stats.integrator && plan.settings.fluence.orders > 1)
         text += ", of light scattered once: what the grid for the rest adds to it is not measured";
-    if (request.time_budget > 0)
-        text += short_text(", %.3g s", stats.goal_seconds) + short_text(" of %.3g s", request.time_budget);
+    if (request.time_budget > 0) text += formatted(", %.3g s of %.3g s", stats.goal_seconds, request.time_budget);
     return text;
 }
 
 void write(Pipeline& pipeline, Work& work) {
     const RenderRequest& request = pipeline.request;
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     FrameReport& report = work.report;
     try {
         const Provenance provenance =
@@ -228,12 +218,11 @@ void write(Pipeline& pipeline, Work& work) {
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);
     }
-    report.write_seconds = seconds_since(start);
+    report.write_seconds = steady_seconds() - start;
     report_frame(pipeline, work);
 
-    char seconds[32];
-    std::snprintf(seconds, sizeof seconds, "%.2f s", report.seconds);
-    std::string text = std::string(seconds) + " -> " + report.file + error_text(report.stats, request, pipeline.plan);
+    std::string text =
+        formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request, pipeline.plan);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }
@@ -282,15 +271,15 @@ uint64_t peak_memory() {
 }
 
 LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     flush_denormals();
     Snapshot snapshot = make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing);
-    return {std::move(snapshot), seconds_since(start)};
+    return {std::move(snapshot), steady_seconds() - start};
 }
 
 RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                              Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     check_job(scene, request, *plan.mode);
     flush_denormals();
 
@@ -312,7 +301,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
         report.missed +=
             request.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > request.target_error;
     report.cancelled = cancel && report.frames.size() < request.frames.size();
-    report.seconds = seconds_since(start);
+    report.seconds = steady_seconds() - start;
     report.peak_memory_bytes = peak_memory();
     return std::move(report);
 }

@@ -1,20 +1,13 @@
 #include "scene/file/stand_ins.h"
 
+#include "base/text.h"
 #include "scene/file/scene_file.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include <cstdio>
-
 namespace tyndall {
 namespace {
-std::string number_text(const char* format, double value) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 // The brightest a white surface anywhere inside the bounds would be lit, by every light together, in lux.
 float brightest_illuminance(const Scene& scene, const Box& bounds) {
     const float radius = std::max(0.5f * glm::length(bounds.size()), 1e-3f);
@@ -61,8 +54,8 @@ void add_missing_light_and_fog(Scene& scene) {
     } else if (const float lux = brightest_illuminance(scene, bounds); lux > 30 || (lux > 0 && lux < 0.3f)) {
         const float stops = std::round(-std::log2(lux / 3));
         scene.exposure = std::clamp(stops, -64.0f, 64.0f);
-        warn(scene, file + ": the lights give about " + number_text("%.3g", lux) + " lux; PNGs are exposed by " +
-                        number_text("%+.0f", stops) + " EV");
+        warn(scene, file + ": the lights give about " + formatted("%.3g", lux) + " lux; PNGs are exposed by " +
+                        formatted("%+.0f", stops) + " EV");
     }
 
     // Half of the light gets through the fog's longest way.
@@ -73,7 +66,7 @@ void add_missing_light_and_fog(Scene& scene) {
     fog.g = 0.3f;
     fog.bounds = {bounds.low - 0.25f * diagonal, bounds.high + 0.25f * diagonal};
     scene.media.push_back(fog);
-    warn(scene, file + ": a glTF has no fog; thin fog of " + number_text("%.3g", fog.extinction.values[0]) +
+    warn(scene, file + ": a glTF has no fog; thin fog of " + formatted("%.3g", fog.extinction.values[0]) +
                     " per metre around its contents is used");
 }
 }

@@ -1,9 +1,8 @@
 // Materials and their textures: base colour, emission and alpha; the rest of a material is left out.
 #include "base/error.h"
+#include "base/text.h"
 #include "scene/gltf/document.h"
 #include "scene/image_file.h"
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -112,11 +111,9 @@ void set_sampler(const tinygltf::Model& model, int index, Texture& texture) {
 }
 
 std::string key_of(const TextureUse& use, const tinygltf::Texture& texture) {
-    char text[256];
     const mat3& m = use.transform;
-    std::snprintf(text, sizeof text, "%d %d %a %a %a %a %a %a", texture.source, texture.sampler, m[0].x, m[0].y, m[1].x,
-                  m[1].y, m[2].x, m[2].y);
-    return text;
+    return formatted("%d %d %a %a %a %a %a %a", texture.source, texture.sampler, m[0].x, m[0].y, m[1].x, m[1].y, m[2].x,
+                     m[2].y);
 }
 
 // Index of the scene's texture; -1 when it cannot be used.

@@ -13,9 +13,7 @@ void append_number(std::string& text, double number) {
         text += std::to_string(static_cast<int64_t>(number));
         return;
     }
-    Json value;
-    value.kind = Json::Kind::number, value.number = number;
-    text += format_json(value);
+    text += format_json(number);
 }
 
 void append(std::string& text, const Json& value, bool root) {

@@ -120,11 +120,7 @@ private:
         for (const auto& [name, item] : value.members) index(item, collection, json_pointer(pointer, name));
     }
 
-    static std::string text_of(double value) {
-        Json number;
-        number.kind = Json::Kind::number, number.number = value;
-        return format_json(number);
-    }
+    static std::string text_of(double value) { return format_json(value); }
     static std::string list(std::span<const int> values) {
         std::string text;
         for (const int value : values) text += (text.empty() ? "" : ", ") + std::to_string(value);

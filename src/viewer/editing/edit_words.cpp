@@ -24,9 +24,7 @@ size_t index_of(const Scene& scene, Part part, std::string_view token, std::stri
     if (found.size() > 1)
         fail(ExitCode::usage, path, "several have the name \"" + name + "\"; give its number, the first is 0");
     if (token.starts_with('#')) token.remove_prefix(1);
-    size_t index = 0;
-    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
-    if (error == std::errc() && end == token.data() + token.size() && index < names.size()) return index;
+    if (const auto index = parsed<size_t>(token); index && *index < names.size()) return *index;
     fail(ExitCode::usage, path, unknown_name(word_of(part), name, names));
 }
 

@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/io/json.h"
 #include "base/io/json_pointer.h"
+#include "base/text.h"
 
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
 namespace tyndall {
@@ -99,17 +99,10 @@ std::string plain_key(std::string_view quoted) {
     return inside.find('\\') == inside.npos ? std::string(inside) : parse_json(quoted, "a key").string;
 }
 
-std::optional<size_t> plain_index(std::string_view token) {
-    size_t index = 0;
-    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), index);
-    if (error != std::errc() || end != token.data() + token.size()) return {};
-    return index;
-}
-
 std::optional<TextSpan> child(std::string_view text, TextSpan parent, std::string_view token) {
     const std::vector<Element> elements = elements_of(text, parent);
     if (text[parent.begin] == '[') {
-        const std::optional<size_t> index = plain_index(token);
+        const std::optional<size_t> index = parsed<size_t>(token);
         return index && *index < elements.size() ? std::optional(elements[*index].value) : std::nullopt;
     }
     const std::string key = json_pointer_key(token);
@@ -226,7 +219,7 @@ std::string with_json(std::string_view text, std::string_view pointer, std::stri
     if (text[container->begin] == '{')
         return inserted(text, *container, elements, elements.size(),
                         key + colon_of(text, elements) + std::string(value));
-    if (text[container->begin] != '[' || plain_index(token) != elements.size())
+    if (text[container->begin] != '[' || parsed<size_t>(token) != elements.size())
         refuse(std::string(pointer), "there is no such place in the file");
     return inserted(text, *container, elements, elements.size(), value);
 }

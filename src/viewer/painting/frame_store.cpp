@@ -1,11 +1,11 @@
 #include "viewer/painting/frame_store.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "trace/frame_cache.h"
 
 #include <unistd.h>
 
-#include <chrono>
 #include <fstream>
 #include <utility>
 
@@ -61,13 +61,13 @@ std::optional<Snapshot> FrameStore::take(int frame, double& seconds) {
 bool FrameStore::make_ahead(int frame, const Snapshot& current) {
     if (!scene_ || frames_.contains(frame) || (ahead_ && ahead_->frame == frame)) return false;
     ahead_.reset();
-    const auto start = std::chrono::steady_clock::now();
+    const double start = steady_seconds();
     try {
         ahead_ = make_snapshot(*scene_, moment_of(*scene_, frame), &current, missing_);
     } catch (const Error&) {
         return false;
     }
-    ahead_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ahead_seconds_ = steady_seconds() - start;
     return true;
 }
 }

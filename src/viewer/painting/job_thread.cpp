@@ -1,5 +1,6 @@
 #include "viewer/painting/job_thread.h"
 
+#include "base/clock.h"
 #include "base/parallel.h"
 
 #include <utility>
@@ -16,7 +17,7 @@ void JobThread::start(FileJob job) {
     {
         const std::scoped_lock lock(mutex_);
         if (progress_) fail(ExitCode::usage, name_of(job), "one job at a time: wait for " + name_ + " or stop it");
-        name_ = name_of(job), frames_ = frame_count(job), start_ = std::chrono::steady_clock::now();
+        name_ = name_of(job), frames_ = frame_count(job), start_ = steady_seconds();
         progress_ = std::make_shared<Progress>(ProgressStyle::silent, name_, frames_);
         cancel_ = false;
     }
@@ -30,8 +31,7 @@ std::optional<JobStatus> JobThread::status() const {
     const std::scoped_lock lock(mutex_);
     if (!progress_) return {};
     const double share = progress_->share();
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-    const double left = share > 0 ? spent.count() * (1 - share) / share : -1;
+    const double left = share > 0 ? (steady_seconds() - start_) * (1 - share) / share : -1;
     return JobStatus{name_, frames_, share, left, cancel_};
 }
 

@@ -1,5 +1,6 @@
 #include "viewer/painting/painter.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "modes/history.h"
 #include "modes/mode.h"
@@ -8,17 +9,14 @@
 #include "viewer/painting/painter_show.h"
 
 #include <algorithm>
-#include <chrono>
 #include <new>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // The scene at the request's moment. What stands still is shared with the picture before.
 void load(Painter& painter, const Request& request) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     double ahead_seconds = 0;
     for (Rounds& rounds : painter.rounds) rounds.prepared = nullptr;
     painter.reference.rounds.prepared = nullptr;
@@ -38,7 +36,7 @@ void load(Painter& painter, const Request& request) {
                                                   same_scene ? &painter.snapshot : nullptr, request.missing);
         painter.scene = request.scene, painter.edited = request.edited;
     }
-    painter.picture.times.load = seconds_since(start) + ahead_seconds;
+    painter.picture.times.load = steady_seconds() - start + ahead_seconds;
     painter.picture.notes = painter.snapshot.notes;
 }
 

@@ -1,14 +1,13 @@
 // What of a painter's layers is shown: codes of the layer asked for, two pictures in one, errors, answers.
 #include "viewer/painting/painter_show.h"
+#include "base/clock.h"
 #include "modes/history.h"
 #include "modes/mode.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
 
 constexpr glm::u8vec4 nothing_yet(12, 12, 13, 255);
 
@@ -65,7 +64,7 @@ bool is_finished(const Painter& painter, const Request& request) {
 }
 
 ShownPicture shown(Painter& painter, const Request& request) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     ShownPicture picture = painter.picture;
     if (request.explain) picture.ray = painter.ray;
     if (request.volume && asks_for_volume(painter, request) &&
@@ -86,7 +85,7 @@ ShownPicture shown(Painter& painter, const Request& request) {
         picture.across = request.shown.side_by_side ? 2 : 1;
     }
     picture.finished = !picture.quick && is_finished(painter, request);
-    picture.times.tone = painter.picture.times.tone = std::chrono::duration<double>(Clock::now() - start).count();
+    picture.times.tone = painter.picture.times.tone = steady_seconds() - start;
     return picture;
 }
 }

@@ -1,11 +1,10 @@
 #include "viewer/painting/ray_question.h"
 
+#include "base/clock.h"
 #include "modes/mode.h"
 #include "render/sequence/provenance.h"
 #include "trace/view.h"
 #include "viewer/painting/request.h"
-
-#include <chrono>
 
 namespace tyndall {
 namespace {
@@ -22,7 +21,7 @@ bool asks_for_ray(const Request& request, const RayAnswer* answer) {
 
 std::shared_ptr<const RayAnswer> answer_ray(const Request& request, const Snapshot& snapshot, const RayAnswer* before,
                                             std::atomic<bool>& cancel) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = steady_seconds();
     auto answer = std::make_shared<RayAnswer>();
     answer->revision = request.revision, answer->pixel = *request.explain, answer->frame = request.frame;
     ExplainOptions options;
@@ -31,7 +30,7 @@ std::shared_ptr<const RayAnswer> answer_ray(const Request& request, const Snapsh
     if (answer->complete)
         for (const Mode& mode : modes()) options.modes.push_back(&mode);
     answer->story = explain_ray(view_of(request), snapshot, request.settings, answer->pixel, options);
-    answer->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    answer->seconds = steady_seconds() - start;
     return answer;
 }
 }

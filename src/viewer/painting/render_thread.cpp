@@ -1,18 +1,16 @@
 #include "viewer/painting/render_thread.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "modes/history.h"
 #include "viewer/painting/painter.h"
 
-#include <chrono>
 #include <new>
 #include <utility>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 void count_quick(const ShownPicture& picture, double seconds, PictureCounts& counts) {
     StageTimes& sum = counts.quick_stages;
@@ -79,7 +77,7 @@ PictureCounts RenderThread::counts() const {
 }
 
 void RenderThread::make_file(SaveJob job) {
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     Saved saved{job.file, 0, {}, ExitCode::ok};
     saving_ = 0;
     try {
@@ -92,7 +90,7 @@ void RenderThread::make_file(SaveJob job) {
     } catch (const std::exception& error) {
         saved.error = error.what(), saved.code = ExitCode::internal;
     }
-    saved.seconds = seconds_since(start);
+    saved.seconds = steady_seconds() - start;
     saving_ = -1;
     const std::scoped_lock lock(mutex_);
     saved_.push_back(std::move(saved));
@@ -120,14 +118,14 @@ void RenderThread::run() {
         if (save) {
             make_file(std::move(*save));
         } else {
-            const auto start = Clock::now();
+            const double start = steady_seconds();
             std::optional<ShownPicture> picture = paint(*painter_, *current, cancel_);
             const std::scoped_lock lock(mutex_);
             unfinished_ = !picture ? false : !picture->finished;
-            if (!picture && current->moving && counts_.quick > 0) counts_.quick_seconds += seconds_since(start);
+            if (!picture && current->moving && counts_.quick > 0) counts_.quick_seconds += steady_seconds() - start;
             if (picture) {
                 ++counts_.pictures;
-                if (picture->quick) count_quick(*picture, seconds_since(start), counts_);
+                if (picture->quick) count_quick(*picture, steady_seconds() - start, counts_);
                 picture_ = std::make_shared<const ShownPicture>(std::move(*picture));
             }
         }

@@ -1,5 +1,6 @@
 #include "viewer/painting/rounds.h"
 
+#include "base/clock.h"
 #include "base/random.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
@@ -9,11 +10,9 @@
 #include "viewer/painting/request.h"
 
 #include <algorithm>
-#include <chrono>
 
 namespace tyndall {
 namespace {
-using Clock = std::chrono::steady_clock;
 
 constexpr double longest_round = 0.4; // seconds; the picture is renewed at least as often
 constexpr int max_round_samples = 8;
@@ -34,9 +33,9 @@ void prepare(const Mode& mode, const View& view, const Snapshot& snapshot, const
              FrameOptions& options, FrameStats& stats) {
     if (mode.remembers) return;
     if (!rounds.prepared) {
-        const auto start = Clock::now();
+        const double start = steady_seconds();
         rounds.prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));
-        stats.prepare_seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        stats.prepare_seconds = steady_seconds() - start;
         stats.fog_seconds = rounds.prepared->mode_seconds;
     }
     options.prepared = rounds.prepared;

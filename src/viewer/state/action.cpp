@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "base/text.h"
 
-#include <charconv>
-
 namespace tyndall {
 // Parameters: a word in capitals is a name; x, y, z, n, ev, factor and degrees are numbers; X,Y is a point of two; []
 // may be left out; a|b is one of these words.
@@ -105,11 +103,10 @@ Line split(std::string_view text) {
 constexpr double largest_number = 1e9;
 
 double number(std::string_view text, const std::string& place, std::string_view usage) {
-    double value = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= largest_number))
+    const auto value = parsed<double>(text);
+    if (!value || !(std::abs(*value) <= largest_number))
         refuse(place, "'" + printable(text, 40) + "' is no number; expected " + std::string(usage));
-    return value;
+    return *value;
 }
 
 bool is_name(std::string_view parameter) { return parameter[0] >= 'A' && parameter[0] <= 'Z' && parameter != "X,Y"; }

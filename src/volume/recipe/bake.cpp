@@ -1,29 +1,22 @@
 #include "volume/recipe/bake.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/frames.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "volume/recipe/growth.h"
 
-#include <charconv>
-#include <chrono>
-#include <cstdio>
 #include <deque>
 #include <future>
 
 namespace tyndall {
 namespace {
 using Metadata = std::vector<std::pair<std::string, std::string>>;
-using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-template<class T> std::string shortest(T value) {
-    char text[40];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-std::string shortest(vec3 v) { return shortest(v.x) + " " + shortest(v.y) + " " + shortest(v.z); }
+using tyndall::shortest_text;
+std::string shortest_text(vec3 v) { return shortest_text(v.x) + " " + shortest_text(v.y) + " " + shortest_text(v.z); }
 
 std::string settings_hash(const FogRecipe& recipe, const VdbWriteOptions& write) {
     return content_hash(recipe_hash(recipe) + (write.half ? " half" : " float") + (write.blosc ? " blosc " : " zip ") +
@@ -33,21 +26,21 @@ std::string settings_hash(const FogRecipe& recipe, const VdbWriteOptions& write)
 Metadata frame_metadata(const FogRecipe& recipe, const std::string& hash, int frame, double seconds) {
     Metadata metadata{{"tyndall_schema", "1"},
                       {"tyndall_frame", std::to_string(frame)},
-                      {"tyndall_time_s", shortest(seconds)},
-                      {"tyndall_fps", shortest(recipe.frame_rate)},
+                      {"tyndall_time_s", shortest_text(seconds)},
+                      {"tyndall_fps", shortest_text(recipe.frame_rate)},
                       {"tyndall_up_axis", "Y"},
                       {"tyndall_unit_m", "1"},
-                      {"tyndall_extinction_per_m", shortest(recipe.extinction)},
-                      {"tyndall_albedo", shortest(recipe.albedo)},
-                      {"tyndall_g", shortest(recipe.g)},
+                      {"tyndall_extinction_per_m", shortest_text(recipe.extinction)},
+                      {"tyndall_albedo", shortest_text(recipe.albedo)},
+                      {"tyndall_g", shortest_text(recipe.g)},
                       {"tyndall_seed", std::to_string(recipe.noise.seed)},
                       {"tyndall_settings_hash", hash}};
     // A loop says what became of speeds that were rounded to whole turns.
     if (recipe.period > 0) {
         const auto speed = [&](double asked) {
-            return shortest(static_cast<float>(turns_per_loop(recipe, asked) / recipe.period));
+            return shortest_text(static_cast<float>(turns_per_loop(recipe, asked) / recipe.period));
         };
-        metadata.emplace_back("tyndall_period_s", shortest(recipe.period));
+        metadata.emplace_back("tyndall_period_s", shortest_text(recipe.period));
         if (recipe.noise.evolve != 0) metadata.emplace_back("tyndall_evolve_per_s", speed(recipe.noise.evolve));
         if (recipe.swirl != 0) metadata.emplace_back("tyndall_swirl_per_s", speed(recipe.swirl_speed));
     }
@@ -113,10 +106,8 @@ private:
         pending_.pop_front();
         ++report_.written;
         report_.voxels += written.voxels, report_.bytes += written.bytes;
-        char text[80];
-        std::snprintf(text, sizeof text, ": %.2f M voxels with fog, %.2f MB", written.voxels * 1e-6,
-                      written.bytes * 1e-6);
-        done(written.file.filename().string() + text);
+        done(written.file.filename().string() +
+             formatted(": %.2f M voxels with fog, %.2f MB", written.voxels * 1e-6, written.bytes * 1e-6));
     }
     void done(const std::string& line) {
         progress_.line(line);
@@ -134,7 +125,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
                 const BakeOptions& options, Progress& progress) {
     if (frames.size() > 1 && !has_frame_token(pattern))
         fail(ExitCode::usage, pattern, "needs a place for the frame number, such as fog.####.vdb");
-    const auto start = Clock::now();
+    const double start = steady_seconds();
     BakeReport report;
     if (frames.empty()) return report;
     const std::filesystem::path first = frame_name(pattern, frames.front());
@@ -162,7 +153,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
     }
     writers.finish();
     report.cancelled = report.written + report.kept < static_cast<int>(frames.size());
-    report.seconds = seconds_since(start);
+    report.seconds = steady_seconds() - start;
     return report;
 }
 }

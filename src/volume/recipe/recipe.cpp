@@ -3,9 +3,8 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/json.h"
+#include "base/text.h"
 #include "recipe_schema.h"
-
-#include <cstdio>
 
 namespace tyndall {
 namespace {
@@ -109,11 +108,7 @@ FogRecipe read_recipe(const std::filesystem::path& file) {
 std::string recipe_hash(const FogRecipe& recipe) {
     std::string text = "fog recipe " + std::to_string(format_version) + " " + recipe.name;
     const auto add = [&](std::initializer_list<double> values) {
-        for (const double value : values) {
-            char digits[40];
-            std::snprintf(digits, sizeof digits, " %a", value);
-            text += digits;
-        }
+        for (const double value : values) text += formatted(" %a", value);
     };
     const auto add_vector = [&](vec3 v) { add({v.x, v.y, v.z}); };
     add_vector(recipe.bounds.low), add_vector(recipe.bounds.high);

@@ -1,23 +1,16 @@
 #include "volume/vdb/head.h"
 
+#include "base/text.h"
+
 #include <openvdb/MetaMap.h>
 #include <openvdb/Metadata.h>
 #include <openvdb/version.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
 
 namespace tyndall {
 namespace {
-std::optional<double> number(const std::string& text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return value;
-}
-
 // Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
 openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creator) {
     constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
@@ -27,7 +20,7 @@ openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creat
     for (const auto& [key, text] : texts) {
         if (key.empty() || key == "creator") continue;
         metadata.removeMeta(key);
-        const std::optional<double> value = number(text);
+        const std::optional<double> value = parsed<double>(text);
         const auto is_key = [&](std::string_view name) { return name == key; };
         if (value && std::ranges::any_of(whole, is_key) && *value == std::floor(*value) && std::abs(*value) < 1e15)
             metadata.insertMeta(key, openvdb::Int64Metadata(static_cast<int64_t>(*value)));

@@ -1,9 +1,9 @@
 #include "volume/vdb/prewalk.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "volume/vdb/transform.h"
 
-#include <charconv>
 #include <cstring>
 
 namespace tyndall {
@@ -25,10 +25,7 @@ void check_magic(ByteCursor& file) {
 }
 
 template<class T> void append_number(std::string& text, T value) {
-    char digits[64];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    if (!text.empty()) text += ' ';
-    text.append(digits, end);
+    text += (text.empty() ? "" : " ") + shortest_text(value);
 }
 
 // The numbers of a metadata value, separated by spaces.

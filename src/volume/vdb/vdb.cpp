@@ -10,8 +10,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <charconv>
-#include <cstdio>
 #include <fstream>
 #include <new>
 
@@ -54,11 +52,9 @@ const VdbGridEntry* grid_called(const VdbDirectory& directory, std::string_view 
     if (const auto exact = grids_named(directory, wanted); !exact.empty()) return exact.front();
     const size_t open = wanted.rfind('[');
     if (open == std::string_view::npos || !wanted.ends_with(']')) return nullptr;
-    const char *begin = wanted.data() + open + 1, *end = wanted.data() + wanted.size() - 1;
-    size_t index = 0;
-    const auto [stop, error] = std::from_chars(begin, end, index);
+    const auto index = parsed<size_t>(wanted.substr(open + 1, wanted.size() - open - 2));
     const auto found = grids_named(directory, wanted.substr(0, open));
-    return error == std::errc() && stop == end && index < found.size() ? found[index] : nullptr;
+    return index && *index < found.size() ? found[*index] : nullptr;
 }
 
 // The one that can be fog; of several "density", then the only one of class fog volume.
@@ -230,11 +226,8 @@ std::string VdbReadReport::summary() const {
     if (empty) parts.push_back("is empty");
     if (non_finite) parts.push_back(std::to_string(non_finite) + " voxels that are not finite set to 0");
     if (negative) parts.push_back(std::to_string(negative) + " negative voxels set to 0");
-    if (background != 0) {
-        char text[48];
-        std::snprintf(text, sizeof text, "background %g", static_cast<double>(background));
-        parts.push_back(std::string(text) + " dropped outside the active voxels");
-    }
+    if (background != 0)
+        parts.push_back(formatted("background %g dropped outside the active voxels", static_cast<double>(background)));
     return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");
 }
 }
