@@ -28,7 +28,7 @@ class Tree:
 
     def __init__(self, root):
         self.text, self.bodies, self.names = {}, {}, {}
-        for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.glob("apps/tyndall/*")]):
+        for path in sorted([*root.glob("src/**/*.h"), *root.glob("src/**/*.cpp"), *root.glob("apps/tyndall/**/*.*")]):
             file = path.relative_to(root).as_posix()
             self.text[file] = re.sub(r"//[^\n]*", "", path.read_text())
             for name, body in functions(self.text[file]):

@@ -1,8 +1,8 @@
 // tyndall info: glTF files and scenes.
 #include "common.h"
-#include "info.h"
 #include "light_units.h"
 #include "measure/report/grid_report.h"
+#include "reports.h"
 
 #include "base/error.h"
 #include "base/text.h"

@@ -1,7 +1,7 @@
 // tyndall info: OpenVDB files.
 #include "common.h"
-#include "info.h"
 #include "measure/report/grid_report.h"
+#include "reports.h"
 
 #include "base/error.h"
 

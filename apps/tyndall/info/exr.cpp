@@ -1,6 +1,6 @@
 // tyndall info: OpenEXR pictures.
 #include "common.h"
-#include "info.h"
+#include "reports.h"
 
 #include "base/error.h"
 #include "render/image/exr.h"

@@ -1,5 +1,5 @@
 // tyndall info: what is in a file.
-#include "info.h"
+#include "reports.h"
 
 #include "base/error.h"
 #include "common.h"
