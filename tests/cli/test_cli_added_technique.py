@@ -2,10 +2,16 @@
 import json
 import os
 import pathlib
+import sys
 import unittest
 
-from program import ProgramTest, scene
+from program import SOURCE, ProgramTest, scene
+from viewer import ViewerTest, read_png
 import program
+import viewer
+
+sys.path.append(str(SOURCE / "docs"))
+import make_reference
 
 WITH_MIST = os.environ.get("TYNDALL_WITH_MIST", str(pathlib.Path(program.TYNDALL).parent / "tests/tyndall_with_mist"))
 
@@ -46,6 +52,26 @@ class Added(ProgramTest):
         told = self.succeed("stress", "--modes", "mist", "--list").stdout
         self.assertIn("thin-fog", told)
         self.assertNotIn("lamp-in-froxel", told)
+
+    def test_references_list_it(self):
+        pages = {path.name: text for path, text in make_reference.pages(WITH_MIST).items()}
+        self.assertIn("mist", pages["modes.md"])
+        self.assertIn("mist.brightness", pages["settings.md"])
+        self.assertIn("| `mist` | fog of one brightness |", pages["README.md"])
+
+
+class Viewed(ViewerTest):
+    def test_the_viewer_draws_it_with_its_settings(self):
+        usual, viewer.VIEWER = viewer.VIEWER, pathlib.Path(WITH_MIST).parent / "tyndall-view_with_mist"
+        self.addCleanup(setattr, viewer, "VIEWER", usual)
+        fog = {"type": "homogeneous", "extinction": 0.5, "bounds": {"low": [-2, -1, -2], "high": [2, 2, 2]}}
+        film, shots = self.write("scene.json", scene(media=[fog])), []
+        for brightness in (0.1, 3):
+            shots.append(self.path(f"{brightness}.png"))
+            self.view(film, ["mode mist", f"set mist.brightness {brightness}", "wait idle", f"screenshot {shots[-1]}"],
+                      "--samples", "1", "--res", "64x40")
+        dim, bright = (sum(map(sum, read_png(shot)[2])) for shot in shots)
+        self.assertGreater(bright, dim)
 
 
 if __name__ == "__main__":
