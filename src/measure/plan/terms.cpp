@@ -198,8 +198,9 @@ void add_orders(Terms& terms) {
     const ScatteringRatio found = measured_ratio(terms.snapshot);
     Term term{"light scattered again", "", "left out", found.ratio, found.high};
     term.needed = term.bound > term_share * terms.error;
-    term.why = formatted("light scattered more than once is %s of that scattered once (%s to %s)", percent_text(found.ratio).c_str(),
-                         percent_text(found.low).c_str(), percent_text(found.high).c_str());
+    term.why =
+        formatted("light scattered more than once is %s of that scattered once (%s to %s)",
+                  percent_text(found.ratio).c_str(), percent_text(found.low).c_str(), percent_text(found.high).c_str());
     const double bound = truncation_bound(terms.snapshot, 1);
     if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent_text(bound).c_str());
     if (terms.base.fluence.orders < 2) term.why += "; left out without --orders all";
