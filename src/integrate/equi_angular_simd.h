@@ -11,7 +11,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// PathPacket counted from the points next to the light: t = height · slope, slope = tan θ.
+// Intervals counted from the points next to the light: t = height · slope, slope = tan θ.
 struct EquiAngular16 {
     Floats height, from, to; // slopes of the ends
     Floats angle;            // between them

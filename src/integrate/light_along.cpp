@@ -72,13 +72,13 @@ Interval<double> behind(const Box& box, const LightAlong& along) {
     return {(-b - std::sqrt(inside)) / a, (-b + std::sqrt(inside)) / a};
 }
 
-void find_veils(std::span<const Medium> media, LightAlong& along) {
+void find_shadowed(std::span<const Medium> media, LightAlong& along) {
     for (const Medium& medium : media) {
         if (medium.density.kind != DensityKind::bricks || medium.density.bricks->empty()) continue;
         const Interval<double> stretch = behind(medium.density.bricks->bounds, along);
         const vec3 voxel = medium.density.bricks->voxel_size;
         if (stretch.empty()) continue;
-        along.veils.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
+        along.shadowed.push_back({stretch, 1.0 / std::min({voxel.x, voxel.y, voxel.z})});
         along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
     }
 }
@@ -110,10 +110,10 @@ EquiAngular<double> LightAlong::angles(double low, double high) const {
     return equi_angular(nearest, height(), low, high);
 }
 
-double LightAlong::veil_voxels(double low, double high) const {
+double LightAlong::shadow_voxels(double low, double high) const {
     double voxels = 0;
-    for (const ShadowedInterval& veil : veils)
-        if (veil.stretch.low < high && veil.stretch.high > low) voxels = std::max(voxels, veil.voxels);
+    for (const ShadowedInterval& one : shadowed)
+        if (one.stretch.low < high && one.stretch.high > low) voxels = std::max(voxels, one.voxels);
     if (voxels == 0) return 0;
     // Only movement across the light changes what stands before it.
     if (local()) return voxels * std::min(distance / std::max(distance_to(low, high), 1e-12), 1.0);
@@ -143,7 +143,7 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
                 std::span<const Medium> media, LightAlong& along) {
     along.light = &light, along.point = point;
     along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
-    along.kinks.clear(), along.lit.clear(), along.veils.clear();
+    along.kinks.clear(), along.lit.clear(), along.shadowed.clear();
     Interval<double> range{0, ray.t_max};
     if (along.local()) {
         const dvec3 towards = dvec3(light.position) - along.origin;
@@ -152,7 +152,7 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
         range = reached(light, along, range);
     }
     if (range.empty()) return;
-    find_veils(media, along);
+    find_shadowed(media, along);
     if (slices && light.shadows) {
         const float end = std::nextafter(static_cast<float>(range.high), infinity);
         find_lit(*slices, {ray.origin, ray.direction, std::min(end, ray.t_max)}, point, along.lit);

@@ -26,14 +26,14 @@ struct LightAlong {
         Interval<double> stretch;
         double voxels = 0;
     };
-    std::vector<ShadowedInterval> veils;
+    std::vector<ShadowedInterval> shadowed;
     std::vector<double> kinks; // memory that find_light() reuses
 
     bool local() const { return !is_distant(*light); }
     double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
     double height() const;                             // of a local light over the ray, no less than its radius
     EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
-    double veil_voxels(double low, double high) const;         // per metre, on a stretch that no veil's end divides
+    double shadow_voxels(double low, double high) const; // per metre, on a stretch that no end of one of these divides
 };
 
 // Unshadowed light at a point of the ray, as arrival() of scene/light.h, in double.

@@ -22,7 +22,7 @@ namespace {
 constexpr int no_light = -1;  // emission and ambient light
 constexpr int any_light = -2; // light that has been scattered before
 
-// Places on stretches of rays, sixteen at once, whichever rays they are on. PathPacket count from where their ray
+// Places on stretches of rays, sixteen at once, whichever rays they are on. Intervals count from where their ray
 // passes the light (see Spread).
 struct Nodes {
     alignas(64) float low[16], high[16];

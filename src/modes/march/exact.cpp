@@ -56,7 +56,7 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Ligh
         return split(on, piece, 0.5 * (low + high), high, along, visit);
     }
     const double depth = fog.depth_at(piece, high) - fog.depth_at(piece, low);
-    const double voxels = std::max(fog.pieces[piece].voxels, along ? along->veil_voxels(low, high) : 0.0);
+    const double voxels = std::max(fog.pieces[piece].voxels, along ? along->shadow_voxels(low, high) : 0.0);
     const double wanted = std::max({depth / settings.step_depth, length * voxels / settings.step_voxels,
                                     length / on.longest, length / (settings.near_light * away)});
     const double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));

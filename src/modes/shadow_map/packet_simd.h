@@ -53,7 +53,7 @@ struct Packet {
 
 HWY_INLINE void add(const Floats& value, Sixteen& sum) { store(load(sum.data()) + value, sum.data()); }
 
-// PathPacket of rays inside a box of the world.
+// Intervals of rays inside a box of the world.
 HWY_INLINE Interval<Floats> inside_world_box(const Box& box, const Vec3s& origin, const Vec3s& direction,
                                              Interval<Floats> range) {
     clip_axis(origin.x, direction.x, box.low.x, box.high.x, range);

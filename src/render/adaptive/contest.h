@@ -27,7 +27,7 @@ struct Contest {
 // Whether a is the better way to a goal: it gets there, sooner, or comes closer.
 bool beats(const Contender& a, const Contender& b, const Goal& goal);
 
-// Measures candidates of modes from coarse to fine, until finer ones of a mode can only lose. FroxelSamples take no
+// Measures candidates of modes from coarse to fine, until finer ones of a mode can only lose. Artistic modes take no
 // part. With an error asked for, the winner is the quickest that gets there, else the most accurate one; with seconds
 // only, the most accurate in that time. Seconds are predicted from a few pixels. `view` is the picture's; candidates
 // are made from `settings`, and held against the truth of `wanted`.

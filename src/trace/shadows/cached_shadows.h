@@ -1,4 +1,4 @@
-// Shadows of a snapshot's lights, made once while all they depend on stands still (trace/kept.h).
+// Shadows of a snapshot's lights, made once while all they depend on stands still (trace/frame_cache.h).
 #pragma once
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/shadows/volumes/shadow_view.h"

@@ -65,7 +65,7 @@ CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, in
     return key;
 }
 
-LightDepthFroxels kept_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
+LightDepthFroxels cached_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
                                int resolution, const View& view) {
     CacheKey key = depth_key(bricks, light, resolution);
     return *cached(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
@@ -99,7 +99,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
         else
             depth.analytic.push_back(medium);
     if (method == LightTransmittance::froxel && !bricks.empty())
-        depth.froxels = kept_froxels(snapshot, bricks, light, resolution, *view);
+        depth.froxels = cached_froxels(snapshot, bricks, light, resolution, *view);
     if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {
         for (const Medium* medium : bricks) depth.marched.push_back(*medium);
         return depth;

@@ -23,7 +23,7 @@ struct DensityPiece {
 // Appends the pieces of a ray's 0..t_end in which the medium has density, ascending and disjoint.
 void append_density(const Ray& ray, const Medium& medium, double t_end, std::vector<DensityPiece>& pieces);
 
-// PathPacket on which the density of every medium is one DensityPiece.
+// Intervals on which the density of every medium is one DensityPiece.
 struct FogPieces {
     struct Piece {
         double low = 0, high = 0;

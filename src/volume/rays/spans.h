@@ -1,4 +1,4 @@
-// PathPacket of a ray over which the fog's majorant does not change: what steps are placed in. Internal to
+// Intervals of a ray over which the fog's majorant does not change: what steps are placed in. Internal to
 // append_steps(); find_fog() shares the horizon.
 #pragma once
 #include "volume/rays/steps.h"
