@@ -23,7 +23,7 @@ namespace tyndall::test {
 // A square of side 2·half in the plane z, facing +z, glowing with `emission`.
 void add_plane(Scene& scene, float z, float half, vec3 emission, float alpha = 1);
 
-// Looks along -z from the origin.
+// A view along -z from the origin.
 Camera plain_camera(float ortho_height = 0);
 
 View plain_view(ivec2 size, int samples, float ortho_height = 0);

@@ -25,7 +25,7 @@ struct BeamCard {
 };
 
 // Cards for the openings that lights shine through, and those placed by hand. Does not depend on the camera.
-// Looks out from each light: cells of a grid of rays that get past the occluders next to the light are lit, and
+// Seen from each light: cells of a grid of rays that get past the occluders next to the light are lit, and
 // connected lit cells are an opening. Those that fill much of the grid are cut up (k-means); a free spot has one card.
 // Under an open sun the gaps between neighbouring surfaces are the openings; `open`: per light, the lit share of such a
 // sun's grid.

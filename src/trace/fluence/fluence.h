@@ -50,7 +50,7 @@ vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase);
 // The same bits at any thread count.
 FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed = 0);
 
-// Kept while lights, media and surfaces stand still (trace/frame_cache.h). Null when settings or scene ask for none.
+// Cached while lights, media and surfaces stand still (trace/frame_cache.h). Null when settings or scene ask for none.
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed = 0);
 }

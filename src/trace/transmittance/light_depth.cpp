@@ -66,7 +66,7 @@ CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, in
 }
 
 LightDepthFroxels cached_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
-                               int resolution, const View& view) {
+                                 int resolution, const View& view) {
     CacheKey key = depth_key(bricks, light, resolution);
     return *cached(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
         LightDepthFroxels froxels = fitted_froxels(view, snapshot.bounds, resolution);
