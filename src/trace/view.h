@@ -47,7 +47,7 @@ struct View {
     };
     std::vector<Lamp> lamps;
     std::shared_ptr<const TileFactors> edges{};    // found for the picture; null = none
-    std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take
+    std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take; 0 = the tile is left out
 };
 
 // Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile

@@ -65,9 +65,8 @@ class Plan(ProgramTest):
         self.assertLessEqual(plan["modes"][0]["seconds"], 0.5)
 
     def test_exit_code_one_when_no_mode_gets_there(self):
-        seen = hazy()
-        seen["lights"][0]["position"] = [-1, 1.5, 0]  # in the picture, where light has no bound
-        self.refuse(1, ["no mode gets there"], "plan", self.write("seen.json", seen), "--target-error", "0.00001", "-q")
+        self.refuse(1, ["no mode gets there"], "plan", self.scene, "--target-error", "0.00001",
+                    "--time-budget", "0.01", "-q")
 
     def test_auto_renders_as_planned_and_says_so_in_the_header(self):
         result = self.succeed("render", self.scene, "-o", self.output, "--mode", "auto", "--target-error", "0.03")

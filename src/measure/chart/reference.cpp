@@ -44,16 +44,14 @@ Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
     return image;
 }
 
-// What integrates fog quickly enough for the noise wanted. Pictures of single samples would be off in both halves
-// alike.
+// What integrates fog quickly enough for the noise wanted.
 std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
     FrameOptions options;
     options.cancel = shot.cancel;
     const View view = view_of(shot.scene, shot.request, shot.request.settings, shot.frame);
     const double start = steady_seconds();
     Choice choice = choose(main_mode(), view, snapshot, shot.request.settings, goal, start, options);
-    choice.measured.single = {infinity, infinity};
-    choice.measured.prepared = nullptr; // points into the snapshot
+    choice.measured.prepared = nullptr, choice.scout = nullptr; // they point into the snapshot
     return std::make_shared<const Choice>(std::move(choice));
 }
 

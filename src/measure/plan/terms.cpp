@@ -54,24 +54,26 @@ struct Terms {
     std::optional<Pilot> pilot{}, marched{}; // made when first needed
     std::vector<Term> terms{};
 
-    FrameOptions options() const { return {false, nullptr, control.cancel, {}, {}}; }
+    const FrameOptions frame_options{false, nullptr, control.cancel, {}, {}};
 
     Pilot make(const Settings& truth) const {
-        return make_pilot(main_mode(), view, snapshot, &truth, options(), [] { return false; });
+        Pilot result = make_pilot(main_mode(), view, snapshot, &truth, even_chances(view), 0, frame_options);
+        while (!result.is_full()) grow(result);
+        return result;
     }
     const Pilot& usual() {
-        if (!pilot) pilot = make(base);
+        if (!pilot) pilot.emplace(make(base));
         return *pilot;
     }
     const Pilot& with_marched_light() {
         if (marched) return *marched;
         Settings truth = base;
         truth.terms.light = LightTransmittance::marched;
-        return *(marched = make(truth));
+        return marched.emplace(make(truth));
     }
     SquaredError error_of(const Pilot& against, const Variant& variant) const {
-        return measure(against, *variant.mode, variant.snapshot, variant.settings, options(), steady_seconds)
-            .integrator;
+        Look look{*variant.mode, variant.settings, nullptr, &variant.snapshot};
+        return measure(against, look, steady_seconds).integrator;
     }
 
     // Root mean square over mean of the picture, whichever is larger of its colour and its fog light: no E is larger
@@ -81,7 +83,7 @@ struct Terms {
         const std::vector<vec3>& values = usual().truth;
         for (size_t i = 0; i < values.size(); ++i) {
             if (!is_finite(values[i])) continue;
-            const double weight = tiles_stood_for(usual(), i / pilot_values);
+            const double weight = usual().tiles[i / pilot_values].stands_for;
             squares[i % 2] += weight * glm::dot(values[i], values[i]) / 3;
             means[i % 2] += weight * (values[i].x + values[i].y + values[i].z) / 3, weights[i % 2] += weight;
         }

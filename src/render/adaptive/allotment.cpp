@@ -98,12 +98,20 @@ Allotment allot(const Layers& layers, double taken, const Enough& enough, double
     return at(std::exp(high));
 }
 
-std::shared_ptr<const TileFactors> factors_of(const Allotment& allotment, double scale, int unit) {
-    auto result = std::make_shared<TileFactors>();
-    result->low = allotment.low, result->factors = Image<uint16_t>(allotment.samples.size);
-    for (size_t i = 0; i < allotment.samples.pixels.size(); ++i)
-        result->factors.pixels[i] = static_cast<uint16_t>(
-            std::clamp(std::ceil(scale * allotment.samples.pixels[i] / unit), 1.0, 1.0 * max_tile_samples - 1));
-    return result;
+AllottedPart part_of(const Allotment& allotment, double from, double to, int unit) {
+    const auto units = [&](double scale, float samples) {
+        return scale > 0 ? std::clamp(std::ceil(scale * samples / unit), 1.0, 1.0 * max_tile_samples - 1) : 0.0;
+    };
+    auto factors = std::make_shared<TileFactors>();
+    AllottedPart part{nullptr, {allotment.low, Image<float>(allotment.samples.size)}};
+    factors->low = allotment.low, factors->factors = Image<uint16_t>(allotment.samples.size);
+    for (size_t i = 0; i < allotment.samples.pixels.size(); ++i) {
+        const float samples = allotment.samples.pixels[i];
+        const double all = units(to, samples), added = all - units(from, samples);
+        factors->factors.pixels[i] = static_cast<uint16_t>(added);
+        part.shares.shares.pixels[i] = static_cast<float>(added / all);
+    }
+    part.factors = std::move(factors);
+    return part;
 }
 }

@@ -24,6 +24,11 @@ struct Enough {
 // (Neyman 1934 for power 1), `least` or more of each pixel. `layers` hold the variances of means of `taken` samples.
 Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
 
-// `scale` times as many samples as allotted, in multiples of `unit`, one at least.
-std::shared_ptr<const TileFactors> factors_of(const Allotment& allotment, double scale, int unit);
+// What a picture of `to` times as many samples as allotted adds to one of `from` times as many: in multiples of `unit`,
+// one at least, but none where `from` is above 0 and rounding up has given them already.
+struct AllottedPart {
+    std::shared_ptr<const TileFactors> factors;
+    TileShares shares; // of the two together
+};
+AllottedPart part_of(const Allotment& allotment, double from, double to, int unit);
 }

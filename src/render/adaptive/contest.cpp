@@ -8,6 +8,8 @@
 
 namespace tyndall {
 namespace {
+constexpr int contest_drawings = 2; // of tiles that all are held against the truth on
+
 // A mode with candidates yet to measure.
 struct Runner {
     const Mode* mode;
@@ -19,20 +21,14 @@ struct Runner {
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
 };
 
-double error_with(const Contender& contender, double samples) {
-    const Measured& m = contender.choice.measured;
-    if (samples < 2) return std::sqrt(m.single.value);
-    return std::sqrt(contender.integrator().value + m.sample.value / std::pow(samples, contender.choice.power));
-}
-
 // To get to a goal's error; infinite where too many would be needed.
 double samples_for(const Contender& contender, double error) {
-    const Measured& m = contender.choice.measured;
-    const double wanted = error * error, left = wanted - contender.integrator().bound;
-    if (m.single.bound <= wanted) return 1;
+    const Choice& choice = contender.choice;
+    const double left = error * error - contender.integrator().bound;
     if (!(left > 0)) return infinity;
-    const double samples = std::max(2.0, std::ceil(std::pow(m.sample.value / left, 1 / contender.choice.power)));
-    return samples <= max_target_samples ? samples : infinity;
+    const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
+    const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
+    return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
 }
 
 // The picture a candidate would make of the goal. Where it does not get there, as good as it may become.
@@ -42,11 +38,11 @@ void predict(Contender& contender, const Goal& goal) {
     if (goal.error > 0) {
         contender.samples = samples_for(contender, goal.error);
         const double samples = std::min(contender.samples, 1.0 * max_target_samples);
-        contender.seconds = seconds_of(samples), contender.error = error_with(contender, samples);
+        contender.seconds = seconds_of(samples), contender.error = std::sqrt(contender.choice.expected(samples));
         if (goal.seconds == 0 || (contender.gets_there() && contender.seconds <= goal.seconds)) return;
     }
     const double samples = std::max(1.0, std::floor((goal.seconds - m.prepare_seconds) / m.sample_seconds));
-    contender.seconds = seconds_of(samples), contender.error = error_with(contender, samples);
+    contender.seconds = seconds_of(samples), contender.error = std::sqrt(contender.choice.expected(samples));
     contender.samples = goal.error > 0 || contender.seconds > goal.seconds ? infinity : samples;
 }
 
@@ -82,10 +78,17 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     assert(goal.error > 0 || goal.seconds > 0);
     const double start = goal.clock();
     const Settings truth = truth_of(wanted);
-    const Pilot pilot = make_pilot(main_mode(), view, snapshot, &truth, options, [] { return false; });
+    const std::shared_ptr<const Scout> scout = make_scout(
+        main_mode(), view, snapshot, candidates_of(main_mode(), settings, goal.quality)[0], options, goal.clock);
+    Pilot pilot = make_pilot(main_mode(), view, snapshot, &truth, chances_in(scout->layers), 0, options);
+    while (pilot.drawings < contest_drawings && !pilot.is_full()) grow(pilot);
+    Look look{main_mode(), scout->candidate.settings, scout->prepared};
+    Measured scouted = measure(pilot, look, goal.clock);
+    const double pace = scout->seconds / scout_samples / std::max(scouted.sample_seconds, 1e-9);
+    scouted.prepare_seconds = scout->prepare_seconds;
+    const double power = spread_power(pilot, main_mode(), scout->candidate.settings, *scout->prepared);
 
     Contest contest;
-    double edge_power = 0; // of samples by which the noise of edges falls; 0 = not yet known
     std::vector<Runner> runners = runners_of(modes, settings, goal.quality);
     size_t all = 0;
     for (const Runner& runner : runners) all += runner.candidates.size();
@@ -93,13 +96,15 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
         for (Runner& runner : runners) {
             const Candidate& candidate = runner.candidates[runner.next++];
             Contender contender{runner.mode, {candidate, {}, has_integrator(*runner.mode)}};
-            contender.choice.measured = measure(pilot, *runner.mode, snapshot, candidate.settings, options, goal.clock);
-            Measured& measured = contender.choice.measured;
-            const bool systematic = contender.choice.has_integrator;
-            if (systematic && edge_power == 0)
-                edge_power = spread_power(pilot, *runner.mode, snapshot, candidate.settings, *measured.prepared,
-                                          measured.sample.value, options);
-            contender.choice.power = systematic ? edge_power : 1;
+            Choice& choice = contender.choice;
+            const bool is_scout = runner.mode->name == main_mode().name && candidate.name == scout->candidate.name;
+            choice.measured = is_scout ? scouted : measure(pilot, *runner.mode, candidate.settings, goal.clock);
+            Measured& measured = choice.measured;
+            choice.power = choice.has_integrator ? power : 1;
+            measured.sample_seconds *= pace;
+            choice.scout = scout, choice.truth_seconds = pilot.truth_seconds(), choice.truth = pilot.prepared;
+            if (scouted.sample.value > 0)
+                choice.noise_ratio = std::max(measured.sample.value / scouted.sample.value, 1e-6);
             predict(contender, goal);
             measured.prepared = nullptr; // it may be large
             contest.contenders.push_back(std::move(contender));

@@ -2,16 +2,13 @@
 #include "modes/mode.h"
 
 #include <algorithm>
+#include <cassert>
 #include <optional>
 
 namespace tyndall {
 namespace {
 // Shares of the time that measuring may take.
-constexpr double truth_share = 0.1, measuring_share = 0.4;
-
-bool leaves_room(const Choice& choice, double error) {
-    return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
-}
+constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
 
 // Whether a finer candidate is as wrong as the one before.
 bool gains_nothing(const Choice& next, const Choice& before) {
@@ -19,46 +16,139 @@ bool gains_nothing(const Choice& next, const Choice& before) {
 }
 
 bool reaches(const Choice& choice, double samples, double error) {
-    const Measured& m = choice.measured;
-    const double bound = samples < 2 ? m.single.bound : m.integrator.bound + m.sample.bound / samples;
-    return leaves_room(choice, error) && bound <= error * error;
+    const double noise = choice.expected(samples) - choice.measured.integrator.value;
+    return leaves_room(choice, error) && choice.measured.integrator.bound + noise <= error * error;
+}
+
+bool same_settings(const Settings& a, const Settings& b) {
+    return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
+}
+
+// All that choosing among the candidates of a mode needs.
+struct Chooser {
+    const Mode& mode;
+    const View& view;
+    const Snapshot& snapshot;
+    const Settings& settings;
+    const Goal& goal;
+    const FrameOptions& options;
+    std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
+    bool systematic = has_integrator(mode);
+    Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
+
+    Pilot pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready = {}) const {
+        return make_pilot(systematic ? main_mode() : mode, view, snapshot, systematic ? &truth : nullptr,
+                          std::move(chances), salt, options, std::move(ready));
+    }
+
+    // Draws more tiles as long as `worth` says that a tighter bound would be.
+    Measured measured(Look look, Pilot& pilot, const std::function<bool(const Measured&)>& worth) const {
+        Measured result = measure(pilot, look, goal.clock);
+        while (systematic && goal.error > 0 && !pilot.is_full() && worth(result)) {
+            grow(pilot);
+            result = measure(pilot, look, goal.clock);
+        }
+        return result;
+    }
+
+    // What a candidate is worth; before is one measured already, which knows how noise falls.
+    Choice choice(const Candidate& candidate, Pilot& pilot, const Choice* before,
+                  std::shared_ptr<const Scout> scout) const {
+        const bool scouted = scout && scout->candidate.name == candidate.name;
+        Look look{mode, candidate.settings, scouted ? scout->prepared : nullptr};
+        if (scouted) look.prepare_seconds = scout->prepare_seconds;
+        Choice choice{candidate, {}, systematic};
+        choice.scout = scout, choice.power = before ? before->power : 1, choice.pace = before ? before->pace : 1;
+        const auto saves_time = [&](const Measured& measured) {
+            if (goal.seconds > 0 || measured.integrator.value >= goal.error * goal.error) return false;
+            choice.measured = measured;
+            const double now = seconds_to(goal.error, choice);
+            choice.measured.integrator.bound = measured.integrator.value;
+            return now - seconds_to(goal.error, choice) > pilot.seconds / pilot.drawings;
+        };
+        choice.measured = measured(std::move(look), pilot, saves_time);
+        choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
+        if (scouted) choice.pace = scout->seconds / scout_samples / std::max(choice.measured.sample_seconds, 1e-9);
+        choice.measured.sample_seconds *= choice.pace;
+        if (systematic && !before)
+            choice.power = spread_power(pilot, mode, candidate.settings, *choice.measured.prepared);
+        choice.truth_seconds = pilot.truth_seconds(), choice.truth = pilot.prepared;
+        return choice;
+    }
+
+    // To prepare and render what gets to the error; infinite where that is out of reach.
+    double seconds_to(double error, const Choice& choice) const {
+        const double left = error * error - choice.measured.integrator.bound;
+        if (!(left > 0) || !choice.scout) return infinity;
+        const Layers& seen = choice.scout->layers;
+        const double pixels = static_cast<double>(seen.size.x) * seen.size.y;
+        return choice.measured.prepare_seconds +
+               choice.spread({left, infinity}, scout_samples).rays / pixels * choice.measured.sample_seconds;
+    }
+};
+
+// Without a limit of time always; else where that leaves most of it.
+std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start) {
+    const auto& [mode, view, snapshot, settings, goal, options, candidates, systematic, truth] = chooser;
+    if (!systematic) return nullptr;
+    std::shared_ptr<const Prepared> prepared;
+    double prepare_seconds = 0;
+    if (goal.seconds > 0) {
+        const Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view), 0, options);
+        const Measured coarse = measure(first, mode, candidates[0].settings, goal.clock);
+        const double left = goal.seconds - (goal.clock() - start);
+        if (scout_samples * coarse.sample_seconds > scout_share * left) return nullptr;
+        prepared = coarse.prepared, prepare_seconds = coarse.prepare_seconds;
+    }
+    std::shared_ptr<const Scout> scout =
+        make_scout(mode, view, snapshot, candidates[0], options, goal.clock, std::move(prepared));
+    if (prepare_seconds == 0) return scout;
+    auto known = std::make_shared<Scout>(*scout);
+    known->prepare_seconds = prepare_seconds;
+    return known;
 }
 }
 
+bool leaves_room(const Choice& choice, double error) {
+    return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
+}
+
+Allotment Choice::spread(const Enough& enough, int unit) const {
+    assert(scout);
+    Enough of_scout = enough;
+    of_scout.squared_error /= noise_ratio;
+    Allotment result = allot(scout->layers, scout_samples, of_scout, power, unit);
+    result.squared_error *= noise_ratio;
+    return result;
+}
+
 double Choice::expected(double samples) const {
-    if (samples < 2) return measured.single.value;
-    return measured.integrator.value + measured.sample.value / std::pow(samples, power);
+    if (samples < 2) return measured.integrator.value + measured.sample.value;
+    if (!scout) return measured.integrator.value + measured.sample.value / std::pow(samples, power);
+    const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
+    return measured.integrator.value + spread({0, samples * pixels}, scout_samples).squared_error;
 }
 
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options) {
-    const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
+    const bool timed = goal.seconds > 0;
     const auto spent = [&] { return goal.clock() - start; };
-    const Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
-    const Pilot pilot = make_pilot(systematic ? main_mode() : mode, view, snapshot, systematic ? &truth : nullptr,
-                                   options, [&] { return timed && spent() > truth_share * goal.seconds; });
-
-    // Noise falls alike for all candidates: it is mostly that of edges.
-    double power = 0;
-    const auto measured = [&](const Candidate& candidate) {
-        Choice choice{candidate, measure(pilot, mode, snapshot, candidate.settings, options, goal.clock), systematic};
-        if (power == 0)
-            power = systematic ? spread_power(pilot, mode, snapshot, candidate.settings, *choice.measured.prepared,
-                                              choice.measured.sample.value, options)
-                               : 1;
-        choice.power = power, choice.truth_seconds = pilot.truth_seconds;
-        return choice;
-    };
+    const Chooser chooser{mode, view, snapshot, settings, goal, options};
+    const std::shared_ptr<const Scout> scout = scout_for(chooser, start);
+    Pilot pilot = chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0);
+    while (timed && !pilot.is_full() && spent() < truth_share * goal.seconds) grow(pilot);
 
     std::optional<Choice> best;
-    const std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
-    for (const Candidate& candidate : candidates) {
+    for (const Candidate& candidate : chooser.candidates) {
         const double begun = spent();
-        Choice next = measured(candidate);
+        Choice next = chooser.choice(candidate, pilot, best ? &*best : nullptr, scout);
         if (!timed) {
-            if (leaves_room(next, goal.error)) return next;
             if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;
-            best = std::move(next);
+            const bool room = leaves_room(next, goal.error);
+            const double seconds = chooser.seconds_to(goal.error, next);
+            const bool better = !best || seconds <= chooser.seconds_to(goal.error, *best);
+            if (better) best = std::move(next);
+            if (room) break;
             continue;
         }
         const double now = spent();
@@ -66,11 +156,34 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
             return std::max(1.0, std::floor((goal.seconds - now) / choice.measured.sample_seconds));
         };
         if (goal.error > 0 && reaches(next, samples(next), goal.error)) return next;
-        const bool noisy = next.measured.sample.value / samples(next) > 10 * next.measured.integrator.value;
-        if (!best || next.expected(samples(next)) < best->expected(samples(*best))) best = std::move(next);
+        const double expected = next.expected(samples(next));
+        const bool noisy = expected > 11 * next.measured.integrator.value;
+        if (!best || expected < best->expected(samples(*best))) best = std::move(next);
         // A finer one gains nothing where noise rules, and takes longer to prepare than this one did.
         if (noisy || now + 3 * (now - begun) > measuring_share * goal.seconds) break;
     }
     return std::move(*best);
+}
+
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, const Mode& mode, const View& view,
+               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t seed,
+               const FrameOptions& options) {
+    if (!choice.has_integrator || choice.is_truth) return choice;
+    const Chooser chooser{mode, view, snapshot, settings, goal, options};
+    const bool shows_noise = !picture.variance.empty();
+    Pilot pilot = chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), seed, choice.truth);
+    Choice result = choice;
+    const auto decides = [&](const Measured& measured) {
+        const double left = goal.error * goal.error - noise.bound * noise.bound;
+        return measured.integrator.value <= left && measured.integrator.bound > left;
+    };
+    result.measured.integrator =
+        chooser.measured({mode, choice.candidate.settings, choice.measured.prepared}, pilot, decides).integrator;
+    if (goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality)) return result;
+    auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
+    const auto falls_short = [&] { return result.measured.integrator.bound >= goal.error * goal.error; };
+    while (falls_short() && next != chooser.candidates.end() && ++next != chooser.candidates.end())
+        result = chooser.choice(*next, pilot, &choice, choice.scout);
+    return result;
 }
 }

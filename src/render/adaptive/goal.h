@@ -1,17 +1,25 @@
 // What a picture is rendered until, and the candidate that gets there.
 #pragma once
-#include "render/adaptive/candidates.h"
-#include "render/adaptive/pilot.h"
+#include "render/adaptive/allotment.h"
+#include "render/adaptive/scout.h"
 
 namespace tyndall {
 struct Choice {
     Candidate candidate;
     Measured measured;
-    bool has_integrator = false; // otherwise noise is the only error
-    double power = 1;            // of the samples by which their variance falls
-    double truth_seconds = 0;    // per sample of the picture, of the light held to be true; 0 = noise is the only error
+    bool has_integrator = false;                // otherwise noise is the only error
+    bool is_truth = false;                      // the candidate is what pictures are held against
+    double power = 1;                           // of the samples by which their variance falls
+    double noise_ratio = 1;                     // its variance of one sample over that of the scout
+    double pace = 1;                            // time of the whole picture over what the pilot made expect
+    double truth_seconds = 0;                   // per sample of the picture, of the light held to be true
+    std::shared_ptr<const Prepared> truth = {}; // prepared
+    std::shared_ptr<const Scout> scout = {};    // null = there was no time for one
 
-    // The squared error to expect of so many samples per pixel.
+    // How samples are best spread for an error or a number of rays; by the scout, which there must be.
+    Allotment spread(const Enough& enough, int unit) const;
+
+    // The squared error to expect of so many samples per pixel, on the average.
     double expected(double samples) const;
 };
 
@@ -29,10 +37,20 @@ struct Goal {
 // Share of the error wanted that the integrator may use up.
 inline constexpr double integrator_share = 0.7;
 
-// With an error asked for, the first candidate whose bound leaves enough for noise, or the finest; what comes before
-// the first that gains nothing, where set rows keep candidates from getting finer. With seconds, the one whose picture
-// will be best when they are over, `start` being when they began; with both, the first that reaches the error in time.
-// Seconds make the choice depend on the machine.
+// Whether what samples do not remove leaves enough of the error wanted for noise.
+bool leaves_room(const Choice& choice, double error);
+
+// With an error asked for, the quickest candidate that is likely to get there, up to the first whose bound leaves
+// enough for noise; or the finest; what comes before the first that gains nothing, where set rows keep candidates from
+// getting finer. With seconds, the one whose picture will be best when they are over, `start` being when they began;
+// with both, the first that reaches the error in time. Seconds make the choice depend on the machine.
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
+
+// What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
+// candidate was chosen by. Where that is too much for the goal, the first of the finer candidates that leaves enough
+// room, or the finest, takes its place.
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, const Mode& mode, const View& view,
+               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t seed,
+               const FrameOptions& options);
 }

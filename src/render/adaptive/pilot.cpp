@@ -9,24 +9,22 @@
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 namespace tyndall {
 namespace {
-constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal lie
+constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
 }
 
-Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, std::span<const vec3> center, size_t layer) {
+Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, size_t layer) {
     Sums sums;
     for (size_t i = 0; i < 16; ++i) {
         const size_t a = 2 * i + layer, b = a + pilot_values / 2;
-        if (!is_finite(truth[a] + truth[b] + own[a] + own[b] + center[a])) continue;
-        const dvec3 ta(truth[a]), tb(truth[b]), oa(own[a]), ob(own[b]), c(center[a]);
-        const double products[] = {channel_mean((oa - ta) * (ob - tb)), 0.5 * channel_mean((oa - ob) * (oa - ob)),
-                                   channel_mean((c - ta) * (c - tb))};
+        if (!is_finite(truth[a] + truth[b] + own[a] + own[b])) continue;
+        const dvec3 ta(truth[a]), tb(truth[b]), oa(own[a]), ob(own[b]);
+        const double products[] = {channel_mean((oa - ta) * (ob - tb)), 0.5 * channel_mean((oa - ob) * (oa - ob))};
         for (int k = 0; k < product_count; ++k)
             sums.products[k] += products[k], sums.squares[k] += products[k] * products[k];
         sums.mean += 0.5 * channel_mean(ta + tb), sums.count += 1;
@@ -34,70 +32,36 @@ Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, std::span<c
     return sums;
 }
 
-SquaredError squared_error(const TileSums& sums_of_tiles, Product product) {
-    const auto& [tiles, lamp_tiles, all] = sums_of_tiles;
-    Sums lamps, others;
-    for (size_t i = 0; i < tiles.size(); ++i) (i < lamp_tiles ? lamps : others).add(tiles[i], 1);
-    if (product == of_sample) lamps.products[product] = lamps.squares[product] = 0;
-    const double count = static_cast<double>(tiles.size() - lamp_tiles);
-    const double stands_for = count > 0 ? (all - static_cast<double>(lamp_tiles)) / count : 0;
-    const auto together = [&](const Sums& some, double share) {
-        Sums sums = lamps;
-        sums.add(some, share);
-        return sums;
-    };
-    const Sums sums = together(others, stands_for);
-    SquaredError result{std::max(sums.square(product), 0.0), 0};
-    double mean = 0, squares = 0, seen = 0;
-    for (size_t i = lamp_tiles; i < tiles.size() && count > 1; ++i) {
-        Sums rest = others;
-        rest.add(tiles[i], -1);
-        const double value = together(rest, stands_for * count / (count - 1)).square(product), off = value - mean;
-        mean += off / ++seen, squares += off * (value - mean);
+SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile> tiles, Product product) {
+    double products = 0, mean = 0, count = 0, largest = 0;
+    for (size_t i = 0; i < sums.size(); ++i) {
+        const double weight = tiles[i].stands_for;
+        products += weight * sums[i].products[product], mean += weight * sums[i].mean, count += weight * sums[i].count;
+        largest = std::max(largest, sums[i].squares[product]);
     }
-    double variance = std::max(squares * (count - 1) / std::max(count, 1.0), 0.0);
-    if (lamps.squares[product] > 0)
-        variance += lamps.squares[product] * std::pow(sums.count / (sums.mean * sums.mean), 2);
-    result.bound = result.value + confidence * std::sqrt(variance);
-    if (!(result.bound >= 0)) result.bound = infinity;
-    return result;
+    if (largest == 0) return {};
+    if (!(mean > 0)) return {infinity, infinity};
+
+    // The ratio's change with each tile, were it left out of the sums.
+    const double per_product = count / (mean * mean), value = products * per_product;
+    double variance = 0, third = 0;
+    for (size_t i = 0; i < sums.size(); ++i) {
+        const double weight = tiles[i].stands_for, chance = tiles[i].chance;
+        const double change = weight * (per_product * sums[i].products[product] - 2 * value * sums[i].mean / mean +
+                                        value * sums[i].count / count);
+        variance += (1 - chance) * change * change, third += (1 - chance) * change * change * change;
+        // A pixel may be off by as much as it says.
+        variance += chance * weight * weight * per_product * per_product * sums[i].squares[product];
+    }
+    const double lump = variance > 0 ? std::max(third / variance, 0.0) : 0, half = confidence * lump / 2;
+    const double bound = std::max(value, 0.0) + confidence * (half + std::sqrt(variance + half * half));
+    return {std::max(value, 0.0), bound >= 0 ? bound : infinity};
 }
 
 namespace {
 constexpr int tile_side = 4;
 constexpr uint32_t use_pilot = 0x9170u;
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
-
-// Sets tiles that show a pixel of the picture, all or some: those with a lamp, and the others in an order of which any
-// beginning is spread evenly.
-void spread_tiles(const View& view, Pilot& pilot) {
-    const bool cropped = view.crop_low != view.crop_high;
-    const ivec2 first = (cropped ? view.crop_low : ivec2(0)) / tile_side;
-    const ivec2 tiles = ((cropped ? view.crop_high : view.size) - 1) / tile_side + 1 - first;
-    pilot.tiles = static_cast<double>(tiles.x) * tiles.y;
-    size_t wanted = max_lamp_tiles;
-    std::vector<ivec2>& corners = pilot.corners;
-    const auto add = [&](ivec2 tile) {
-        const ivec2 corner = (first + tile) * tile_side;
-        if (corners.size() < wanted && !std::ranges::count(corners, corner)) corners.push_back(corner);
-    };
-    for (const View::Lamp& lamp : view.lamps) {
-        const vec2 place = glm::floor(lamp.at / static_cast<float>(tile_side)) - vec2(first);
-        if (place.x >= 0 && place.y >= 0 && place.x < static_cast<float>(tiles.x) &&
-            place.y < static_cast<float>(tiles.y))
-            add(ivec2(place));
-    }
-    pilot.lamp_tiles = corners.size();
-    wanted = static_cast<size_t>(std::min<double>(pilot.tiles, max_pilot_tiles));
-    for (uint32_t k = 0; k < 4 * max_pilot_tiles; ++k) {
-        const Sample2 place = sample2(k, use_pilot);
-        add(glm::min(ivec2(vec2(place.x, place.y) * vec2(tiles)), tiles - 1));
-    }
-    // Few tiles are taken all, though chance has left some out.
-    for (int y = 0; y < tiles.y && corners.size() < wanted; ++y)
-        for (int x = 0; x < tiles.x && corners.size() < wanted; ++x) add({x, y});
-    if (pilot.lamp_tiles == corners.size()) pilot.lamp_tiles = 0; // there are no others
-}
 
 FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                       const Prepared& prepared) {
@@ -127,15 +91,19 @@ void follow_tile(const FrameTracer& tracer, ivec2 corner, std::span<vec3> result
     }
 }
 
-// Tiles `begin` to `end` of the pilot.
-void follow(const FrameTracer& tracer, const Pilot& pilot, size_t begin, size_t end, const FrameOptions& options,
-            std::vector<vec3>& result) {
-    result.resize(end * pilot_values);
-    parallel_for(static_cast<int64_t>(end - begin), [&](int64_t i) {
-        if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
+// The tiles from `result`'s end on.
+void follow(const FrameTracer& tracer, const Pilot& pilot, std::vector<vec3>& result, size_t count) {
+    const size_t begin = result.size() / pilot_values;
+    result.resize(count * pilot_values);
+    parallel_for(static_cast<int64_t>(count - begin), [&](int64_t i) {
+        if (pilot.options.cancel && *pilot.options.cancel) fail(ExitCode::internal, "render", "cancelled");
         const size_t tile = begin + static_cast<size_t>(i);
-        follow_tile(tracer, pilot.corners[tile], {result.data() + tile * pilot_values, pilot_values});
+        follow_tile(tracer, pilot.tiles[tile].corner, {result.data() + tile * pilot_values, pilot_values});
     });
+}
+
+std::span<const vec3> values_of(const std::vector<vec3>& all, size_t tile) {
+    return {all.data() + tile * pilot_values, pilot_values};
 }
 
 // Modes that shade surfaces themselves spread their samples by the filter alone.
@@ -145,91 +113,100 @@ View view_for(const Mode& mode, const Pilot& pilot) {
     return view;
 }
 
+std::shared_ptr<const Prepared> prepare(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot,
+                                        const Settings& settings) {
+    View view = view_for(mode, pilot);
+    view.seed = pilot.seed;
+    return std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));
+}
+
 SquaredError worse(SquaredError a, SquaredError b) { return {std::max(a.value, b.value), std::max(a.bound, b.bound)}; }
-}
 
-double tiles_stood_for(const Pilot& pilot, size_t tile) {
-    const double lamps = static_cast<double>(pilot.lamp_tiles);
-    return tile < pilot.lamp_tiles ? 1 : (pilot.tiles - lamps) / (static_cast<double>(pilot.corners.size()) - lamps);
-}
-
-Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
-                 const FrameOptions& options, const std::function<bool()>& enough) {
-    Pilot pilot;
-    pilot.view = view;
-    pilot.view.per_light = false, pilot.view.pixel_samples = pilot.view.batches = 2;
-    pilot.view.lamp_samples = pilot.view.edge_samples = 1;
-    pilot.view.lamps = lamps_in(view, snapshot);
-    spread_tiles(pilot.view, pilot);
-    if (!truth) return pilot;
-
-    const Prepared prepared = prepare_frame(mode, pilot.view, snapshot, *truth, nullptr);
-    const FrameTracer tracer = tracer_of(mode, pilot.view, snapshot, *truth, prepared);
-    size_t done = 0;
-    const double start = steady_seconds();
-    while (done < pilot.corners.size() && (done < fewest_pilot_tiles || !enough())) {
-        const size_t end = std::min(done + fewest_pilot_tiles, pilot.corners.size());
-        follow(tracer, pilot, done, end, options, pilot.truth);
-        done = end;
-    }
-    pilot.truth_seconds = (steady_seconds() - start) / 2 * (pilot.tiles / static_cast<double>(done));
-    pilot.corners.resize(done);
-    return pilot;
-}
-
-Measured measure(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot, const Settings& settings,
-                 const FrameOptions& options, const Seconds& clock) {
-    Measured result;
-    const View view = view_for(mode, pilot);
-    const double start = clock();
-    result.prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));
-    const double prepared = clock();
-    std::vector<vec3> own, center;
-    const size_t count = pilot.corners.size();
-    follow(tracer_of(mode, view, snapshot, settings, *result.prepared), pilot, 0, count, options, own);
-    const double followed = clock();
-    View single = view;
-    single.pixel_samples = single.batches = 1, single.seed = hash(single.seed, use_pilot);
-    follow(tracer_of(mode, single, snapshot, settings, *result.prepared), pilot, 0, count, options, center);
-
-    // The quicker of two looks: so few rays are easily held up.
-    result.prepare_seconds = prepared - start;
-    const double sample = std::min((followed - prepared) / 2, clock() - followed);
-    result.sample_seconds = sample * (pilot.tiles / static_cast<double>(count));
-    const std::vector<vec3>& truth = pilot.truth.empty() ? own : pilot.truth;
+// The worse of colour and fog light.
+SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const std::vector<vec3>& own,
+                      Product product) {
+    SquaredError result;
+    const size_t count = own.size() / pilot_values;
     for (size_t layer = 0; layer < 2; ++layer) {
-        TileSums sums{{}, pilot.lamp_tiles, pilot.tiles};
-        for (size_t tile = 0; tile < count; ++tile) {
-            const auto of = [&](const std::vector<vec3>& all) {
-                return std::span(all.data() + tile * pilot_values, pilot_values);
-            };
-            sums.tiles.push_back(sums_of(of(truth), of(own), of(center), layer));
-        }
-        result.integrator = worse(result.integrator, squared_error(sums, of_integrator));
-        result.sample = worse(result.sample, squared_error(sums, of_sample));
-        result.single = worse(result.single, squared_error(sums, of_single));
+        std::vector<Sums> sums;
+        for (size_t tile = 0; tile < count; ++tile)
+            sums.push_back(sums_of(values_of(truth, tile), values_of(own, tile), layer));
+        result = worse(result, squared_error(sums, {pilot.tiles.data(), count}, product));
     }
     return result;
 }
+}
 
-double spread_power(const Pilot& pilot, const Mode& mode, const Snapshot& snapshot, const Settings& settings,
-                    const Prepared& prepared, double sample_variance, const FrameOptions& options) {
+Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
+                 TileChances chances, uint32_t salt, const FrameOptions& options,
+                 std::shared_ptr<const Prepared> prepared) {
+    Pilot pilot{mode, snapshot, options};
+    if (truth) pilot.truth_settings = *truth;
+    pilot.view = view, pilot.seed = view.seed, pilot.chances = std::move(chances);
+    pilot.view.per_light = false, pilot.view.pixel_samples = pilot.view.batches = 2;
+    pilot.view.lamp_samples = pilot.view.edge_samples = 1, pilot.view.allotted = nullptr;
+    pilot.view.seed = hash(view.seed, use_pilot, salt);
+    pilot.view.lamps = lamps_in(view, snapshot);
+    if (truth) pilot.prepared = prepared ? std::move(prepared) : prepare(pilot, mode, snapshot, *truth);
+    grow(pilot);
+    return pilot;
+}
+
+void grow(Pilot& pilot) {
+    const double before = pilot.drawings++, now = pilot.drawings;
+    for (DrawnTile& tile : pilot.tiles) tile.stands_for *= before / now;
+    const uint32_t seed = hash(pilot.view.seed, static_cast<uint32_t>(pilot.drawings));
+    for (DrawnTile tile : draw_tiles(pilot.chances, drawing_tiles, seed)) {
+        const auto same = std::ranges::find(pilot.tiles, tile.corner, &DrawnTile::corner);
+        tile.stands_for /= now;
+        if (same == pilot.tiles.end())
+            pilot.tiles.push_back(tile);
+        else
+            same->stands_for += tile.stands_for;
+    }
+    if (!pilot.truth_settings) return;
+    const double start = steady_seconds();
+    follow(tracer_of(pilot.mode, pilot.view, pilot.snapshot, *pilot.truth_settings, *pilot.prepared), pilot,
+           pilot.truth, pilot.tiles.size());
+    pilot.seconds += steady_seconds() - start;
+}
+
+Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
+    const double start = clock();
+    if (!look.prepared) {
+        look.prepared = prepare(pilot, look.mode, look.of(pilot), look.settings);
+        look.prepare_seconds = clock() - start;
+    }
+    const double prepared = clock();
+    const View view = view_for(look.mode, pilot);
+    follow(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot, look.values,
+           pilot.tiles.size());
+    look.seconds += clock() - prepared;
+    const std::vector<vec3>& truth = pilot.truth.empty() ? look.values : pilot.truth;
+    Measured result;
+    result.integrator = error_of(pilot, truth, look.values, of_integrator);
+    result.sample = error_of(pilot, truth, look.values, of_sample);
+    result.prepare_seconds = look.prepare_seconds, result.prepared = look.prepared;
+    result.sample_seconds = look.seconds / 2 * pilot.all() / static_cast<double>(pilot.tiles.size());
+    return result;
+}
+
+Measured measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock) {
+    Look look{mode, settings};
+    return measure(pilot, look, clock);
+}
+
+double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared) {
     constexpr int samples = 8;
     View view = view_for(mode, pilot);
-    view.pixel_samples = 2 * samples;
-    std::vector<vec3> own;
-    const size_t count = pilot.corners.size();
-    follow(tracer_of(mode, view, snapshot, settings, prepared), pilot, 0, count, options, own);
-    double variance = 0;
-    for (size_t layer = 0; layer < 2; ++layer) {
-        Sums sums;
-        for (size_t tile = pilot.lamp_tiles; tile < count; ++tile) {
-            const std::span<const vec3> means(own.data() + tile * pilot_values, pilot_values);
-            sums.add(sums_of(means, means, means, layer), 1);
-        }
-        variance = std::max(variance, sums.square(of_sample));
-    }
-    if (!(variance > 0) || !(sample_variance > variance)) return 1;
-    return std::clamp(std::log(sample_variance / variance) / std::log(double{samples}), 1.0, 2.0);
+    const auto variance_of_means = [&](int of) {
+        view.pixel_samples = 2 * of;
+        std::vector<vec3> own;
+        follow(tracer_of(mode, view, pilot.snapshot, settings, prepared), pilot, own, pilot.tiles.size());
+        return error_of(pilot, own, own, of_sample).value;
+    };
+    const double one = variance_of_means(1), many = variance_of_means(samples);
+    if (!(many > 0) || !(one > many)) return 1;
+    return std::clamp(std::log(one / many) / std::log(double{samples}), 1.0, 2.0);
 }
 }

@@ -15,6 +15,7 @@ namespace {
 // Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
 // which show by then.
 constexpr double max_first_samples = 64;
+constexpr uint32_t max_checks = 3; // of finished pictures; each but the last may ask for a finer candidate
 
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.
@@ -60,14 +61,14 @@ struct Rounds {
         return std::max(goal.error * integrator_share, 0.1 * std::sqrt(bound));
     }
 
-    // The view of so much work, and the work it is.
-    View round_view(double& work, int round) const {
+    // The view of so much work, and the work it is. What is allotted may come in parts.
+    View round_view(double& work, int round, const AllottedPart* part) const {
         View result = view;
         if (round) result.seed = hash(view.seed, static_cast<uint32_t>(round));
-        result.batches = allotment ? unit() : std::min(max_batches(), static_cast<int>(work));
-        result.pixel_samples = allotment ? unit() : static_cast<int>(work) / result.batches * result.batches;
-        if (allotment)
-            result.allotted = factors_of(*allotment, work, unit());
+        result.batches = part ? unit() : std::min(max_batches(), static_cast<int>(work));
+        result.pixel_samples = part ? unit() : static_cast<int>(work) / result.batches * result.batches;
+        if (part)
+            result.allotted = part->factors;
         else
             work = result.pixel_samples;
         return result;
@@ -102,7 +103,6 @@ int first_round(Rounds& rounds) {
         const double needed = std::pow(ratio, 1 / rounds.choice->power);
         samples = static_cast<int>(std::clamp(std::ceil(needed / 16), 4.0, max_first_samples));
         if (needed < 8) samples = std::max(static_cast<int>(std::ceil(needed / 2)), 2);
-        if (measured.single.bound <= rounds.goal.error * rounds.goal.error) samples = 1;
         rounds.expected = std::max<double>(samples, std::min<double>(needed, max_target_samples));
     }
     if (rounds.goal.seconds > 0) {
@@ -110,8 +110,7 @@ int first_round(Rounds& rounds) {
         samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
         rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
     }
-    const bool single_refused = measured.single.bound == infinity;
-    return std::max(samples, single_refused ? 2 : rounds.fewest());
+    return std::max(samples, rounds.fewest());
 }
 
 // After the first round: whether samples are better spread by what it showed. Then they are, from nothing.
@@ -131,7 +130,7 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
-    if (*std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done) rounds.first_part = 0.4;
+    rounds.first_part = *std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done ? 0.4 : 1;
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }
@@ -173,10 +172,8 @@ double next_round(Rounds& rounds, const FrameStats& stats) {
 
 // Of a picture of one sample per pixel, going by what was measured beforehand.
 Noise single_noise(const Choice& choice) {
-    const Measured& m = choice.measured;
-    const SquaredError integrator = choice.has_integrator ? m.integrator : SquaredError{};
-    return {std::sqrt(std::max(m.single.value - integrator.value, 0.0)),
-            std::sqrt(std::max(m.single.bound - integrator.bound, 0.0))};
+    const SquaredError& sample = choice.measured.sample;
+    return {std::sqrt(sample.value), std::sqrt(sample.bound)};
 }
 
 // Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
@@ -190,6 +187,34 @@ bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
     return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
 }
+
+// Begins with what the scout shows, which counts where it is by the candidate chosen. The work that comes next; 0 when
+// it is enough.
+double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
+    const Choice& choice = *rounds.choice;
+    const Scout& scout = *choice.scout;
+    const bool counts = scout.candidate.name == choice.candidate.name && scout.seed == rounds.view.seed;
+    rounds.done = scout_samples, rounds.freedom = scout_samples - 1;
+    if (counts) {
+        rounds.work_seconds = scout.seconds / scout_samples;
+        result = scout.layers, stats.add(scout.stats), stats.samples = scout_samples;
+        if (judge(rounds, result, stats)) return 0;
+    } else {
+        const Noise noise = noise_of(scout.layers, rounds.freedom);
+        const double ratio = std::sqrt(choice.noise_ratio);
+        stats.noise = Noise{ratio * noise.error, ratio * noise.bound};
+    }
+    if (!begin_allotment(rounds, scout.layers, stats) && !counts) {
+        const double batches = rounds.max_batches();
+        double needed = max_target_samples;
+        if (rounds.goal.error > 0)
+            needed = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
+        if (rounds.goal.seconds > 0) needed = std::min(needed, rounds.left() / rounds.work_seconds);
+        rounds.done = 0, rounds.freedom = 0, rounds.expected = needed;
+        return std::clamp(std::ceil(needed / batches) * batches, batches, 1.0 * max_target_samples);
+    }
+    return next_round(rounds, stats);
+}
 }
 
 int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_batches * noise_batches; }
@@ -200,47 +225,62 @@ void check_target(const Mode& mode, std::string_view option) {
          "mode '" + std::string(mode.name) + "' is artistic: it has no error bound; --mode auto picks one that has");
 }
 
-Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                        Goal goal, const FrameOptions& options, FrameStats& stats) {
-    assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
-    if (!goal.clock) goal.clock = steady_seconds;
-    Rounds rounds = rounds_of(mode, view, goal);
-    FrameOptions round_options = options;
-    Settings chosen = settings;
-    stats = {};
-    if (has_integrator(mode) || goal.seconds > 0) {
-        rounds.choice = choice_for(rounds, snapshot, settings, options);
-        chosen = rounds.choice->candidate.settings;
-        rounds.work_seconds = rounds.choice->measured.sample_seconds;
-        round_options.prepared = rounds.choice->measured.prepared;
-        if (!round_options.prepared) // once for all rounds
-            round_options.prepared =
-                std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, chosen, options.history));
-        stats.prepare_seconds = goal.clock() - rounds.start;
-        stats.fog_seconds = round_options.prepared->mode_seconds;
-        const SquaredError& error = rounds.choice->measured.integrator;
-        if (rounds.choice->has_integrator)
-            stats.integrator = {
-                {std::sqrt(error.value), std::sqrt(error.bound)}, rounds.choice->candidate.name, chosen};
-    }
+namespace {
+// What all rounds of a picture are rendered with.
+struct Rendering {
+    const Mode& mode;
+    const Snapshot& snapshot;
+    const FrameOptions& options;
+    Settings settings;
+    std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
+};
 
-    // Until the first round has shown how noisy the scene is, all samples there may be count as work.
-    Layers result;
-    const double pixels = pixel_count(view);
-    double begun = 0, work = first_round(rounds), rays = 0; // rays: that count
-    for (int round = 0; work > 0; ++round) {
-        const View round_view = rounds.round_view(work, round);
+void note_integrator(const Choice& choice, FrameStats& stats) {
+    if (!choice.has_integrator) return;
+    const SquaredError& error = choice.measured.integrator;
+    stats.integrator = {
+        {std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, choice.candidate.settings};
+}
+
+// Takes the choice's candidate, prepared once for all rounds.
+void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStats& stats) {
+    rounds.choice = choice, rounds.allotment.reset(), rounds.first_part = 1;
+    rounds.done = 0, rounds.freedom = 0, rounds.expected = max_target_samples;
+    rounds.work_seconds = choice.measured.sample_seconds;
+    rendering.settings = choice.candidate.settings, rendering.prepared = choice.measured.prepared;
+    if (!rendering.prepared)
+        rendering.prepared = std::make_shared<const Prepared>(prepare_frame(
+            rendering.mode, rounds.view, rendering.snapshot, rendering.settings, rendering.options.history));
+    stats.fog_seconds += rendering.prepared->mode_seconds;
+    note_integrator(choice, stats);
+}
+
+// Renders rounds until noise is as small as the goal asks for, or time is up. `round` counts those of all tries.
+void render_rounds(Rounds& rounds, const Rendering& rendering, double work, Layers& result, FrameStats& stats,
+                   int& round) {
+    const double pixels = pixel_count(rounds.view);
+    const auto& progress = rendering.options.progress;
+    double begun = std::min(1.0, rounds.done / rounds.expected), rays = stats.samples * pixels; // that count
+    if (rounds.done == 0) rays = 0;
+    for (; work > 0; ++round) {
+        std::optional<AllottedPart> part;
+        if (rounds.allotment) part = part_of(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit());
+        const View view = rounds.round_view(work, round, part ? &*part : nullptr);
         const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
-        if (options.progress)
-            round_options.progress = [&](double part) { options.progress(begun + part * (reached - begun)); };
+        FrameOptions options = rendering.options;
+        options.prepared = rendering.prepared;
+        if (progress) options.progress = [&](double share) { progress(begun + share * (reached - begun)); };
 
         FrameStats round_stats;
-        const double round_start = goal.clock();
-        Layers layers = render_frame(mode, round_view, snapshot, chosen, round_options, round_stats);
-        rounds.work_seconds = (goal.clock() - round_start) / work;
-        rounds.freedom += round_view.batches - 1, begun = reached;
+        const double start = rounds.goal.clock();
+        Layers layers =
+            render_frame(rendering.mode, view, rendering.snapshot, rendering.settings, options, round_stats);
+        rounds.work_seconds = (rounds.goal.clock() - start) / work;
+        rounds.freedom += view.batches - 1, begun = reached;
         if (rounds.done == 0)
             result = std::move(layers);
+        else if (part)
+            blend_layers(result, layers, part->shares);
         else
             blend_layers(result, layers, static_cast<float>(work / (rounds.done + work)));
         rounds.done += work, rays += static_cast<double>(round_stats.camera_rays);
@@ -248,9 +288,44 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
         // A picture of one sample is the end: it has no variance to go on from.
-        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) break;
+        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
+    }
+}
+}
+
+Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                        Goal goal, const FrameOptions& options, FrameStats& stats) {
+    assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
+    if (!goal.clock) goal.clock = steady_seconds;
+    Rounds rounds = rounds_of(mode, view, goal);
+    Rendering rendering{mode, snapshot, options, settings, nullptr};
+    stats = {};
+    Layers result;
+    int round = 0;
+    const bool measured = has_integrator(mode) || goal.seconds > 0;
+    if (measured) {
+        begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
+        stats.prepare_seconds = goal.clock() - rounds.start;
+    }
+    for (uint32_t check = 1; check <= max_checks; ++check) {
+        const bool scouted = measured && rounds.choice->scout;
+        render_rounds(rounds, rendering, scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds),
+                      result, stats, round);
+        if (!has_integrator(mode)) break;
+
+        const Choice after =
+            checked(*rounds.choice, result, *stats.noise, mode, rounds.view, snapshot, settings, goal, check, options);
+        if (after.candidate.name != rounds.choice->candidate.name) {
+            begin(after, rounds, rendering, stats);
+            continue;
+        }
+        rounds.choice = after;
+        note_integrator(after, stats);
+        if (goal.error > 0 && rounds.freedom > 0 && !judge(rounds, result, stats))
+            render_rounds(rounds, rendering, next_round(rounds, stats), result, stats, round);
+        break;
     }
     stats.goal_seconds = goal.clock() - rounds.start;
     if (options.progress) options.progress(1);

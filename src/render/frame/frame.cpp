@@ -89,6 +89,7 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
 
     const size_t lights = task.light_layers.size();
     const int sample_count = samples_of(view, corner), batch_size = sample_count / view.batches;
+    if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
     PixelSum sums[16];
     PixelSample samples[16];
     std::vector<vec3> light_parts(lights * count), light_sums(lights * count, vec3(0));

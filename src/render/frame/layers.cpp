@@ -5,20 +5,23 @@
 
 namespace tyndall {
 namespace {
-// Into `image` a share of another one.
-template<class T> void blend(Image<T>& image, const Image<T>& other, float share) {
-    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += share * (other.pixels[i] - image.pixels[i]);
+// Into `image` a share of another one, for each pixel.
+template<class T, class Share> void blend(Image<T>& image, const Image<T>& other, const Share& share) {
+    if (image.empty()) return;
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = 0; x < image.size.x; ++x) image.at(x, y) += share({x, y}) * (other.at(x, y) - image.at(x, y));
 }
 
 // Variance of the blended mean of independent pictures.
-void blend_variance(Image<vec3>& variance, const Image<vec3>& other, float share) {
-    const float kept = (1 - share) * (1 - share), added = share * share;
-    for (size_t i = 0; i < variance.pixels.size(); ++i)
-        variance.pixels[i] = kept * variance.pixels[i] + added * other.pixels[i];
-}
+template<class Share> void blend_variance(Image<vec3>& variance, const Image<vec3>& other, const Share& share) {
+    for (int y = 0; y < variance.size.y; ++y)
+        for (int x = 0; x < variance.size.x; ++x) {
+            const float added = share({x, y}), kept = 1 - added;
+            variance.at(x, y) = kept * kept * variance.at(x, y) + added * added * other.at(x, y);
+        }
 }
 
-void blend_layers(Layers& layers, const Layers& other, float share) {
+template<class Share> void blend_all(Layers& layers, const Layers& other, const Share& share) {
     blend(layers.color, other.color, share);
     blend(layers.alpha, other.alpha, share);
     blend(layers.inscatter, other.inscatter, share);
@@ -29,6 +32,19 @@ void blend_layers(Layers& layers, const Layers& other, float share) {
     for (size_t i = 0; i < layers.lights.size(); ++i) blend(layers.lights[i].second, other.lights[i].second, share);
     blend_variance(layers.variance, other.variance, share);
     blend_variance(layers.inscatter_variance, other.inscatter_variance, share);
+}
+}
+
+void blend_layers(Layers& layers, const Layers& other, float share) {
+    blend_all(layers, other, [share](ivec2) { return share; });
+}
+
+void blend_layers(Layers& layers, const Layers& other, const TileShares& shares) {
+    constexpr int tile_side = 4;
+    blend_all(layers, other, [&](ivec2 p) {
+        const ivec2 tile = (layers.low + p) / tile_side - shares.low;
+        return shares.shares.at(tile.x, tile.y);
+    });
 }
 
 namespace {

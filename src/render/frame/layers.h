@@ -56,8 +56,15 @@ struct FrameStats {
     void add(const FrameStats& other); // counts and times
 };
 
-// Into the layers `share` of other ones, with the variances of such a mean. Depth stays.
+// How much of each tile of 4×4 pixels another picture is.
+struct TileShares {
+    ivec2 low{0}; // the first tile's place
+    Image<float> shares;
+};
+
+// Into the layers a share of other ones, with the variances of such a mean. Depth stays.
 void blend_layers(Layers& layers, const Layers& other, float share);
+void blend_layers(Layers& layers, const Layers& other, const TileShares& shares);
 
 // From the variances of the layers, which stand on `freedom` differences between batches (batches - 1, summed over
 // pictures combined). A layer that is black and free of noise has no error.

@@ -66,17 +66,21 @@ TEST(Allotment, DoesNotTrustTilesThatShowNoNoise) {
     EXPECT_EQ(least.samples.at(0, 0), 6);
 }
 
-TEST(Allotment, BecomesFactors) {
+TEST(Allotment, IsRenderedInPartsThatAddUp) {
     const Allotment allotment = allot(two_tiles(1, 9), 1, {0.0201, endless}, 1, 2);
-    const auto whole = factors_of(allotment, 1, 2), half = factors_of(allotment, 0.5, 2),
-               none = factors_of(allotment, 0, 2);
-    EXPECT_EQ(whole->at({0, 0}), 50);
-    EXPECT_EQ(whole->at({1, 0}), 150);
-    EXPECT_EQ(half->at({1, 0}), 75);
-    EXPECT_EQ(none->at({1, 0}), 1);
+    const AllottedPart whole = part_of(allotment, 0, 1, 2), half = part_of(allotment, 0, 0.5, 2),
+                       rest = part_of(allotment, 0.5, 1, 2), least = part_of(allotment, 0, 1e-6, 2);
+    EXPECT_EQ(whole.factors->at({0, 0}), 50);
+    EXPECT_EQ(whole.factors->at({1, 0}), 150);
+    EXPECT_EQ(half.factors->at({1, 0}), 75);
+    EXPECT_EQ(rest.factors->at({1, 0}), 75);
+    EXPECT_FLOAT_EQ(rest.shares.shares.at(1, 0), 0.5f);
+    EXPECT_EQ(least.factors->at({1, 0}), 1);
+    EXPECT_FLOAT_EQ(least.shares.shares.at(1, 0), 1.0f);
+    EXPECT_EQ(part_of(allotment, 1e-6, 2e-6, 2).factors->at({1, 0}), 0) << "rounding up has given it already";
 
     View view = plain_view({8, 4}, 2);
-    view.allotted = whole;
+    view.allotted = whole.factors;
     EXPECT_EQ(samples_of(view, {7, 3}), 300);
 }
 

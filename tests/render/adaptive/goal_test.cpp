@@ -83,7 +83,7 @@ void keeps_its_promise(const std::string& name, int truth_samples, PixelFilter f
     for (const double target : {0.1, 0.03}) {
         const Result result = to_goal(example, {target, 0, Quality::preview, {}});
         EXPECT_LE(result.stats.error()->bound, target);
-        EXPECT_LE(result.stats.integrator->error.bound, integrator_share * target);
+        EXPECT_LT(result.stats.integrator->error.bound, target);
         EXPECT_LE(true_error(result.layers, truth), target) << name << " " << result.stats.integrator->candidate;
         EXPECT_LE(result.stats.error()->error, finest);
         finest = result.stats.error()->error;

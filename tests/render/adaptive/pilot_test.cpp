@@ -1,7 +1,8 @@
 // The few pixels that tell how wrong a picture will be.
+#include "base/random.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
-#include "render/adaptive/pilot.h"
+#include "render/adaptive/scout.h"
 #include "scene/light.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
@@ -12,6 +13,9 @@
 #include "render/adaptive/to_target.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
 
 namespace tyndall::test {
 namespace {
@@ -25,9 +29,15 @@ View view_of(ivec2 size) {
     return view;
 }
 
-Pilot pilot_of(const View& view, const Snapshot& snapshot) {
-    const Settings truth = truth_of(Settings{});
-    return make_pilot(find_mode("march"), view, snapshot, &truth, plain, [] { return false; });
+Settings truth() { return truth_of(Settings{}); }
+
+Pilot pilot_of(const View& view, const Snapshot& snapshot, TileChances chances, uint32_t salt = 0) {
+    const Settings exact = truth();
+    return make_pilot(main_mode(), view, snapshot, &exact, std::move(chances), salt, plain);
+}
+
+std::shared_ptr<const Scout> scout_of(const View& view, const Snapshot& snapshot) {
+    return make_scout(main_mode(), view, snapshot, {"", settings_for(Quality::draft)}, plain, steady_seconds);
 }
 
 // As the march, but twice as bright within 6 cm of the place.
@@ -49,50 +59,120 @@ Mode bright_beside(vec3 place) {
     return mode;
 }
 
-TEST(Pilot, TakesTilesAllOverThePictureAndThoseWithALamp) {
-    const View view = view_of({640, 360});
-    Light beside = point_light({9, 0, 0}), before = point_light({0.3f, -0.7f, 0});
-    const Pilot pilot = pilot_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {beside, before}));
-    EXPECT_EQ(pilot.corners.size(), size_t{max_pilot_tiles});
-    EXPECT_EQ(pilot.tiles, 160 * 90);
-    ASSERT_EQ(pilot.lamp_tiles, 1u) << "the other one is out of the picture";
-    const ivec2 lamp(*pixel_of(view.camera, view.size, before.position));
-    EXPECT_EQ(pilot.corners[0], lamp / 4 * 4);
-    double stood_for = 0;
-    for (size_t tile = 0; tile < pilot.corners.size(); ++tile) stood_for += tiles_stood_for(pilot, tile);
-    EXPECT_NEAR(stood_for, pilot.tiles, 1e-6);
+// Sums of a function of tiles, estimated from drawings, come out right on the average.
+TEST(TileChances, DrawnTilesStandForAll) {
+    TileChances tiles{{2, 1}, {12, 10}, {}};
+    for (int i = 0; i < 120; ++i) tiles.chances.push_back((1.0 + i % 7 * (i % 7)) / 1668);
+    tiles.chances[50] += 1 - std::accumulate(tiles.chances.begin(), tiles.chances.end(), 0.0);
+    const auto value = [](ivec2 corner) { return 1.0 + corner.x * corner.y % 11; };
+    double all = 0, mean = 0, squares = 0;
+    for (int i = 0; i < 120; ++i) all += value(4 * (tiles.low + ivec2(i % 12, i / 12)));
+    constexpr int drawings = 400;
+    for (uint32_t seed = 0; seed < drawings; ++seed) {
+        double sum = 0;
+        for (const DrawnTile& tile : draw_tiles(tiles, 20, seed)) {
+            EXPECT_LE(tile.chance, 1);
+            sum += tile.stands_for * value(tile.corner);
+        }
+        mean += sum / drawings, squares += sum * sum / drawings;
+    }
+    EXPECT_NEAR(mean, all, 4 * std::sqrt((squares - mean * mean) / drawings));
+    EXPECT_EQ(draw_tiles(tiles, 200, 1).size(), 120u) << "more than there are";
+}
+
+TEST(TileChances, ALikelyTileIsDrawnForCertain) {
+    TileChances tiles{{0, 0}, {10, 10}, std::vector<double>(100, 0.5 / 99)};
+    tiles.chances[37] = 0.5;
+    for (uint32_t seed = 0; seed < 20; ++seed) {
+        const std::vector<DrawnTile> drawn = draw_tiles(tiles, 16, seed);
+        const auto found = std::ranges::find(drawn, ivec2(28, 12), &DrawnTile::corner);
+        ASSERT_NE(found, drawn.end());
+        EXPECT_EQ(found->stands_for, 1);
+    }
+}
+
+TEST(TileChances, FollowNoiseAndLight) {
+    const View view = view_of({160, 90});
+    const vec3 place(0.3f, -0.7f, 0);
+    const auto scout = scout_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)}));
+    const TileChances tiles = chances_in(scout->layers);
+    EXPECT_NEAR(std::accumulate(tiles.chances.begin(), tiles.chances.end(), 0.0), 1, 1e-9);
+    EXPECT_GE(*std::ranges::min_element(tiles.chances), 0.25 / static_cast<double>(tiles.chances.size()) - 1e-12);
+    const ivec2 lamp = ivec2(*pixel_of(view.camera, view.size, place)) / 4;
+    EXPECT_GT(tiles.chances[static_cast<size_t>(lamp.y) * tiles.size.x + lamp.x], 1.0 / drawing_tiles);
 }
 
 TEST(Pilot, ATinyPictureIsFollowedWhole) {
+    const View view = view_of({3, 2});
     const Pilot pilot =
-        pilot_of(view_of({3, 2}), snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})}));
-    EXPECT_EQ(pilot.corners.size(), 1u);
-    EXPECT_EQ(pilot.lamp_tiles, 0u) << "no tile is left that others could stand for";
+        pilot_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})}), even_chances(view));
+    EXPECT_EQ(pilot.tiles.size(), 1u);
+    EXPECT_TRUE(pilot.is_full());
 }
 
-// A pixel of 14400 that no other tile would show: its squared error counts as that of one pixel.
-TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
+TEST(Pilot, GrowsByIndependentDrawings) {
     const View view = view_of({160, 90});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0.3f, -0.7f, 0})});
+    Pilot pilot = pilot_of(view, snapshot, even_chances(view));
+    EXPECT_EQ(pilot.tiles.size(), drawing_tiles);
+    grow(pilot), grow(pilot);
+    EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
+    double stood_for = 0;
+    for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
+    EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
+    const Pilot other = pilot_of(view, snapshot, even_chances(view), 1);
+    EXPECT_NE(other.tiles[0].corner, pilot.tiles[0].corner);
+    EXPECT_NE(other.view.seed, pilot.view.seed);
+}
+
+// The whole error in the 14400th part of a picture, which few tiles drawn evenly would show.
+TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
+    const View view = view_of({96, 54});
     const vec3 place(0.3f, -0.7f, 0);
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)});
-    const Pilot pilot = pilot_of(view, snapshot);
-    const Settings settings = truth_of(Settings{});
-    const Measured right = measure(pilot, find_mode("march"), snapshot, settings, plain, steady_seconds);
-    const Measured wrong = measure(pilot, bright_beside(place), snapshot, settings, plain, steady_seconds);
-    EXPECT_LT(right.integrator.bound, 1e-8);
-    EXPECT_GT(wrong.integrator.value, 100 * right.integrator.bound);
-    EXPECT_GT(wrong.integrator.bound, wrong.integrator.value);
+    const Pilot pilot = pilot_of(view, snapshot, chances_in(scout_of(view, snapshot)->layers));
+    const Measured right = measure(pilot, main_mode(), truth(), steady_seconds);
+    const Measured wrong = measure(pilot, bright_beside(place), truth(), steady_seconds);
+    EXPECT_EQ(right.integrator.bound, 0);
 
-    // Against whole pictures, which differ there only.
-    View centers = view;
-    centers.filter = PixelFilter::center;
+    // Against whole pictures through the same rays, which differ there only.
     FrameStats stats;
-    const Layers one = render_frame(find_mode("march"), centers, snapshot, settings, plain, stats);
-    const Layers other = render_frame(bright_beside(place), centers, snapshot, settings, plain, stats);
-    size_t differing = 0;
-    for (size_t i = 0; i < one.color.pixels.size(); ++i) differing += one.color.pixels[i] != other.color.pixels[i];
-    EXPECT_GT(differing, 0u);
-    EXPECT_LE(differing, 16u);
+    const View even = even_view(view, 16, 1);
+    const Layers one = render_frame(main_mode(), even, snapshot, truth(), plain, stats);
+    const Layers other = render_frame(bright_beside(place), even, snapshot, truth(), plain, stats);
+    double squares = 0, mean = 0, differing = 0;
+    for (size_t i = 0; i < one.inscatter.pixels.size(); ++i) {
+        const dvec3 off = dvec3(other.inscatter.pixels[i]) - dvec3(one.inscatter.pixels[i]);
+        squares += glm::dot(off, off) / 3, mean += one.inscatter.pixels[i].x, differing += glm::dot(off, off) > 0;
+    }
+    EXPECT_GT(differing, 0);
+    EXPECT_LE(differing, 16);
+    const double error = squares * static_cast<double>(one.inscatter.pixels.size()) / (mean * mean);
+    EXPECT_GE(wrong.integrator.bound, error);
+    EXPECT_LE(wrong.integrator.value, 4 * error);
+}
+
+// Bounds that are to hold with 97.5 %, for sums of which few tiles hold most: a tenth of them, other ones each time.
+TEST(Pilot, BoundsHoldWhereFewTilesHoldMost) {
+    const TileChances tiles{{0, 0}, {40, 40}, std::vector<double>(1600, 1.0 / 1600)};
+    int held = 0;
+    constexpr int times = 1000;
+    for (uint32_t seed = 0; seed < times; ++seed) {
+        const auto off_at = [seed](ivec2 corner) {
+            const uint32_t x = static_cast<uint32_t>(corner.x), y = static_cast<uint32_t>(corner.y);
+            return to_unit(hash(x, y, seed)) < 0.1 ? 1.0 : 0.02;
+        };
+        double all = 0;
+        for (int i = 0; i < 1600; ++i) all += off_at(4 * ivec2(i % 40, i / 40)) / 1600;
+        const std::vector<DrawnTile> drawn = draw_tiles(tiles, 64, seed);
+        std::vector<Sums> sums;
+        for (const DrawnTile& tile : drawn) {
+            const double off = off_at(tile.corner);
+            sums.push_back({{16 * off, 0}, {16 * off * off, 0}, 16, 16});
+        }
+        held += squared_error(sums, drawn, of_integrator).bound >= all;
+    }
+    EXPECT_GE(held, times * 965 / 1000);
 }
 
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.

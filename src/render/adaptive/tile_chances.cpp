@@ -1,0 +1,85 @@
+#include "render/adaptive/tile_chances.h"
+
+#include "base/random.h"
+#include "trace/view.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int tile_side = 4;
+constexpr uint32_t use_tiles = 0x9170u;
+
+TileChances tiles_between(ivec2 low, ivec2 high) {
+    TileChances tiles{low / tile_side, (high - 1) / tile_side + 1 - low / tile_side, {}};
+    tiles.chances.assign(static_cast<size_t>(tiles.size.x) * tiles.size.y, 0.0);
+    return tiles;
+}
+
+double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
+
+// Adds `share`, spread over tiles as a function of pixels is; evenly where that is 0 everywhere.
+template<class Function> void add_share(const Layers& picture, double share, const Function& at, TileChances& tiles) {
+    std::vector<double> sums(tiles.chances.size(), 0.0);
+    double all = 0;
+    for (int y = 0; y < picture.size.y; ++y)
+        for (int x = 0; x < picture.size.x; ++x) {
+            const ivec2 tile = (picture.low + ivec2(x, y)) / tile_side - tiles.low;
+            const double value = at(x, y);
+            sums[static_cast<size_t>(tile.y) * tiles.size.x + tile.x] += value, all += value;
+        }
+    const double even = share / static_cast<double>(sums.size());
+    const bool spread = all > 0 && std::isfinite(all);
+    for (size_t i = 0; i < sums.size(); ++i) tiles.chances[i] += spread ? share * sums[i] / all : even;
+}
+}
+
+TileChances even_chances(const View& view) {
+    const bool cropped = view.crop_low != view.crop_high;
+    TileChances tiles = cropped ? tiles_between(view.crop_low, view.crop_high) : tiles_between(ivec2(0), view.size);
+    std::ranges::fill(tiles.chances, 1 / static_cast<double>(tiles.chances.size()));
+    return tiles;
+}
+
+TileChances chances_in(const Layers& picture) {
+    TileChances tiles = tiles_between(picture.low, picture.low + picture.size);
+    const auto square = [](vec3 value) { return channel_mean(value * value); };
+    add_share(
+        picture, 0.25, [](int, int) { return 0.0; }, tiles);
+    add_share(
+        picture, 0.25, [&](int x, int y) { return square(picture.color.at(x, y)); }, tiles);
+    add_share(
+        picture, 0.25, [&](int x, int y) { return square(picture.inscatter.at(x, y)); }, tiles);
+    add_share(
+        picture, 0.125, [&](int x, int y) { return channel_mean(picture.variance.at(x, y)); }, tiles);
+    add_share(
+        picture, 0.125, [&](int x, int y) { return channel_mean(picture.inscatter_variance.at(x, y)); }, tiles);
+    return tiles;
+}
+
+std::vector<DrawnTile> draw_tiles(const TileChances& tiles, size_t count, uint32_t seed) {
+    std::vector<DrawnTile> drawn;
+    const size_t all = tiles.chances.size();
+    const auto corner = [&](size_t i) {
+        const int tile = static_cast<int>(i);
+        return (tiles.low + ivec2(tile % tiles.size.x, tile / tiles.size.x)) * tile_side;
+    };
+    if (count >= all) {
+        for (size_t i = 0; i < all; ++i) drawn.push_back({corner(i)});
+        return drawn;
+    }
+    // One mark in each of `count` even parts of the chances; a tile is drawn when a mark falls into its part.
+    const double shift = to_unit(hash(seed, use_tiles));
+    double sum = 0;
+    for (size_t i = 0; i < all; ++i) {
+        const double before = sum * static_cast<double>(count) - shift;
+        sum += tiles.chances[i];
+        const double expected = tiles.chances[i] * static_cast<double>(count);
+        const double after =
+            i + 1 == all ? static_cast<double>(count) - shift : sum * static_cast<double>(count) - shift;
+        const double chance = std::min(expected, 1.0);
+        if (std::ceil(after) > std::ceil(before)) drawn.push_back({corner(i), chance, 1 / chance});
+    }
+    return drawn;
+}
+}

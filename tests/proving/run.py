@@ -1,0 +1,181 @@
+"""The proving ground: scenes drawn by chance, each rendered to an error that was asked for, held against the truth.
+
+    run.py --seeds 1-20 [--targets .05,.02] [--modes march,auto] [--program build/release/tyndall] [-o DIR] [--jobs 2] [--ladder]
+
+Writes DIR/proving.json, a row a promise, and prints the table and what it adds up to. --ladder also looks for the cheapest
+plain run that gets to each target. Ends with 1 when promises are broken more often than they may be."""
+import argparse
+import concurrent.futures
+import json
+import pathlib
+import shutil
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from families import draw, family_of
+from pictures import error_against, find_truth, load_truth, render, save_truth
+from scene_files import write_scene
+
+SOURCE = pathlib.Path(__file__).parents[2]
+TRUTH_SECONDS, ATTEMPTS = 120, 6  # of processor time: a minute on two cores
+SLACK = 1.05  # of the error asked for
+LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 8), ("preview", 16), ("final", 16), ("final", 32),
+          ("final", 64), ("final", 128), ("final", 256), ("final", 512), ("reference", 64), ("reference", 256),
+          ("reference", 1024)]
+
+
+def scene_with_truth(seed, program, folder, wanted, truths):
+    """The first drawing of a seed whose truth can be had: scene file, frame, truth and how many drawings went before.
+    Truths are kept in a folder, where there is one."""
+    known = truths / f"{seed}.npz" if truths else None
+    if known and known.exists():
+        truth, attempt = load_truth(known)
+        drawn, size = draw(seed, attempt)
+        return write_scene(drawn, size, folder / f"{seed}.{attempt}", program), drawn.frame, truth, attempt
+    for attempt in range(ATTEMPTS):
+        drawn, size = draw(seed, attempt)
+        place = folder / f"{seed}.{attempt}"
+        scene = write_scene(drawn, size, place, program)
+        plain = write_scene(drawn.plain, size, place / "plain", program) if drawn.plain else scene
+        truth = find_truth(program, plain, drawn.frame, place, wanted, TRUTH_SECONDS)
+        if truth:
+            if known:
+                save_truth(truth, attempt, known)
+            return scene, drawn.frame, truth, attempt
+    return None, 1, None, ATTEMPTS
+
+
+def cheapest_plain(program, scene, frame, truth, folder, targets):
+    """Processor seconds of the cheapest run of the ladder that gets to each target, the cheapest of all first."""
+    found, first = {}, None
+    for quality, samples in LADDER:
+        run = render(program, scene, folder / "plain.exr", ["--mode", "march", "--quality", quality, "--samples", samples,
+                     "--frames", frame])
+        if run.layers is None:
+            break
+        first = first or run.processor
+        error = error_against(truth, run.layers)
+        for target in targets:
+            if error <= target and run.processor < found.get(target, np.inf):
+                found[target] = run.processor
+        if len(found) == len(targets):
+            break
+    return found, first
+
+
+def prove(seed, options):
+    """Rows of one seed."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"proving_{seed}_"))
+    try:
+        scene, frame, truth, redrawn = scene_with_truth(seed, options.program, folder, 0.2 * min(options.targets),
+                                                       options.truths)
+        common = {"seed": seed, "family": family_of(seed).__name__, "redrawn": redrawn}
+        if truth is None:
+            return [common | {"refused": True}]
+        common |= {"truth_error": truth.error(), "truth_seconds": truth.seconds}
+        plain, cheapest = ({}, None) if not options.ladder else cheapest_plain(options.program, scene, frame, truth,
+                                                                              folder, options.targets)
+        rows = []
+        for target in options.targets:
+            for mode in options.modes:
+                run = render(options.program, scene, folder / "asked.exr",
+                             ["--mode", mode, "--target-error", target, "--frames", frame], timeout=options.timeout)
+                told = run.stats.get("frames", [{}])[0] if run.stats else {}
+                rows.append(common | {
+                    "mode": mode, "asked": target, "exit": run.exit_code, "said": run.said[:300],
+                    "promised": told.get("achieved_error"), "bound": told.get("error_bound"), "chosen": run.stats.get("mode"),
+                    "achieved": error_against(truth, run.layers) if run.layers else None,
+                    "candidate": told.get("candidate"), "samples": told.get("samples"), "seconds": run.wall,
+                    "processor": run.processor, "forecast": told.get("forecast_seconds"),
+                    "memory": run.stats.get("totals", {}).get("peak_memory_bytes"),
+                    "plain": plain.get(target), "cheapest": cheapest})
+        return rows
+    finally:
+        if not options.keep:
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def met(row):
+    return row["exit"] == 0 and row["achieved"] is not None and row["achieved"] <= SLACK * row["asked"]
+
+
+def bound_holds(row):
+    return row["achieved"] is not None and row["bound"] is not None and row["achieved"] <= SLACK * row["bound"]
+
+
+def table(rows):
+    number = lambda value, width=7: f"{value:{width}.4f}" if isinstance(value, float) else " " * (width - 1) + "-"
+    lines = []
+    for row in rows:
+        if row.get("refused"):
+            lines.append(f"{row['seed']:6d} {row['family']:12s} no truth in {TRUTH_SECONDS} s")
+            continue
+        marks = ("" if met(row) else "  not met") + ("" if row["bound"] is None or bound_holds(row) else "  BOUND BROKEN")
+        lines.append(f"{row['seed']:6d} {row['family']:12s} {row['mode']:6s} asked {row['asked']:.3f} said {number(row['promised'])}"
+                     f" at most {number(row['bound'])} is {number(row['achieved'])} exit {row['exit']}"
+                     f" {row['samples'] or 0:6d} samples {row['processor']:7.2f} s"
+                     + (f" (plain {number(row['plain'], 6)} s)" if row["plain"] else "") + f" {row['candidate'] or ''}{marks}")
+    return "\n".join(lines)
+
+
+def summary(rows):
+    """What is judged, as numbers."""
+    runs = [row for row in rows if not row.get("refused")]
+    answered = [row for row in runs if row["achieved"] is not None]
+    refusals = [row for row in runs if row["exit"] != 0]
+    families = sorted({row["family"] for row in runs})
+    broken = [row for row in answered if row["exit"] == 0 and not met(row)]
+    false = [row for row in answered if row["bound"] is not None and not bound_holds(row)]
+    worked = [row for row in answered if row["cheapest"] and row["plain"] and row["plain"] > 1.2 * row["cheapest"]]
+    share = lambda part, whole: round(len(part) / max(len(whole), 1), 4)
+    ratio = lambda top, low, of: round(float(np.median([row[top] / row[low] for row in of])), 3) if of else None
+    return {
+        "scenes": len({row["seed"] for row in runs}), "without_truth": len(rows) - len(runs),
+        "redrawn": len({row["seed"] for row in rows if row["redrawn"]}), "runs": len(runs),
+        "met": share([row for row in runs if met(row)], runs), "bound_true": share([r for r in answered if r not in false], answered),
+        "refused": share(refusals, runs), "bound_by_achieved": ratio("bound", "achieved", [
+            row for row in answered if row["bound"] and row["achieved"]]),
+        "refused_by_family": {f: share([r for r in refusals if r["family"] == f], [r for r in runs if r["family"] == f])
+                              for f in families if any(r["family"] == f for r in refusals)},
+        "broken": share(broken, runs), "families_broken": sorted({row["family"] for row in broken + false}),
+        "achieved_by_asked": ratio("achieved", "asked", worked), "processor_by_plain": ratio("processor", "plain", worked),
+        "seconds": round(sum(row["seconds"] for row in runs), 1)}
+
+
+def numbers(text):
+    first, _, last = text.partition("-")
+    return list(range(int(first), int(last or first) + 1))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=lambda text: [n for part in text.split(",") for n in numbers(part)], required=True)
+    parser.add_argument("--targets", type=lambda text: [float(t) for t in text.split(",")], default=[0.05, 0.02])
+    parser.add_argument("--modes", type=lambda text: text.split(","), default=["march", "auto"])
+    parser.add_argument("--program", default=SOURCE / "build/release/tyndall")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("proving"))
+    parser.add_argument("--jobs", type=int, default=1, help="scenes at once; each takes two threads")
+    parser.add_argument("--ladder", action="store_true")
+    parser.add_argument("--timeout", type=float, default=600)
+    parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
+    parser.add_argument("--keep", action="store_true", help="keep the scenes")
+    options = parser.parse_args()
+    for folder in filter(None, (options.output, options.truths)):
+        folder.mkdir(parents=True, exist_ok=True)
+    start, rows = time.monotonic(), []
+    with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
+        for done in concurrent.futures.as_completed([pool.submit(prove, seed, options) for seed in options.seeds]):
+            rows += (done := done.result())
+            print(table(done), flush=True)
+            (options.output / "proving.json").write_text(json.dumps(rows, indent=1))
+    result = summary(rows)
+    print(json.dumps(result, indent=1))
+    print(f"took {time.monotonic() - start:.0f} s")
+    sys.exit(0 if result["met"] >= 0.97 and result["bound_true"] >= 0.97 and result["refused"] <= 0.05 else 1)
+
+
+if __name__ == "__main__":
+    main()
