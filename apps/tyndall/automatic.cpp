@@ -7,6 +7,9 @@
 
 namespace tyndall {
 namespace {
+// Of what the frames would take without a plan: what looking for a quicker way may take.
+constexpr double planning_share = 0.05;
+
 // The mode of a frame that --mode auto has rendered, for the same goal; null where there is none.
 const Mode* mode_before(const RenderRequest& request) {
     const std::string file = frame_name(request.output, request.frames[0]);
@@ -40,7 +43,8 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
     const View view = view_of(scene, request, request.settings, request.frames[0]);
     const Goal goal{request.target_error, request.time_budget, request.quality};
     const auto plan_with = [&](std::span<const Mode> candidates) {
-        return make_plan(candidates, view, first, request.settings, goal, control);
+        return make_plan(candidates, view, first, request.settings, goal, control,
+                         planning_share * static_cast<double>(request.frames.size()));
     };
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
     if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was

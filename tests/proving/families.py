@@ -188,7 +188,7 @@ def soft_lamps(c):
 def keyhole(c):
     """A dark room into which light falls through holes of less than a thousandth of a wall."""
     width, height, depth = c.uniform(3, 12), c.uniform(2.5, 6), c.uniform(3, 12)
-    side = math.sqrt(width * height * c.log(2e-5, 9e-4))
+    side = math.sqrt(width * height * c.log(1e-4, 9e-4))
     holes = []
     for _ in range(c.choice([1, 1, 2, 3])):
         x, y = c.uniform(-0.3, 0.3) * width, c.uniform(0.3, 0.8) * height
@@ -201,14 +201,14 @@ def keyhole(c):
     room = quads([[corner[i] for i in face] for face in
                   [(0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]])  # floor, ceiling, left, right
     low, high = math.radians(c.uniform(5, 35)), math.radians(c.uniform(-25, 25))
-    light = ({"type": "sun", "direction": [math.sin(high), -math.sin(low), math.cos(low)], "intensity": 1000,
+    light = ({"type": "sun", "direction": [math.sin(high), -math.sin(low), math.cos(low)], "intensity": c.log(30, 300),
               "angle": c.choice([0, 0.27])} if c.happens(0.6)
              else c.spot((0, height * c.uniform(0.5, 1.2), -depth * c.uniform(0.8, 2)), (holes[0][0], holes[0][1], -depth / 2),
-                         30 * depth, c.choice([0, 0.05])))
+                         4 * depth, c.choice([0, 0.05])))
     return Drawn(c.camera((c.uniform(-0.4, 0.4) * width, c.uniform(0.3, 0.7) * height, depth * c.uniform(0.3, 0.48)),
                           (0, 0.4 * height, -0.2 * depth)),
                  [light], [c.fog((-width / 2, 0, -depth / 2), (width / 2, height, depth / 2), c.log(0.2, 3))],
-                 [Mesh(Material(c.color(0.1, 0.7)), np.concatenate([wall, room]))], ambient=c.choice([0, 0, 1e-3]))
+                 [Mesh(Material(c.color(0.1, 0.7)), np.concatenate([wall, room]))], ambient=c.log(0.003, 0.1))
 
 
 def cathedral(c):
@@ -366,7 +366,7 @@ def street(c):
         high = c.uniform(3, 7)
         parts.append(cylinder((side, 0, z), (side, high, z), 0.06, 8))
         parts.append(box((side - 0.3, high, z - 0.3), (side + 0.3, high + 0.1, z + 0.3)))
-        lights.append(c.point_light((side, high - 0.25, z), width, c.choice([0, 0.05, 0.15])))
+        lights.append(c.point_light((side * 0.93, high - 0.25, z), width, c.choice([0, 0.05, 0.15])))
     for side in (-1, 1):
         x = side * width
         parts.append(box((min(x, x + side), 0, -length), (max(x, x + side), c.uniform(5, 15), length * 0.3)))

@@ -127,10 +127,10 @@ std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashe
 double reference_seconds(const Shot& shot, ReferenceSamples samples) {
     const std::shared_ptr<const Choice> choice = choice_for(shot, fresh(shot.snapshot), goal_of(shot, samples));
     const Measured& measured = choice->measured;
-    if (samples.count > 0) return samples.count * choice->truth_seconds;
+    if (samples.count > 0) return samples.count * choice->pilot->truth_seconds();
     const double needed = std::pow(measured.sample.value / (2 * samples.noise * samples.noise), 1 / choice->power);
     const double quick = std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);
-    return 2 * (quick + exact_samples * (measured.sample_seconds + choice->truth_seconds));
+    return 2 * (quick + exact_samples * (measured.sample_seconds + choice->pilot->truth_seconds()));
 }
 
 Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes& files) {

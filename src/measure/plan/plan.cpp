@@ -84,7 +84,7 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
 }
 
 Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
-               Goal goal, const TermControl& control) {
+               Goal goal, const TermControl& control, double share) {
     if (!goal.clock) goal.clock = steady_seconds;
     Plan plan{goal, {}, settings, {}, {}};
     const auto part = [&](double from, double to) {
@@ -94,17 +94,19 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
     };
     const double start = goal.clock();
     const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
-    plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
+    if (share == infinity) plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
     plan.settings = without_needless(plan.terms, settings);
     const bool path_is_free = settings.path.orders == settings_for(goal.quality).path.orders;
     if (plan.settings.fluence.orders < 2 && path_is_free) plan.settings.path.orders = 1; // as all others
     plan.terms_seconds = goal.clock() - start;
 
     const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
-    Contest contest = hold_contest(modes, view, snapshot, plan.settings, settings, goal, options);
+    if (share == infinity) goal.wanted = std::make_shared<const Settings>(settings);
+    Contest contest = hold_contest(modes, view, snapshot, plan.settings, goal, share, options);
     plan.chosen = contest.best(), plan.contest_seconds = contest.seconds;
     plan.standings = standings_of(modes, contest, view, snapshot, goal);
-    if (!snapshot.media.empty()) plan.terms.push_back(history_term(view, snapshot, plan.chosen, wanted, control));
+    if (share == infinity && !snapshot.media.empty())
+        plan.terms.push_back(history_term(view, snapshot, plan.chosen, wanted, control));
     part(0.9, 1)(1);
     return plan;
 }

@@ -24,9 +24,10 @@ struct Plan {
 };
 
 // One of these modes, which must outlive it. Throws Error (internal) when cancelled. `view` is the picture's; settings
-// are those of goal.quality but for rows set on purpose, which are kept.
+// are those of goal.quality but for rows set on purpose, which are kept. A plan may cost as much as it likes, or
+// `share` of what the main mode would take or of the seconds there are: then terms are not measured and all are kept.
 Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
-               Goal goal, const TermControl& control = {});
+               Goal goal, const TermControl& control = {}, double share = infinity);
 
 std::string plan_text(const Plan& plan);
 }

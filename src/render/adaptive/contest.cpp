@@ -8,14 +8,13 @@
 
 namespace tyndall {
 namespace {
-constexpr int contest_drawings = 2; // of tiles that all are held against the truth on
-
 // A mode with candidates yet to measure.
 struct Runner {
     const Mode* mode;
     std::vector<Candidate> candidates;
     size_t next = 0;
-    double integrator = infinity; // squared, of the last one measured
+    double seconds = 0;           // the last one took to be measured
+    double integrator = infinity; // squared, of it
     int idle = 0;                 // candidates since one was better than that before it
 
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
@@ -25,7 +24,7 @@ struct Runner {
 double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
     const double left = error * error - contender.integrator().bound;
-    if (!(left > 0)) return infinity;
+    if (!(left > 0) || !choice.scout) return infinity;
     const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
     const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
     return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
@@ -59,12 +58,37 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
     return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
 }
 
-std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality) {
+// All modes but the main one, and those whose error is noise only where they are needed: they are never the quickest.
+std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
-        if (error_can_be_told(mode) && (settings.fluence.orders < 2 || mode.adds_fluence))
+        if (error_can_be_told(mode) && mode.name != main_mode().name && (noisy || !error_is_noise(mode)) &&
+            (settings.fluence.orders < 2 || mode.adds_fluence))
             runners.push_back({&mode, candidates_of(mode, settings, quality)});
     return runners;
+}
+
+// The winner alone keeps what it has prepared, which may be large.
+void add(Contender contender, const Goal& goal, Contest& contest) {
+    const bool wins = contest.contenders.empty() || beats(contender, contest.best(), goal);
+    if (!wins) contender.choice.measured.prepared = nullptr;
+    if (wins && !contest.contenders.empty()) contest.contenders[contest.winner].choice.measured.prepared = nullptr;
+    contest.contenders.push_back(std::move(contender));
+    if (wins) contest.winner = contest.contenders.size() - 1;
+}
+
+// A candidate of another mode, beside the main mode's choice.
+Contender measured_beside(const Choice& main, const Mode& mode, const Candidate& candidate, const Goal& goal) {
+    Contender contender{&mode,
+                        {candidate, measure(*main.pilot, mode, candidate.settings, goal.clock), has_integrator(mode)}};
+    Choice& choice = contender.choice;
+    choice.power = choice.has_integrator ? main.power : 1;
+    choice.pace = main.pace, choice.measured.sample_seconds *= main.pace;
+    choice.scout = main.scout, choice.pilot = main.pilot, choice.scout_variance = main.scout_variance;
+    if (main.scout_variance > 0)
+        choice.noise_ratio = std::max(choice.measured.sample.value / main.scout_variance, 1e-6);
+    predict(contender, goal);
+    return contender;
 }
 }
 
@@ -74,52 +98,37 @@ bool beats(const Contender& a, const Contender& b, const Goal& goal) {
 }
 
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
-                     const Settings& wanted, const Goal& goal, const FrameOptions& options) {
+                     const Goal& goal, double share, const FrameOptions& options) {
     assert(goal.error > 0 || goal.seconds > 0);
     const double start = goal.clock();
-    const Settings truth = truth_of(wanted);
-    const std::shared_ptr<const Scout> scout = make_scout(
-        main_mode(), view, snapshot, candidates_of(main_mode(), settings, goal.quality)[0], options, goal.clock);
-    Pilot pilot = make_pilot(main_mode(), view, snapshot, &truth, chances_in(scout->layers), 0, options);
-    while (pilot.drawings < contest_drawings && !pilot.is_full()) grow(pilot);
-    Look look{main_mode(), scout->candidate.settings, scout->prepared};
-    Measured scouted = measure(pilot, look, goal.clock);
-    const double pace = scout->seconds / scout_samples / std::max(scouted.sample_seconds, 1e-9);
-    scouted.prepare_seconds = scout->prepare_seconds;
-    const double power = spread_power(pilot, main_mode(), scout->candidate.settings, *scout->prepared);
-
     Contest contest;
-    std::vector<Runner> runners = runners_of(modes, settings, goal.quality);
-    size_t all = 0;
-    for (const Runner& runner : runners) all += runner.candidates.size();
+    Contender main{&main_mode(), choose(main_mode(), view, snapshot, settings, goal, start, options)};
+    const Choice first = main.choice;
+    predict(main, goal);
+    const double allowed = share * (goal.seconds > 0 ? goal.seconds : main.seconds), begun = goal.clock();
+    const bool noisy = share == infinity || !main.gets_there() || modes.size() == 1;
+    if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
+
+    std::vector<Runner> runners;
+    if (first.scout) runners = runners_of(modes, settings, goal.quality, noisy);
+    const size_t all = std::max<size_t>(runners.size(), 1);
     while (!runners.empty()) {
         for (Runner& runner : runners) {
-            const Candidate& candidate = runner.candidates[runner.next++];
-            Contender contender{runner.mode, {candidate, {}, has_integrator(*runner.mode)}};
-            Choice& choice = contender.choice;
-            const bool is_scout = runner.mode->name == main_mode().name && candidate.name == scout->candidate.name;
-            choice.measured = is_scout ? scouted : measure(pilot, *runner.mode, candidate.settings, goal.clock);
-            Measured& measured = choice.measured;
-            choice.power = choice.has_integrator ? power : 1;
-            measured.sample_seconds *= pace;
-            choice.scout = scout, choice.truth_seconds = pilot.truth_seconds(), choice.truth = pilot.prepared;
-            if (scouted.sample.value > 0)
-                choice.noise_ratio = std::max(measured.sample.value / scouted.sample.value, 1e-6);
-            predict(contender, goal);
-            measured.prepared = nullptr; // it may be large
-            contest.contenders.push_back(std::move(contender));
-            const size_t here = contest.contenders.size() - 1;
-            if (here == 0 || beats(contest.contenders[here], contest.best(), goal)) contest.winner = here;
+            const double before = goal.clock(), left = allowed - (before - begun);
+            // A finer one takes longer than the one before. Where nothing is known of any mode, one is measured anyway.
+            if (!contest.contenders.empty() && left < 3 * runner.seconds + 1e-9) {
+                runner.next = runner.candidates.size();
+                continue;
+            }
+            add(measured_beside(first, *runner.mode, runner.candidates[runner.next++], goal), goal, contest);
             const Contender& last = contest.contenders.back();
-            runner.note(last.choice.measured.integrator.value);
+            runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.value);
             if (!may_improve(last, runner.idle, contest.best(), goal)) runner.next = runner.candidates.size();
         }
-        size_t left = 0;
-        for (const Runner& runner : runners) left += runner.candidates.size() - runner.next;
-        if (options.progress) options.progress(1 - static_cast<double>(left) / static_cast<double>(all));
         std::erase_if(runners, [](const Runner& runner) { return runner.next >= runner.candidates.size(); });
+        if (options.progress) options.progress(1 - static_cast<double>(runners.size()) / static_cast<double>(all));
     }
-    assert(!contest.contenders.empty());
+    if (contest.contenders.empty()) add({&main_mode(), first}, goal, contest);
     contest.seconds = goal.clock() - start;
     return contest;
 }

@@ -27,10 +27,11 @@ struct Contest {
 // Whether a is the better way to a goal: it gets there, sooner, or comes closer.
 bool beats(const Contender& a, const Contender& b, const Goal& goal);
 
-// Measures candidates of modes from coarse to fine, until finer ones of a mode can only lose. Artistic modes take no
-// part. With an error asked for, the winner is the quickest that gets there, else the most accurate one; with seconds
-// only, the most accurate in that time. Seconds are predicted from a few pixels. `view` is the picture's; candidates
-// are made from `settings`, and held against the truth of `wanted`.
+// Measures candidates of modes from coarse to fine, until finer ones of a mode can only lose, against the truth that
+// the main mode's choice is held against. Artistic modes take no part. With an error asked for, the winner is the
+// quickest that gets there, else the most accurate one; with seconds only, the most accurate in that time. Seconds are
+// predicted from a few pixels. `view` is the picture's; candidates are made from `settings`. What the main mode would
+// take, or the seconds there are, times `share` is all the time that the others may take to be measured.
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
-                     const Settings& wanted, const Goal& goal, const FrameOptions& options);
+                     const Goal& goal, double share, const FrameOptions& options);
 }

@@ -36,24 +36,26 @@ struct Chooser {
     bool systematic = has_integrator(mode);
     Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
 
-    Pilot pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready = {}) const {
-        return make_pilot(systematic ? main_mode() : mode, view, snapshot, systematic ? &truth : nullptr,
-                          std::move(chances), salt, options, std::move(ready));
+    std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready = {}) const {
+        return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
+                                                  systematic ? &truth : nullptr, std::move(chances), salt, options,
+                                                  std::move(ready)));
     }
 
     // Draws more tiles as long as `worth` says that a tighter bound would be.
     Measured measured(Look look, Pilot& pilot, const std::function<bool(const Measured&)>& worth) const {
         Measured result = measure(pilot, look, goal.clock);
-        while (systematic && goal.error > 0 && !pilot.is_full() && worth(result)) {
-            grow(pilot);
+        while (systematic && goal.error > 0 && pilot.can_grow(result.integrator.by_noise) && worth(result)) {
+            grow(pilot, result.integrator.by_noise);
             result = measure(pilot, look, goal.clock);
         }
         return result;
     }
 
     // What a candidate is worth; before is one measured already, which knows how noise falls.
-    Choice choice(const Candidate& candidate, Pilot& pilot, const Choice* before,
+    Choice choice(const Candidate& candidate, std::shared_ptr<Pilot> tiles, const Choice* before,
                   std::shared_ptr<const Scout> scout) const {
+        Pilot& pilot = *tiles;
         const bool scouted = scout && scout->candidate.name == candidate.name;
         Look look{mode, candidate.settings, scouted ? scout->prepared : nullptr};
         if (scouted) look.prepare_seconds = scout->prepare_seconds;
@@ -62,9 +64,10 @@ struct Chooser {
         const auto saves_time = [&](const Measured& measured) {
             if (goal.seconds > 0 || measured.integrator.value >= goal.error * goal.error) return false;
             choice.measured = measured;
-            const double now = seconds_to(goal.error, choice);
+            const double now = choice.seconds_to(goal.error);
             choice.measured.integrator.bound = measured.integrator.value;
-            return now - seconds_to(goal.error, choice) > pilot.seconds / pilot.drawings;
+            return now - choice.seconds_to(goal.error) >
+                   pilot.seconds / (measured.integrator.by_noise ? 1 : pilot.drawings);
         };
         choice.measured = measured(std::move(look), pilot, saves_time);
         choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
@@ -72,18 +75,9 @@ struct Chooser {
         choice.measured.sample_seconds *= choice.pace;
         if (systematic && !before)
             choice.power = spread_power(pilot, mode, candidate.settings, *choice.measured.prepared);
-        choice.truth_seconds = pilot.truth_seconds(), choice.truth = pilot.prepared;
+        choice.pilot = std::move(tiles);
+        choice.scout_variance = before ? before->scout_variance : choice.measured.sample.value;
         return choice;
-    }
-
-    // To prepare and render what gets to the error; infinite where that is out of reach.
-    double seconds_to(double error, const Choice& choice) const {
-        const double left = error * error - choice.measured.integrator.bound;
-        if (!(left > 0) || !choice.scout) return infinity;
-        const Layers& seen = choice.scout->layers;
-        const double pixels = static_cast<double>(seen.size.x) * seen.size.y;
-        return choice.measured.prepare_seconds +
-               choice.spread({left, infinity}, scout_samples).rays / pixels * choice.measured.sample_seconds;
     }
 };
 
@@ -122,6 +116,13 @@ Allotment Choice::spread(const Enough& enough, int unit) const {
     return result;
 }
 
+double Choice::seconds_to(double error) const {
+    const double left = error * error - measured.integrator.bound;
+    if (!(left > 0) || !scout) return infinity;
+    const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
+    return measured.prepare_seconds + spread({left, infinity}, scout_samples).rays / pixels * measured.sample_seconds;
+}
+
 double Choice::expected(double samples) const {
     if (samples < 2) return measured.integrator.value + measured.sample.value;
     if (!scout) return measured.integrator.value + measured.sample.value / std::pow(samples, power);
@@ -131,12 +132,12 @@ double Choice::expected(double samples) const {
 
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options) {
-    const bool timed = goal.seconds > 0;
+    const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
     const auto spent = [&] { return goal.clock() - start; };
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     const std::shared_ptr<const Scout> scout = scout_for(chooser, start);
-    Pilot pilot = chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0);
-    while (timed && !pilot.is_full() && spent() < truth_share * goal.seconds) grow(pilot);
+    const std::shared_ptr<Pilot> pilot = chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0);
+    while (timed && systematic && !pilot->is_full() && spent() < truth_share * goal.seconds) grow(*pilot);
 
     std::optional<Choice> best;
     for (const Candidate& candidate : chooser.candidates) {
@@ -145,8 +146,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         if (!timed) {
             if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;
             const bool room = leaves_room(next, goal.error);
-            const double seconds = chooser.seconds_to(goal.error, next);
-            const bool better = !best || seconds <= chooser.seconds_to(goal.error, *best);
+            const bool better = !best || next.seconds_to(goal.error) <= best->seconds_to(goal.error);
             if (better) best = std::move(next);
             if (room) break;
             continue;
@@ -165,25 +165,35 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     return std::move(*best);
 }
 
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, const Mode& mode, const View& view,
-               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t seed,
-               const FrameOptions& options) {
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds,
+               const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
+               uint32_t salt, const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     const bool shows_noise = !picture.variance.empty();
-    Pilot pilot = chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), seed, choice.truth);
+    const std::shared_ptr<Pilot> pilot = chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), salt,
+                                                       choice.pilot ? choice.pilot->prepared : nullptr);
     Choice result = choice;
     const auto decides = [&](const Measured& measured) {
         const double left = goal.error * goal.error - noise.bound * noise.bound;
         return measured.integrator.value <= left && measured.integrator.bound > left;
     };
     result.measured.integrator =
-        chooser.measured({mode, choice.candidate.settings, choice.measured.prepared}, pilot, decides).integrator;
-    if (goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality)) return result;
+        chooser.measured({mode, choice.candidate.settings, choice.measured.prepared}, *pilot, decides).integrator;
+    const double bound = std::hypot(std::sqrt(result.measured.integrator.bound), noise.bound);
+    if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
+        return result;
+
+    // More samples of this one, of which some are there, or a finer one from nothing.
+    double seconds = result.seconds_to(goal.error) - rendered_seconds;
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
-    const auto falls_short = [&] { return result.measured.integrator.bound >= goal.error * goal.error; };
-    while (falls_short() && next != chooser.candidates.end() && ++next != chooser.candidates.end())
-        result = chooser.choice(*next, pilot, &choice, choice.scout);
+    while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
+        Choice finer = chooser.choice(*next, pilot, &choice, choice.scout);
+        const bool room = leaves_room(finer, goal.error);
+        const double its_seconds = finer.seconds_to(goal.error);
+        if (its_seconds < seconds || (seconds == infinity && room)) seconds = its_seconds, result = std::move(finer);
+        if (room) break;
+    }
     return result;
 }
 }

@@ -7,17 +7,20 @@ namespace tyndall {
 struct Choice {
     Candidate candidate;
     Measured measured;
-    bool has_integrator = false;                // otherwise noise is the only error
-    bool is_truth = false;                      // the candidate is what pictures are held against
-    double power = 1;                           // of the samples by which their variance falls
-    double noise_ratio = 1;                     // its variance of one sample over that of the scout
-    double pace = 1;                            // time of the whole picture over what the pilot made expect
-    double truth_seconds = 0;                   // per sample of the picture, of the light held to be true
-    std::shared_ptr<const Prepared> truth = {}; // prepared
-    std::shared_ptr<const Scout> scout = {};    // null = there was no time for one
+    bool has_integrator = false;             // otherwise noise is the only error
+    bool is_truth = false;                   // the candidate is what pictures are held against
+    double power = 1;                        // of the samples by which their variance falls
+    double noise_ratio = 1;                  // its variance of one sample over that of the scout
+    double pace = 1;                         // time of the whole picture over what the pilot made expect
+    std::shared_ptr<const Scout> scout = {}; // null = there was no time for one
+    std::shared_ptr<Pilot> pilot = {};       // the truth it was held against
+    double scout_variance = 0;               // of one sample of the scout, on the pilot's tiles
 
     // How samples are best spread for an error or a number of rays; by the scout, which there must be.
     Allotment spread(const Enough& enough, int unit) const;
+
+    // To prepare and render what gets to an error; infinite where that is out of reach.
+    double seconds_to(double error) const;
 
     // The squared error to expect of so many samples per pixel, on the average.
     double expected(double samples) const;
@@ -48,9 +51,9 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
               double start, const FrameOptions& options);
 
 // What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
-// candidate was chosen by. Where that is too much for the goal, the first of the finer candidates that leaves enough
-// room, or the finest, takes its place.
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, const Mode& mode, const View& view,
-               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t seed,
-               const FrameOptions& options);
+// candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
+// place: one that gets there sooner than more samples do, of which rendering took `rendered_seconds` so far.
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds,
+               const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
+               uint32_t salt, const FrameOptions& options);
 }

@@ -9,6 +9,7 @@
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace tyndall {
@@ -44,18 +45,19 @@ SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile
 
     // The ratio's change with each tile, were it left out of the sums.
     const double per_product = count / (mean * mean), value = products * per_product;
-    double variance = 0, third = 0;
+    double variance = 0, third = 0, noise = 0;
     for (size_t i = 0; i < sums.size(); ++i) {
         const double weight = tiles[i].stands_for, chance = tiles[i].chance;
         const double change = weight * (per_product * sums[i].products[product] - 2 * value * sums[i].mean / mean +
                                         value * sums[i].count / count);
         variance += (1 - chance) * change * change, third += (1 - chance) * change * change * change;
         // A pixel may be off by as much as it says.
-        variance += chance * weight * weight * per_product * per_product * sums[i].squares[product];
+        const double of_pixels = weight * weight * per_product * per_product * sums[i].squares[product];
+        variance += chance * of_pixels, noise += of_pixels;
     }
     const double lump = variance > 0 ? std::max(third / variance, 0.0) : 0, half = confidence * lump / 2;
     const double bound = std::max(value, 0.0) + confidence * (half + std::sqrt(variance + half * half));
-    return {std::max(value, 0.0), bound >= 0 ? bound : infinity};
+    return {std::max(value, 0.0), bound >= 0 ? bound : infinity, noise > 0.5 * variance};
 }
 
 namespace {
@@ -68,21 +70,32 @@ FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapsh
     return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
 }
 
-// Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where there is
-// no pixel or a sample is not finite.
-void follow_tile(const FrameTracer& tracer, ivec2 corner, std::span<vec3> result) {
-    const ivec2 end = glm::min(corner + tile_side, tracer.view.size);
-    std::ranges::fill(result, vec3(quiet_nan));
-    ivec2 pixels[16];
+// Of a tile, those to follow: all, or one of each four.
+size_t pixels_of(const Pilot& pilot, const DrawnTile& tile, std::span<ivec2> pixels, std::span<size_t> places) {
+    const uint32_t shift = hash(static_cast<uint32_t>(tile.corner.x), static_cast<uint32_t>(tile.corner.y), pilot.seed);
     size_t count = 0;
-    for (int y = corner.y; y < end.y; ++y)
-        for (int x = corner.x; x < end.x; ++x) pixels[count++] = {x, y};
+    for (size_t i = 0; i < 16; ++i) {
+        const int x = static_cast<int>(i % 4), y = static_cast<int>(i / 4);
+        const ivec2 p = tile.corner + ivec2(x, y);
+        if (p.x >= pilot.view.size.x || p.y >= pilot.view.size.y) continue;
+        const bool chosen = x % 2 == static_cast<int>(shift & 1) && y % 2 == static_cast<int>(shift >> 1 & 1);
+        if (tile.chance >= 1 || chosen) pixels[count] = p, places[count++] = i;
+    }
+    return count;
+}
+
+// Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where none is
+// followed or a sample is not finite.
+void follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<const size_t> places,
+                 std::span<vec3> result) {
+    std::ranges::fill(result, vec3(quiet_nan));
+    if (pixels.empty()) return;
     PixelSample samples[16];
     const int all = tracer.view.pixel_samples, half = std::max(all / 2, 1);
     for (int s = 0; s < all; ++s) {
-        trace_samples(tracer, {pixels, count}, s, {samples, count}, {});
-        for (size_t i = 0; i < count; ++i) {
-            vec3* mean = &result[2 * (16 * static_cast<size_t>(s / half) + i)];
+        trace_samples(tracer, pixels, s, {samples, pixels.size()}, {});
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            vec3* mean = &result[2 * (16 * static_cast<size_t>(s / half) + places[i])];
             const bool fresh = s % half == 0;
             const float share = 1 / static_cast<float>(half), kept = samples[i].finite() ? share : quiet_nan;
             mean[0] = (fresh ? vec3(0) : mean[0]) + kept * samples[i].color;
@@ -91,15 +104,32 @@ void follow_tile(const FrameTracer& tracer, ivec2 corner, std::span<vec3> result
     }
 }
 
-// The tiles from `result`'s end on.
-void follow(const FrameTracer& tracer, const Pilot& pilot, std::vector<vec3>& result, size_t count) {
-    const size_t begin = result.size() / pilot_values;
-    result.resize(count * pilot_values);
-    parallel_for(static_cast<int64_t>(count - begin), [&](int64_t i) {
-        if (pilot.options.cancel && *pilot.options.cancel) fail(ExitCode::internal, "render", "cancelled");
+// One pass over the tiles `begin` to `end`, with random numbers of its own, blended into what `before` passes gave.
+void follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size_t end, std::vector<vec3>& result) {
+    View view = tracer.view;
+    if (pass > 0) view.seed = hash(view.seed, static_cast<uint32_t>(pass));
+    const FrameTracer own{
+        view, tracer.snapshot, tracer.scatter, tracer.surfaces, tracer.light_points, tracer.light_depths};
+    result.resize(std::max(result.size(), end * pilot_values));
+    parallel_for(static_cast<int64_t>(end - begin), [&](int64_t i) {
+        if (pilot.cancel && *pilot.cancel) fail(ExitCode::internal, "render", "cancelled");
         const size_t tile = begin + static_cast<size_t>(i);
-        follow_tile(tracer, pilot.tiles[tile].corner, {result.data() + tile * pilot_values, pilot_values});
+        ivec2 pixels[16];
+        size_t places[16];
+        const size_t count = pixels_of(pilot, pilot.tiles[tile], pixels, places);
+        std::array<vec3, pilot_values> values;
+        follow_tile(own, {pixels, count}, {places, count}, values);
+        vec3* mean = result.data() + tile * pilot_values;
+        for (size_t k = 0; k < pilot_values; ++k)
+            mean[k] = pass ? mean[k] + (values[k] - mean[k]) / static_cast<float>(pass + 1) : values[k];
     });
+}
+
+// All passes over all tiles, of which `seen` tiles have had `passes`.
+void follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
+    for (int pass = passes; pass < pilot.passes && seen > 0; ++pass) follow(tracer, pilot, pass, 0, seen, result);
+    for (int pass = 0; pass < pilot.passes && seen < pilot.tiles.size(); ++pass)
+        follow(tracer, pilot, pass, seen, pilot.tiles.size(), result);
 }
 
 std::span<const vec3> values_of(const std::vector<vec3>& all, size_t tile) {
@@ -120,7 +150,9 @@ std::shared_ptr<const Prepared> prepare(const Pilot& pilot, const Mode& mode, co
     return std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));
 }
 
-SquaredError worse(SquaredError a, SquaredError b) { return {std::max(a.value, b.value), std::max(a.bound, b.bound)}; }
+SquaredError worse(SquaredError a, SquaredError b) {
+    return {std::max(a.value, b.value), std::max(a.bound, b.bound), a.bound > b.bound ? a.by_noise : b.by_noise};
+}
 
 // The worse of colour and fog light.
 SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const std::vector<vec3>& own,
@@ -129,8 +161,10 @@ SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const 
     const size_t count = own.size() / pilot_values;
     for (size_t layer = 0; layer < 2; ++layer) {
         std::vector<Sums> sums;
-        for (size_t tile = 0; tile < count; ++tile)
+        for (size_t tile = 0; tile < count; ++tile) {
             sums.push_back(sums_of(values_of(truth, tile), values_of(own, tile), layer));
+            if (pilot.tiles[tile].chance < 1) sums.back().scale(4); // one pixel stands for four
+        }
         result = worse(result, squared_error(sums, {pilot.tiles.data(), count}, product));
     }
     return result;
@@ -140,7 +174,7 @@ SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const 
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
                  std::shared_ptr<const Prepared> prepared) {
-    Pilot pilot{mode, snapshot, options};
+    Pilot pilot{&mode, &snapshot, options.cancel};
     if (truth) pilot.truth_settings = *truth;
     pilot.view = view, pilot.seed = view.seed, pilot.chances = std::move(chances);
     pilot.view.per_light = false, pilot.view.pixel_samples = pilot.view.batches = 2;
@@ -152,22 +186,36 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
     return pilot;
 }
 
-void grow(Pilot& pilot) {
-    const double before = pilot.drawings++, now = pilot.drawings;
-    for (DrawnTile& tile : pilot.tiles) tile.stands_for *= before / now;
-    const uint32_t seed = hash(pilot.view.seed, static_cast<uint32_t>(pilot.drawings));
-    for (DrawnTile tile : draw_tiles(pilot.chances, drawing_tiles, seed)) {
-        const auto same = std::ranges::find(pilot.tiles, tile.corner, &DrawnTile::corner);
-        tile.stands_for /= now;
-        if (same == pilot.tiles.end())
-            pilot.tiles.push_back(tile);
-        else
-            same->stands_for += tile.stands_for;
+double Pilot::samples() const {
+    double count = 0;
+    for (const DrawnTile& tile : tiles) count += tile.chance < 1 ? 4 : 16;
+    return 2 * count * passes;
+}
+
+double Pilot::pixels() const { return 16 * all(); }
+
+void grow(Pilot& pilot, bool by_noise) {
+    const size_t seen = pilot.tiles.size();
+    const int passes = pilot.passes;
+    if (by_noise) {
+        pilot.passes *= 2;
+    } else {
+        const double before = pilot.drawings++, now = pilot.drawings;
+        for (DrawnTile& tile : pilot.tiles) tile.stands_for *= before / now;
+        const uint32_t seed = hash(pilot.view.seed, static_cast<uint32_t>(pilot.drawings));
+        for (DrawnTile tile : draw_tiles(pilot.chances, drawing_tiles, seed)) {
+            const auto same = std::ranges::find(pilot.tiles, tile.corner, &DrawnTile::corner);
+            tile.stands_for /= now;
+            if (same == pilot.tiles.end())
+                pilot.tiles.push_back(tile);
+            else
+                same->stands_for += tile.stands_for;
+        }
     }
     if (!pilot.truth_settings) return;
     const double start = steady_seconds();
-    follow(tracer_of(pilot.mode, pilot.view, pilot.snapshot, *pilot.truth_settings, *pilot.prepared), pilot,
-           pilot.truth, pilot.tiles.size());
+    follow_rest(tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared), pilot,
+                seen, passes, pilot.truth);
     pilot.seconds += steady_seconds() - start;
 }
 
@@ -179,15 +227,16 @@ Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
     }
     const double prepared = clock();
     const View view = view_for(look.mode, pilot);
-    follow(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot, look.values,
-           pilot.tiles.size());
-    look.seconds += clock() - prepared;
+    follow_rest(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
+                look.values.size() / pilot_values, look.passes, look.values);
+    look.passes = pilot.passes, look.seconds += clock() - prepared;
     const std::vector<vec3>& truth = pilot.truth.empty() ? look.values : pilot.truth;
     Measured result;
     result.integrator = error_of(pilot, truth, look.values, of_integrator);
     result.sample = error_of(pilot, truth, look.values, of_sample);
+    result.sample.value *= pilot.passes, result.sample.bound *= pilot.passes; // of means of as many
     result.prepare_seconds = look.prepare_seconds, result.prepared = look.prepared;
-    result.sample_seconds = look.seconds / 2 * pilot.all() / static_cast<double>(pilot.tiles.size());
+    result.sample_seconds = look.seconds / pilot.samples() * pilot.pixels();
     return result;
 }
 
@@ -202,7 +251,7 @@ double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settin
     const auto variance_of_means = [&](int of) {
         view.pixel_samples = 2 * of;
         std::vector<vec3> own;
-        follow(tracer_of(mode, view, pilot.snapshot, settings, prepared), pilot, own, pilot.tiles.size());
+        follow(tracer_of(mode, view, *pilot.snapshot, settings, prepared), pilot, 0, 0, pilot.tiles.size(), own);
         return error_of(pilot, own, own, of_sample).value;
     };
     const double one = variance_of_means(1), many = variance_of_means(samples);

@@ -14,8 +14,8 @@
 #include <span>
 
 namespace tyndall {
-inline constexpr size_t drawing_tiles = 32; // of sixteen pixels, drawn at once
-inline constexpr int max_drawings = 4;
+inline constexpr size_t drawing_tiles = 32; // drawn at once
+inline constexpr int max_drawings = 4, max_passes = 8;
 // Of a tile: for both samples, for each of its pixels, colour and fog light.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 
@@ -25,6 +25,7 @@ using Seconds = std::function<double()>; // a clock
 // holds with a confidence of 97.5 %.
 struct SquaredError {
     double value = 0, bound = 0;
+    bool by_noise = false; // the bound is as large as it is for the noise of pixels rather than for few tiles
 };
 
 struct Measured {
@@ -34,24 +35,28 @@ struct Measured {
     std::shared_ptr<const Prepared> prepared;       // to render with
 };
 
-// Tiles of a picture, and what is known of the truth there. It grows by drawings that are independent of each other.
+// Tiles of a picture, and what is known of the truth there: in all pixels of a tile that was drawn for certain, in a
+// quarter of those of others. It grows by drawings and by passes that are independent of each other.
 struct Pilot {
-    const Mode& mode;
-    const Snapshot& snapshot;
-    const FrameOptions& options;
+    const Mode* mode;
+    const Snapshot* snapshot;
+    std::atomic<bool>* cancel;
     std::optional<Settings> truth_settings{}; // none: candidates are taken to be right on the average
     View view{};                              // two samples per pixel, independent of each other
     uint32_t seed = 0;                        // of the picture: modes are prepared with it
     TileChances chances{};
     std::vector<DrawnTile> tiles{};
-    int drawings = 0;
+    int drawings = 0, passes = 1;               // passes: of two samples each
     std::shared_ptr<const Prepared> prepared{}; // for the truth
     std::vector<vec3> truth{};                  // pilot_values of each tile; empty = the candidate's
     double seconds = 0;                         // following it took
 
     double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the picture
     bool is_full() const { return drawings >= max_drawings || static_cast<double>(tiles.size()) >= all(); }
-    double truth_seconds() const { return seconds / 2 * all() / static_cast<double>(tiles.size()); } // per sample
+    bool can_grow(bool by_noise) const { return by_noise ? passes < max_passes : !is_full(); }
+    double samples() const;                                                 // of pixels, that all passes together took
+    double pixels() const;                                                  // of the picture
+    double truth_seconds() const { return seconds / samples() * pixels(); } // per sample of the picture
 };
 
 // With one drawing; those of another `salt` are independent of it. `prepared` for the truth, where it is already.
@@ -59,8 +64,8 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
                  TileChances chances, uint32_t salt, const FrameOptions& options,
                  std::shared_ptr<const Prepared> prepared = {});
 
-// Draws tiles once more and follows the truth there.
-void grow(Pilot& pilot);
+// Draws tiles once more and follows the truth there; or follows it as often again on those there are.
+void grow(Pilot& pilot, bool by_noise = false);
 
 // A candidate on the tiles of a pilot; grows with it.
 struct Look {
@@ -69,9 +74,10 @@ struct Look {
     std::shared_ptr<const Prepared> prepared{};
     const Snapshot* snapshot = nullptr; // null = the pilot's
     std::vector<vec3> values{};         // pilot_values of each tile seen
+    int passes = 0;                     // their number
     double prepare_seconds = 0, seconds = 0;
 
-    const Snapshot& of(const Pilot& pilot) const { return snapshot ? *snapshot : pilot.snapshot; }
+    const Snapshot& of(const Pilot& pilot) const { return snapshot ? *snapshot : *pilot.snapshot; }
 };
 
 // With what is prepared already, where it is given. Follows the tiles not yet seen.
@@ -84,11 +90,16 @@ double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settin
 
 enum Product { of_integrator, of_sample, product_count };
 
-// Of one layer: products of differences, as render/adaptive/pilot.h has them, summed over pixels.
+// Of one layer: products of differences, as said above, summed over pixels.
 struct Sums {
     double products[product_count] = {};
     double squares[product_count] = {}; // of the pixels' products
     double mean = 0, count = 0;
+
+    void scale(double factor) {
+        for (int k = 0; k < product_count; ++k) products[k] *= factor, squares[k] *= factor * factor;
+        mean *= factor, count *= factor;
+    }
 };
 
 // Of a tile. Pilot values of the truth and of a candidate; layer 0 = colour, 1 = fog light.

@@ -248,6 +248,8 @@ void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStat
     rounds.done = 0, rounds.freedom = 0, rounds.expected = max_target_samples;
     rounds.work_seconds = choice.measured.sample_seconds;
     rendering.settings = choice.candidate.settings, rendering.prepared = choice.measured.prepared;
+    if (!rendering.prepared && choice.scout && choice.scout->candidate.name == choice.candidate.name)
+        rendering.prepared = choice.scout->prepared;
     if (!rendering.prepared)
         rendering.prepared = std::make_shared<const Prepared>(prepare_frame(
             rendering.mode, rounds.view, rendering.snapshot, rendering.settings, rendering.options.history));
@@ -310,13 +312,14 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.prepare_seconds = goal.clock() - rounds.start;
     }
     for (uint32_t check = 1; check <= max_checks; ++check) {
+        const double begun = goal.clock();
         const bool scouted = measured && rounds.choice->scout;
         render_rounds(rounds, rendering, scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds),
                       result, stats, round);
         if (!has_integrator(mode)) break;
 
-        const Choice after =
-            checked(*rounds.choice, result, *stats.noise, mode, rounds.view, snapshot, settings, goal, check, options);
+        const Choice after = checked(*rounds.choice, result, *stats.noise, goal.clock() - begun, mode, rounds.view,
+                                     snapshot, settings, goal, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;

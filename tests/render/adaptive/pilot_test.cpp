@@ -117,6 +117,9 @@ TEST(Pilot, GrowsByIndependentDrawings) {
     EXPECT_EQ(pilot.tiles.size(), drawing_tiles);
     grow(pilot), grow(pilot);
     EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
+    const double samples = pilot.samples();
+    grow(pilot, true);
+    EXPECT_EQ(pilot.samples(), 2 * samples);
     double stood_for = 0;
     for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
     EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
