@@ -18,6 +18,14 @@ mat4 node_matrix(const Scene& scene, int node, double seconds) {
     return world;
 }
 
+mat4 medium_matrix(const MediumSource& medium, double seconds) {
+    const mat4 turned = glm::translate(mat4(1), medium.translation.at(seconds)) *
+                        glm::mat4_cast(glm::normalize(medium.rotation.at(seconds)));
+    const mat4 placed = glm::scale(turned, medium.scale.at(seconds));
+    const mat4 upright(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // (x, y, z) to (x, z, -y), by columns
+    return medium.z_up ? placed * upright : placed;
+}
+
 bool is_moving(const Scene& scene, int node) {
     for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
         const Node& n = scene.nodes[static_cast<size_t>(node)];
@@ -47,9 +55,7 @@ Box scene_bounds(const Scene& scene, double seconds) {
     for (const MediumSource& medium : scene.media) {
         const Box local = medium.kind == MediumKind::noise ? medium.recipe->bounds : medium.bounds;
         if (medium.kind == MediumKind::vdb || !is_finite(local.low) || !is_finite(local.high)) continue;
-        const mat4 placed = glm::translate(mat4(1), medium.translation.at(seconds)) *
-                            glm::mat4_cast(medium.rotation.at(seconds)) * glm::scale(mat4(1), medium.scale.at(seconds));
-        bounds.grow(finite(transform(placed, local)));
+        bounds.grow(finite(transform(medium_matrix(medium, seconds), local)));
     }
     return bounds;
 }

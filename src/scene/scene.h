@@ -70,6 +70,7 @@ struct MediumSource {
     Keyed<float> height_base{0.0f}, height_falloff{1.0f};
     std::optional<FogRecipe> recipe; // noise
     float voxel_size = 0;            // noise: instead of the recipe's, metres
+    bool z_up = false;               // noise, vdb: the volume's z is up, its -y is the scene's z
     VdbSequence sequence;            // vdb
     std::string entry;               // as of a camera
 };
@@ -126,6 +127,8 @@ mat4 node_matrix(const Scene& scene, int node, double seconds); // local to worl
 
 // Whether the scene gives keys to a node (-1 = none) or one above it.
 bool is_moving(const Scene& scene, int node);
+
+mat4 medium_matrix(const MediumSource& medium, double seconds); // of the medium's own space, to world
 
 // Around every instance at a moment, and every medium whose extent is known without opening volumes.
 Box scene_bounds(const Scene& scene, double seconds);

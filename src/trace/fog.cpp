@@ -8,15 +8,10 @@
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-#include <glm/gtc/quaternion.hpp>
-
 namespace tyndall {
 namespace {
-mat4 medium_matrix(const Scene& scene, const MediumSource& source, double seconds) {
-    const mat4 turned = glm::translate(mat4(1), source.translation.at(seconds)) *
-                        glm::mat4_cast(glm::normalize(source.rotation.at(seconds)));
-    const mat4 matrix = glm::scale(turned, source.scale.at(seconds));
+mat4 checked_matrix(const Scene& scene, const MediumSource& source, double seconds) {
+    const mat4 matrix = medium_matrix(source, seconds);
     const float determinant = glm::determinant(mat3(matrix));
     if (!std::isfinite(determinant) || determinant == 0)
         refuse(scene.file.string(), "medium " + source.name + ": its scale or rotation leaves it no volume");
@@ -27,6 +22,10 @@ Optics optics_at(const MediumSource& source, double seconds) {
     return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
             source.emission.at(seconds)};
 }
+
+// Of fog that emits and dims nothing. Kernels divide emission by extinction, and multiply by it again: any value
+// does that is nothing over the longest way.
+constexpr float min_extinction = 1e-20f;
 
 // Fog that stands still is grown once.
 bool changes(const FogRecipe& recipe) {
@@ -79,7 +78,7 @@ FogSource fog_source(const Scene& scene, const MediumSource& source, Moment mome
                      const FogSource& before, std::vector<std::string>& notes) {
     FogSource result = source.kind == MediumKind::noise ? grown(source, moment.seconds, before)
                                                         : read(source, moment.frame, missing, before, notes);
-    const mat4 matrix = medium_matrix(scene, source, moment.seconds);
+    const mat4 matrix = checked_matrix(scene, source, moment.seconds);
     if (!result.bricks || (result.placed && result.matrix == matrix)) return result;
     result.placed = placed_bricks(result, matrix);
     result.matrix = matrix;
@@ -88,7 +87,7 @@ FogSource fog_source(const Scene& scene, const MediumSource& source, Moment mome
 
 // Fog given by a formula: its box moves, its height does not.
 void add_analytic(const Scene& scene, const MediumSource& source, double seconds, Medium& medium) {
-    const mat4 matrix = medium_matrix(scene, source, seconds);
+    const mat4 matrix = checked_matrix(scene, source, seconds);
     medium.density.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
     medium.density.bounds = source.bounds;
     medium.density.world_to_local = glm::inverse(matrix);
@@ -120,12 +119,12 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         Medium medium;
         medium.name = source.name;
         medium.optics = optics_at(source, moment.seconds);
-        if (!(grey_extinction(medium.optics) > 0)) {
-            if (max_component(medium.optics.emission.radiance) > 0 && !comparable)
-                snapshot.notes.push_back("medium " + source.name + ": emits nothing, as its extinction is 0");
+        const bool dims = grey_extinction(medium.optics) > 0;
+        if (!dims && !(max_component(medium.optics.emission.radiance) > 0)) {
             fog = before;
             continue;
         }
+        if (!dims) medium.optics.extinction = vec3(min_extinction);
         if (source.kind == MediumKind::noise || source.kind == MediumKind::vdb) {
             fog = fog_source(scene, source, moment, missing, before, snapshot.notes);
             if (!fog.placed || !(fog.placed->highest > 0)) continue;
@@ -135,6 +134,9 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         } else {
             add_analytic(scene, source, moment.seconds, medium);
         }
+        if (!dims && !is_finite(medium.world_bounds.size()))
+            refuse(scene.file.string(),
+                   "medium " + source.name + ": emits without end; give it bounds or an extinction");
         snapshot.media.push_back(std::move(medium));
     }
 }

@@ -39,7 +39,7 @@ struct Snapshot {
     double seconds = 0;
     int frame = 0;
     std::vector<Light> lights; // of non-zero intensity
-    std::vector<Medium> media; // of non-zero extinction
+    std::vector<Medium> media; // that dim light or emit it; of non-zero extinction
     vec3 ambient{0};
     BackgroundNow background;
     std::shared_ptr<const Occluders> occluders;

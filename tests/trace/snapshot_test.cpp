@@ -3,6 +3,7 @@
 #include "scene/camera.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "support/meshes.h"
 #include "support/scratch.h"
 #include "trace/fog.h"
@@ -10,6 +11,7 @@
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/fog_fixtures.h"
+#include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -175,6 +177,30 @@ TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
     const Snapshot changed = make_snapshot(scene, {3, 2}, &same);
     EXPECT_NE(changed.media[0].density.bricks, first.media[0].density.bricks);
     EXPECT_NEAR(changed.media[0].density.bricks->mass, 0.5 * 24 * 24 * 24, 1);
+}
+
+// A column along z, thinner upwards and lit towards +y, must stand on the ground and be lit towards -z.
+TEST(Snapshot, VolumesWithZUpStandUpright) {
+    const Scratch scratch;
+    const auto file = scratch / "column.vdb";
+    SparseVolume volume = constant_box(16, 1);
+    for (Leaf& leaf : volume.leaves)
+        for (int v = 0; v < 512; ++v) {
+            const ivec3 at = leaf.origin + ivec3(v >> 6, v >> 3 & 7, v & 7);
+            leaf.values[static_cast<size_t>(v)] = (at.z < 8 ? 1.0f : 0.5f) * (at.y < 8 ? 0.5f : 1.0f);
+        }
+    write_vdb(file, volume);
+    Scene scene;
+    scene.media = {file_source(file)};
+    scene.media[0].z_up = true;
+    scene.media[0].scale = vec3(2), scene.media[0].translation = vec3(100, 0, 0);
+    const Medium& column = make_snapshot(scene, {}).media.at(0);
+    expect_near(column.world_bounds.low, vec3(98, -2, -32), 1e-3f);
+    expect_near(column.world_bounds.high, vec3(132, 32, 2), 1e-3f);
+    EXPECT_EQ(density_at(column, {115, 4, -24}), 1);
+    EXPECT_EQ(density_at(column, {115, 4, -4}), 0.5f);
+    EXPECT_EQ(density_at(column, {115, 24, -24}), 0.5f);
+    EXPECT_EQ(density_at(column, {115, 24, -4}), 0.25f);
 }
 
 TEST(Snapshot, ClippedSequencesHaveNoFog) {

@@ -55,7 +55,8 @@ Json media_json(const Scene& scene) {
                             {"extinction", medium.extinction.at(0)},
                             {"albedo", medium.albedo.at(0)},
                             {"g", medium.g.at(0)},
-                            {"file", medium.sequence.pattern}});
+                            {"file", medium.sequence.pattern},
+                            {"up_axis", medium.z_up ? "Z" : "Y"}});
     });
 }
 
@@ -109,10 +110,10 @@ std::string content_text(const Scene& scene) {
     const std::string hint = light_units_hint(scene);
     if (!hint.empty()) text += "  light units   " + hint + "\n";
     for (const MediumSource& medium : scene.media)
-        text += formatted("  fog           %s, %s, extinction %g /m, albedo %s, g %g%s%s\n",
+        text += formatted("  fog           %s, %s, extinction %g /m, albedo %s, g %g%s%s%s\n",
                           printable(medium.name.empty() ? "(no name)" : medium.name, 80).c_str(),
                           medium_names[static_cast<int>(medium.kind)], double{medium.extinction.at(0)},
-                          vector_text(medium.albedo.at(0)).c_str(), double{medium.g.at(0)},
+                          vector_text(medium.albedo.at(0)).c_str(), double{medium.g.at(0)}, medium.z_up ? ", Z up" : "",
                           medium.sequence.pattern.empty() ? "" : ", ", printable(medium.sequence.pattern).c_str());
     for (const std::string& warning : scene.warnings) text += "  warning       " + printable(warning, 400) + "\n";
     return text;

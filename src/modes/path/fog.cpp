@@ -88,16 +88,40 @@ void weigh(const Walk& walk, const Segment& line, const Connection& connection, 
     candidate.brightness = luminance(candidate.scattered) * guess;
 }
 
+// An estimate of the share of light that passes all fog between two distances.
+float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
+    float share = 1;
+    for (const Medium& medium : walk.snapshot.media)
+        if (share > 0)
+            share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
+    return share;
+}
+
+// Where a medium lies on the stretch, when it is so thin there that paths hardly ever collide with it; else empty.
+Interval<float> thin_range(const Segment& line, const Medium& medium) {
+    const Interval<float> inside = clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end});
+    return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
+}
+
+// What thin fog emits, from one distance of each medium's range; thicker fog emits where paths collide with it.
+void gather_emission(const Walk& walk, Segment& line) {
+    for (const Medium& medium : walk.snapshot.media) {
+        const vec3 emission = medium.optics.emission.radiance;
+        const Interval<float> range = thin_range(line, medium);
+        if (range.empty() || !(max_component(emission) > 0) || !(line.through > 0)) continue;
+        const float distance = range.low + line.numbers(use_emission).x * range.length();
+        const float density = density_at(medium, line.rest.at(distance));
+        if (!(density > 0)) continue;
+        const float share = line.through * passing_share(walk, line, {0, distance});
+        add_light(walk, line, emission * (share * density * range.length()), walk.order == 0 || line.walker.in_fog);
+    }
+}
+
 // Light scattered at a distance picked for the lights: of several candidates one goes on, in proportion to what it
 // would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
 float gather_on_the_way(const Walk& walk, Segment& line) {
     int& lookups = walk.results[line.walker.lane].steps;
-    const auto passing = [&](Interval<float> range) {
-        float share = 1;
-        for (const Medium& medium : walk.snapshot.media)
-            if (share > 0) share *= ratio_transmittance(medium, line.rest, range, line.random, lookups);
-        return share;
-    };
+    const auto passing = [&](Interval<float> range) { return passing_share(walk, line, range); };
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     walk.scratch.lights.clear();
@@ -170,7 +194,8 @@ void collide(const Walk& walk, Segment& line) {
 
     const Optics& optics = snapshot.media[hit].optics;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
-    add_light(walk, line, optics.emission.radiance / grey_extinction(optics), in_fog);
+    if (thin_range(line, snapshot.media[hit]).empty())
+        add_light(walk, line, optics.emission.radiance / grey_extinction(optics), in_fog);
     if (!walk.turns) return;
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);
@@ -183,6 +208,7 @@ void collide(const Walk& walk, Segment& line) {
 }
 
 void follow_fog(const Walk& walk, Segment& line) {
+    gather_emission(walk, line);
     const float passing = gather_on_the_way(walk, line);
     if (line.walking) collide(walk, line);
     line.through *= passing;

@@ -22,7 +22,8 @@ enum Use : uint32_t {
     use_surface_light,
     use_surface_soft,
     use_surface_glow,
-    use_bounce
+    use_bounce,
+    use_emission
 };
 
 // The end of a path: where its next line starts and what it carries.

@@ -130,6 +130,7 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     medium.name = field.json->string_or("name", "medium " + std::to_string(index + 1));
     if (medium.kind == MediumKind::noise) read_noise(field, medium, scene);
     if (medium.kind == MediumKind::vdb) read_vdb_source(field, medium, scene);
+    medium.z_up = field.json->string_or("up_axis", "Y") == "Z";
     read_optics(field, medium);
     read_bounds(field, medium);
     read_transform(field, medium);

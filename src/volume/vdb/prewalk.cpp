@@ -9,6 +9,7 @@
 namespace tyndall {
 namespace {
 constexpr int64_t magic = 0x56444220;
+constexpr uint32_t oldest_version = 222, newest_version = 225; // 225 adds a type of grid that is not read, no bytes
 constexpr uint64_t max_text = 4096, max_items = 4096, max_metadata = 16 << 20, max_grids = 1024;
 
 // What lies in the place of a volume often enough to deserve its own hint.
@@ -191,8 +192,9 @@ VdbDirectory read_directory(ByteCursor& file) {
     check_magic(file);
     VdbDirectory directory;
     directory.file_version = file.value<uint32_t>("the header");
-    if (directory.file_version < 222 || directory.file_version > 224)
-        file.complain("has file version " + std::to_string(directory.file_version) + "; 222 to 224 can be read");
+    if (directory.file_version < oldest_version || directory.file_version > newest_version)
+        file.complain("has file version " + std::to_string(directory.file_version) + "; " +
+                      std::to_string(oldest_version) + " to " + std::to_string(newest_version) + " can be read");
     directory.library_major = file.value<uint32_t>("the header");
     directory.library_minor = file.value<uint32_t>("the header");
     const auto has_offsets = file.value<uint8_t>("the header");

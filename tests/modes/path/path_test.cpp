@@ -169,7 +169,14 @@ TEST(Path, PointLightInEvenFogIsTheAirlightIntegral) {
 TEST(Path, EmissionAbsorptionIsItsClosedForm) {
     Snapshot snapshot = snapshot_of({with_albedo(homogeneous_medium(0.5f, {vec3(-1.5f), vec3(1.5f)}), vec3(0))}, {});
     snapshot.media[0].optics.emission.radiance = vec3(1);
-    expect_close(traced(snapshot, {{0, 0, 5}, {0, 0, -1}, 20}, 1024), 1.553739680, 0.005);
+    const Ray ray{{0, 0, 5}, {0, 0, -1}, 20};
+    expect_close(traced(snapshot, ray, 1024), 1.553739680, 0.005);
+
+    // Thin fog is asked along the ray, and dimmed by the other fog on it.
+    snapshot.media[0].optics.extinction = vec3(0.25f);
+    expect_close(traced(snapshot, ray, 1024), (1 - std::exp(-0.75)) / 0.25, 0.002);
+    snapshot.media.push_back(with_albedo(homogeneous_medium(0.75f, {vec3(-1.5f), vec3(1.5f)}), vec3(0)));
+    expect_close(traced(snapshot, ray, 1024), 1 - std::exp(-3), 0.002);
 }
 
 TEST(Path, SurfaceUnderFogIsItsClosedForm) {

@@ -211,7 +211,7 @@ TEST(SceneFile, VolumesBringTheirOptics) {
 
     const Scene scene = loaded(folder, R"({"tyndall": 1, "media": [
         {"type": "vdb", "file": "fog.####.vdb", "sequence": {"mode": "ping_pong", "offset": -3}},
-        {"type": "vdb", "file": "fog.0002.vdb", "g": 0.1, "grid": "density"}, {"type": "vdb", "file": "bare.vdb"}]})");
+        {"type": "vdb", "file": "fog.0002.vdb", "g": 0.1, "grid": "density", "up_axis": "Z"}, {"type": "vdb", "file": "bare.vdb"}]})");
     EXPECT_EQ(scene.media[0].extinction.at(0), 2.5f);
     EXPECT_EQ(scene.media[0].albedo.at(0), vec3(0.5f, 0.6f, 0.7f));
     EXPECT_EQ(scene.media[0].g.at(0), 0.25f);
@@ -220,6 +220,7 @@ TEST(SceneFile, VolumesBringTheirOptics) {
     EXPECT_EQ(scene.media[0].sequence.files, (std::vector<int>{2, 3}));
     EXPECT_EQ(scene.media[1].g.at(0), 0.1f);
     EXPECT_EQ(scene.media[1].sequence.grid, "density");
+    EXPECT_TRUE(scene.media[1].z_up && !scene.media[0].z_up);
     EXPECT_TRUE(has_warning(scene, "/media/2/file"));
     EXPECT_FALSE(has_warning(scene, "/media/0"));
 }

@@ -117,7 +117,7 @@ TEST_P(Hostile, TheFileItselfIsGood) {
 
 TEST_P(Hostile, Header) {
     EXPECT_REFUSED(patched(good, 0, 'x'), "not an OpenVDB file");
-    for (const uint32_t version : {0u, 100u, 221u, 225u, 999u})
+    for (const uint32_t version : {0u, 100u, 221u, 226u, 999u})
         EXPECT_REFUSED(patched(good, 8, version), "file version");
     EXPECT_REFUSED(patched(good, 20, uint8_t{2}), "header");
     for (const uint32_t count : {4097u, 0x7fffffffu, 0xffffffffu}) {

@@ -149,6 +149,18 @@ TEST(VdbRead, InactiveValuesInsideTheBoxStay) {
     EXPECT_EQ(back.report.summary(), "");
 }
 
+// OpenVDB 13 writes 225, as it also knows grids of half floats; all else is as it was.
+TEST(VdbRead, NewerFileVersion) {
+    const AuthoredGrid ball = noisy_ball(ivec3(0), 12);
+    for (const uint32_t packing : {pack_none, pack_mask | pack_zip, pack_mask | pack_blosc}) {
+        const std::string old = authored({ball}, packing);
+        const SparseVolume was = read(old).volume, is = read(patched(old, 8, 225u)).volume;
+        EXPECT_EQ(is.active_high, was.active_high);
+        ASSERT_EQ(is.leaves.size(), was.leaves.size());
+        for (size_t n = 0; n < is.leaves.size(); ++n) EXPECT_EQ(is.leaves[n].values, was.leaves[n].values);
+    }
+}
+
 TEST(VdbRead, WrongValuesAreMendedAndCounted) {
     AuthoredGrid grid;
     grid.type = "double"; // holds what float cannot
