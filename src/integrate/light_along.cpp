@@ -28,7 +28,7 @@ LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, si
 }
 
 namespace {
-double radius_of(const Light& light) { return std::max(light.radius, smallest_radius); }
+double radius_of(const Light& light) { return capped_radius(light); }
 
 void set_cone(const Light& light, LightAlong& along) {
     const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));

@@ -8,7 +8,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_steps = 65536; // per ray; longer ones beyond
+constexpr int max_steps = 65536;              // per ray; longer ones beyond
+constexpr float step_share_of_extent = 1e-4f; // nearer to a light steps shrink no further
 
 // The parts of a piece of a ray inside the cones of spots, from its start.
 void find_beams(const MarchSteps& rule, const Ray& ray, Interval<float> piece, std::vector<Step>& beams) {
@@ -37,7 +38,8 @@ void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& 
                         march.near_points,
                         settings.near_light,
                         beams,
-                        8 / settings.near_light};
+                        8 / settings.near_light,
+                        step_share_of_extent * snapshot.extent};
     const size_t first = steps.size();
     append_steps({ray.at(piece.low), ray.direction, piece.length()}, snapshot.media, rule, steps);
     for (size_t i = first; i < steps.size(); ++i) steps[i].low += piece.low, steps[i].high += piece.low;

@@ -1,5 +1,6 @@
 // What rays cross of the shadow volumes.
 #include "integrate/single_scattering.h"
+#include "trace/occlusion/occluders.h"
 
 namespace tyndall {
 namespace {
@@ -7,8 +8,8 @@ bool comes_from(const ShadowView& view, const Camera& camera, const Ray& ray) {
     if (view.parallel) return glm::distance(ray.direction, camera.forward) < 1e-5f;
     if (ray.origin == camera.position) return true;
     const vec3 from = ray.origin - camera.position;
-    const float along = glm::dot(from, ray.direction);
-    return glm::length(from - along * ray.direction) <= 1e-5f * (0.1f + std::abs(along)) && along > -1e-3f;
+    const float along = glm::dot(from, ray.direction), rounding = 0.25f * shadow_offset(camera.position);
+    return glm::length(from - along * ray.direction) <= rounding + 1e-5f * std::abs(along) && along >= -rounding;
 }
 
 // The tile all positions lie in, or -1.

@@ -15,7 +15,7 @@ struct StyleSettings {
     float light_depth = 1; // factor on the optical depth between light and fog: below 1 shafts reach further
     float view_depth = 1;  // factor on the optical depth between fog and eye, for the light of the fog only
     float density = 1;     // factor on every medium's extinction
-    float range = 1e6f;    // metres from the eye at which the fog's light has faded out
+    float range = 1e9f;    // metres from the eye at which the fog's light has faded out
     vec3 tint{1};          // factor on the light of the fog
 };
 

@@ -99,7 +99,9 @@ std::shared_ptr<FogBuffer> compute(const View& view, const Snapshot& snapshot, R
 }
 
 bool at_eye(const Camera& camera, const Ray& ray) {
-    if (camera.ortho_height > 0) return std::abs(glm::dot(ray.origin - camera.position, camera.forward)) < 1e-6f;
+    if (camera.ortho_height > 0)
+        return std::abs(glm::dot(ray.origin - camera.position, camera.forward)) <
+               0.25f * shadow_offset(camera.position);
     return ray.origin == camera.position;
 }
 

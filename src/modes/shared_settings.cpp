@@ -79,7 +79,7 @@ void append_style_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(style.view_depth)));
     rows.push_back(
         number_row("style.density", "", 0, 1000, "factor on every medium's extinction", TYNDALL_FIELD(style.density)));
-    rows.push_back(number_row("style.range", "m", 0.01, 1e6,
+    rows.push_back(number_row("style.range", "m", 1e-6, 1e9,
                               "distance from the eye at which the fog's light has faded out, over its last fifth",
                               TYNDALL_FIELD(style.range)));
     rows.push_back(color_row("style.tint", "", 0, 100, "factor on the fog's light, R,G,B", TYNDALL_FIELD(style.tint)));

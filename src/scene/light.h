@@ -17,6 +17,7 @@ struct Light {
     float inner_cone = 0, outer_cone = pi / 4; // half angles of a spot
     float range = infinity;                    // metres; the light fades to 0 there
     float radius = 0;                          // metres; point, spot: soft shadows, and 1/r² is capped inside
+    float core = 1e-4f;                        // metres; 1/r² is capped inside of this in any case
     float angle = 0;                           // radians, half angle of the sun's disc
     bool shadows = true;
 };
@@ -39,7 +40,8 @@ LightSample arrival(const Light& light, const vec3& point);
 // or disc is seen under; its centre when the light is a point. Ends just before the light.
 Ray ray_to_light(const Light& light, vec3 point, vec2 u);
 
-inline constexpr float smallest_radius = 1e-4f; // metres; 1/r² is capped here when a light has no radius
+// Where 1/r² is capped.
+inline float capped_radius(const Light& light) { return std::max(light.radius, light.core); }
 
 // KHR_lights_punctual's window: 1 near the light, 0 at range.
 inline float range_window(float distance, float range) {

@@ -23,7 +23,7 @@ std::shared_ptr<CachedThing> found(FrameCache* kept, std::type_index type, const
 
 CacheKey& CacheKey::add(const Light& light) {
     add(light.kind).add(light.position).add(light.direction).add(light.inner_cone).add(light.outer_cone);
-    return add(light.range).add(light.radius).add(light.angle).add(light.shadows);
+    return add(light.range).add(light.radius).add(light.core).add(light.angle).add(light.shadows);
 }
 
 CacheKey& CacheKey::add(const View& view) {

@@ -22,7 +22,7 @@ struct LightSamples {
 HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
     if (is_distant(light)) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - position;
-    const float reach = std::max(light.radius, smallest_radius);
+    const float reach = capped_radius(light);
     const Floats squared = dot(offset, offset);
     const Floats distance = max(sqrt(squared), 1e-12f);
     LightSamples result{offset * (1.0f / distance), distance, 1.0f / max(squared, reach * reach)};

@@ -12,6 +12,8 @@
 
 namespace tyndall {
 namespace {
+constexpr float core_share = 1e-5f; // of the scene's extent: the core of its lamps
+
 // Where a node stands and which way it looks, free of its scale.
 struct Frame {
     vec3 position, up, forward;
@@ -69,6 +71,28 @@ BackgroundNow background_at(const Background& background, double seconds) {
 // A box that is finite in every direction; fog without bounds says nothing about where the scene is.
 bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
 
+// Of the scene and its camera at the first frame; without any place, how far light gets in the fog. What must not
+// depend on the unit of length is a share of this.
+float scene_extent(const Scene& scene) {
+    const double seconds = moment_of(scene, scene.first_frame).seconds;
+    Box box = scene_bounds(scene, seconds);
+    for (const LightSource& light : scene.lights)
+        if (light.kind != LightKind::sun)
+            box.grow(light.node >= 0 ? vec3(node_matrix(scene, light.node, seconds)[3]) : light.position.at(seconds));
+    if (!scene.cameras.empty()) {
+        const CameraSource& camera = scene.cameras[static_cast<size_t>(scene.camera)];
+        if (camera.node >= 0)
+            box.grow(vec3(node_matrix(scene, camera.node, seconds)[3]));
+        else
+            box.grow(camera.position.at(seconds)), box.grow(camera.target.at(seconds));
+    }
+    const float size = box.empty() ? 0 : glm::length(box.size());
+    if (size > 0 && std::isfinite(size)) return size;
+    float extinction = 0;
+    for (const MediumSource& medium : scene.media) extinction = std::max(extinction, medium.extinction.at(seconds));
+    return extinction > 0 ? 1 / extinction : Snapshot{}.extent;
+}
+
 Box scene_bounds(const Snapshot& snapshot) {
     Box box = snapshot.occluders->bounds();
     for (const Light& light : snapshot.lights) box.grow(light_bounds(light));
@@ -89,13 +113,15 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     Snapshot snapshot;
     snapshot.scene = &scene;
     snapshot.seconds = moment.seconds, snapshot.frame = moment.frame;
+    if (previous && previous->scene != &scene) previous = nullptr;
+    snapshot.extent = previous ? previous->extent : scene_extent(scene);
     for (const LightSource& source : scene.lights) {
         Light light = light_at(scene, source, moment.seconds);
+        light.core = core_share * snapshot.extent;
         if (shines(light)) snapshot.lights.push_back(std::move(light));
     }
     snapshot.ambient = scene.ambient.at(moment.seconds);
     snapshot.background = background_at(scene.background, moment.seconds);
-    if (previous && previous->scene != &scene) previous = nullptr;
     add_media(scene, moment, previous, missing, snapshot);
 
     snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);

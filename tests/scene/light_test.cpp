@@ -17,7 +17,7 @@ TEST(Light, PointFollowsTheInverseSquare) {
 
 TEST(Light, StaysFiniteAtItsCentre) {
     Light light = point_light(vec3(0), 1);
-    EXPECT_FLOAT_EQ(arrival(light, vec3(0)).irradiance.x, 1 / (smallest_radius * smallest_radius));
+    EXPECT_FLOAT_EQ(arrival(light, vec3(0)).irradiance.x, 1 / (light.core * light.core));
     EXPECT_NEAR(glm::length(arrival(light, vec3(0)).to_light), 1, 1e-6);
     light.radius = 0.5f;
     EXPECT_FLOAT_EQ(arrival(light, {0.1f, 0, 0}).irradiance.x, 4) << "held inside the ball";

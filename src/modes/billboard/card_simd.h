@@ -60,20 +60,24 @@ HWY_INLINE OnCard meet(const Packet& packet, const CardQuad& quad) {
     on.point = fused(packet.direction, on.t, packet.origin);
     const Vec3s off = on.point - splat(quad.start);
     on.along = dot(off, splat(quad.along)), on.share = on.along * (1 / quad.length);
-    on.half = max(fused(on.share, quad.half_to - quad.half_from, quad.half_from), 1e-5f);
+    on.half = max(fused(on.share, quad.half_to - quad.half_from, quad.half_from), 1e-6f * quad.length);
     on.across = dot(off, splat(quad.side)) / on.half;
     on.met = (!level) & (on.t > 0.0f) & (on.t < packet.t_max) & (on.share > 0.0f) & (on.share < 1.0f) &
              (abs(on.across) < 1.0f);
     return on;
 }
 
+// What textures take for a metre: beams are taken to be five long.
+inline float card_unit(const CardQuad& quad) { return 0.2f * quad.length; }
+
 // Random stripes along the beam, coarse and fine, that change slowly on their way: 0..1.
 HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, const OnCard& on) {
     const BillboardSettings& s = billboards.settings;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000);
-    const Floats moved = (on.along - s.scroll * billboards.seconds) * 0.7f;
-    // Narrow cards have fewer stripes: none thinner than on a card 40 cm wide.
-    const float stripes = s.stripes * std::clamp(std::max(quad.half_from, quad.half_to) * (1 / 0.2f), 0.15f, 1.0f);
+    const Floats moved = (on.along - s.scroll * billboards.seconds) * (0.7f / card_unit(quad));
+    // Narrow cards have fewer stripes: none thinner than on a card 0.4 units wide.
+    const float widest = std::max(quad.half_from, quad.half_to) / card_unit(quad);
+    const float stripes = s.stripes * std::clamp(widest * (1 / 0.2f), 0.15f, 1.0f);
     const Floats x = fused(on.across, 0.5f * stripes, quad.seed);
     const Floats coarse = value_noise(x * 0.37f, moved * 0.5f, seed), fine = value_noise(x, moved, seed + 1);
     const Floats both = min(coarse * 0.6f + fine * 0.4f, 1.0f);
@@ -83,10 +87,11 @@ HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, co
 
 // Dust: round dots in some cells of a grid that drifts along and across the beam, never smaller than a pixel.
 HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
-    constexpr float cell = 0.11f, radius = 0.004f, populated = 0.35f; // metres, metres, share of cells
+    const float cell = 0.11f * card_unit(quad), radius = 0.04f * cell;
+    constexpr float populated = 0.35f; // share of cells
     const float time = billboards.seconds;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000) + 7;
-    const Floats x = (on.across * on.half + 0.02f * std::sin(0.7f * time + quad.seed)) * (1 / cell);
+    const Floats x = (on.across * on.half + 0.2f * cell * std::sin(0.7f * time + quad.seed)) * (1 / cell);
     const Floats y = (on.along - 2 * billboards.settings.scroll * time) * (1 / cell);
     const Floats fx = floor(x), fy = floor(y);
     const Ints i = truncate(fx), j = truncate(fy);
@@ -113,7 +118,7 @@ HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const
     const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
     // Of two crossed cards sin² + cos² is seen, whatever side they are seen from.
     share = share * (quad.crossed ? facing : smooth(0, 0.75f, facing));
-    if (billboards.style.range < 1e6f)
+    if (fades(billboards.style))
         share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
     return share;
 }

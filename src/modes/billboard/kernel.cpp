@@ -47,8 +47,8 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     }
     Floats arriving = 1.0f;
     if (!sun) {
-        // Close to the light cards stay as bright as 15 cm away from it.
-        const float reach = std::max(light.radius, 0.15f);
+        // Close to the light cards stay as bright as 0.15 units away from it.
+        const float reach = std::max(light.radius, 0.15f * card_unit(quad));
         const Vec3s towards = splat(light.position) - on.point;
         const Floats square = dot(towards, towards);
         arriving = 1.0f / max(square, reach * reach);
@@ -91,7 +91,7 @@ Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet&
         const float dimmed = billboards.settings.fog ? style.view_depth : 0;
         Floats arriving =
             exp(-(depth * dimmed + light_depth * style.light_depth)) * mean_transmittance(change * dimmed);
-        if (style.range < 1e6f)
+        if (fades(style))
             arriving =
                 arriving * max(min((style.range - middle - packet.before) * (1 / (0.2f * style.range)), 1.0f), 0.0f);
         sum = sum + scattered * zero_unless(foggy, arriving);

@@ -77,7 +77,7 @@ BeamCard cone_card(const LightView& view, const std::vector<Cell>& cells) {
     const float half = std::tan(std::min(0.3f * light.inner_cone + 0.7f * light.outer_cone, 1.4f));
     make_frame(light.direction, card.across[0], card.across[1]);
     card.from = light.position, card.to = light.position + length * light.direction;
-    card.half_from = vec2(std::max(light.radius, 0.005f)), card.half_to = vec2(half * length);
+    card.half_from = vec2(std::max(light.radius, 1e-3f * length)), card.half_to = vec2(half * length);
     return card;
 }
 
@@ -89,7 +89,7 @@ void place_for(const Snapshot& snapshot, int index, const BillboardSettings& set
     const Openings openings = find_openings(light, snapshot);
     open = openings.open;
     const auto add = [&](BeamCard card) {
-        if (!(glm::length(card.to - card.from) > 1e-4f)) return;
+        if (!(glm::length(card.to - card.from) > light.core)) return;
         card.light = index, card.name = "beam " + std::to_string(cards.size() + 1) + " of " + light.name;
         if (open > 0) card.tint = vec3(settings.gaps);
         card.seed = hash(static_cast<uint32_t>(index), static_cast<uint32_t>(cards.size()));
@@ -145,7 +145,7 @@ PlacedCards placed(const Snapshot& snapshot, const BillboardSettings& settings) 
 // All that cards depend on: the surfaces, where lights and fog are, and how to search.
 CacheKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
     CacheKey key;
-    key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.lights.size());
+    key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.extent).add(snapshot.lights.size());
     for (const Light& light : snapshot.lights) {
         key.add(light).add(light.name.size());
         key.bits += light.name;

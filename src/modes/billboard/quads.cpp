@@ -31,7 +31,7 @@ void lay(const BeamCard& card, vec3 normal, CardQuad& quad) {
     const auto onto = [&](vec3 point) { return point - glm::dot(point - middle, normal) * normal; };
     const vec3 start = onto(card.from), way = onto(card.to) - start;
     quad.normal = normal, quad.start = start, quad.length = glm::length(way);
-    quad.along = quad.length > 1e-6f ? way / quad.length : quad.axis;
+    quad.along = quad.length > 0 ? way / quad.length : quad.axis;
     quad.side = glm::cross(normal, quad.along);
     const vec2 toward(glm::dot(quad.side, card.across[0]), glm::dot(quad.side, card.across[1]));
     quad.half_from = glm::length(toward * card.half_from), quad.half_to = glm::length(toward * card.half_to);
@@ -43,7 +43,7 @@ void add_quads(const BeamCard& card, int index, const Camera& camera, CardFacing
     quad.share = share;
     const auto add = [&](vec3 normal) {
         lay(card, normal, quad);
-        if (quad.length > 1e-6f) quads.push_back(quad);
+        if (quad.length > 0) quads.push_back(quad);
     };
     const vec3 middle = 0.5f * (card.from + card.to);
     const vec3 to_eye = camera.ortho_height > 0 ? -camera.forward : glm::normalize(camera.position - middle);
@@ -89,7 +89,7 @@ float off_axis(const BeamCard& card, vec3 point) {
     const vec3 way = card.to - card.from, off = point - card.from;
     const float length = glm::length(way), share = glm::dot(off, way) / (length * length);
     if (share < 0 || share > 1) return infinity;
-    const vec2 half = glm::max(glm::mix(card.half_from, card.half_to, share), vec2(1e-6f));
+    const vec2 half = glm::max(glm::mix(card.half_from, card.half_to, share), vec2(1e-7f * length));
     return glm::length(vec2(glm::dot(off, card.across[0]), glm::dot(off, card.across[1])) / half);
 }
 

@@ -26,16 +26,16 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
     number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(of<BillboardSettings>().stripes));
     number("soft", "", 0.05, 1, "share of a card's half width over which it fades out",
            TYNDALL_FIELD(of<BillboardSettings>().soft));
-    number("scroll", "m/s", -100, 100, "how fast the texture moves along the beam",
+    number("scroll", "m/s", -1e9, 1e9, "how fast the texture moves along the beam",
            TYNDALL_FIELD(of<BillboardSettings>().scroll));
     number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(of<BillboardSettings>().sway));
     number("specks", "", 0, 100, "brightness of dust particles in the beam",
            TYNDALL_FIELD(of<BillboardSettings>().specks));
-    number("near_fade", "m", 0, 1e6, "distance from the eye within which cards fade in",
+    number("near_fade", "m", 0, 1e9, "distance from the eye within which cards fade in",
            TYNDALL_FIELD(of<BillboardSettings>().near_fade));
-    number("far_fade", "m", 0.01, 1e6, "distance from the eye at which cards have faded out, over its last half",
+    number("far_fade", "m", 1e-6, 1e9, "distance from the eye at which cards have faded out, over its last half",
            TYNDALL_FIELD(of<BillboardSettings>().far_fade));
-    number("soft_depth", "m", 0, 1e6, "distance before a surface over which a card fades out",
+    number("soft_depth", "m", 0, 1e9, "distance before a surface over which a card fades out",
            TYNDALL_FIELD(of<BillboardSettings>().soft_depth));
     rows.push_back(choice_row("billboard.fog", switches, "homogeneous fog dims the cards and what is behind them",
                               TYNDALL_FIELD(of<BillboardSettings>().fog)));

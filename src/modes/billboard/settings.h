@@ -20,7 +20,7 @@ struct BillboardSettings {
     float sway = 0.15f;      // how far the brightness swings, 0..1
     float specks = 0.25f;    // brightness of dust particles in the beam
     float near_fade = 0.6f;  // metres from the eye within which a card fades in
-    float far_fade = 1e6f;   // metres from the eye at which it has faded out
+    float far_fade = 1e9f;   // metres from the eye at which it has faded out
     float soft_depth = 0.4f; // metres before a surface over which a card fades out
     bool fog = true;         // homogeneous fog dims cards and what is behind
 };

@@ -59,7 +59,7 @@ int LightView::neighbour(int cell, int dx, int dy) const {
 LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level) {
     LightView view{&light, n};
     const Box box = shown(snapshot);
-    view.reach = 2 * glm::length(snapshot.bounds.size()) + 1;
+    view.reach = 2 * glm::length(snapshot.bounds.size()) + 0.1f * snapshot.extent;
     vec3 u, v;
     make_frame(light.direction, u, v);
     if (level && std::abs(light.direction.y) < 0.99f) {

@@ -99,7 +99,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
     result.light = light;
     result.fog = anchored(snapshot.media, sun ? dvec3(cone.eye) : dvec3(light.position), &light);
     result.edges = edges_of(light, cone.settings);
-    result.reach = std::max(light.radius, smallest_radius);
+    result.reach = capped_radius(light);
     if (has_cone(light) && light.outer_cone > 0)
         result.near_plane = static_cast<float>(cone.settings.near_radius / std::tan(double(light.outer_cone)));
     result.light.position = vec3(0);

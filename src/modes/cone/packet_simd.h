@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 using Lanes = std::array<float, 16>;
-constexpr float no_range = 1e6f; // of the style: the fog's light goes on for ever
+constexpr float no_range = StyleSettings{}.range; // of the style: the fog's light goes on for ever
 
 // Memory that a thread keeps from packet to packet. Plain floats: containers know nothing of vector registers.
 struct Scratch {

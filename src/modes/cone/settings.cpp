@@ -8,7 +8,7 @@ void append_cone_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("cone.nodes", "", 2, 32,
                               "quadrature nodes on the widest pieces of a ray; narrow and thin ones take fewer",
                               TYNDALL_FIELD(of<ConeSettings>().nodes)));
-    rows.push_back(number_row("cone.near_radius", "m", 0, 1000,
+    rows.push_back(number_row("cone.near_radius", "m", 0, 1e9,
                               "radius of a spot's lens: its light begins where the cone is that wide",
                               TYNDALL_FIELD(of<ConeSettings>().near_radius)));
     rows.push_back(choice_row("cone.attenuation", {"inverse_square", "linear", "none"},
@@ -23,9 +23,9 @@ void append_cone_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<ConeSettings>().inner)));
     rows.push_back(number_row("cone.noise", "", 0, 1, "how far drifting noise modulates the light of local lights",
                               TYNDALL_FIELD(of<ConeSettings>().noise)));
-    rows.push_back(number_row("cone.noise_size", "m", 0.001, 1e5, "size of the noise's largest shapes",
+    rows.push_back(number_row("cone.noise_size", "m", 1e-6, 1e9, "size of the noise's largest shapes",
                               TYNDALL_FIELD(of<ConeSettings>().noise_size)));
-    rows.push_back(number_row("cone.noise_speed", "m/s", -1000, 1000, "how fast the noise rises",
+    rows.push_back(number_row("cone.noise_speed", "m/s", -1e9, 1e9, "how fast the noise rises",
                               TYNDALL_FIELD(of<ConeSettings>().noise_speed)));
     rows.push_back(choice_row("cone.resolution", resolutions,
                               "resolution of the fog's light along each side; it is spread over the whole picture with "

@@ -32,7 +32,8 @@ Moments light_on(const LightAlong& along, double low, double high) {
         for (const QuadratureNode& node : gauss_legendre(2)) add(low + length * node.at, length * node.weight);
         return sum;
     }
-    const EquiAngular<double> angles = equi_angular(along.nearest, std::max(along.distance, 1e-5), low, high);
+    const EquiAngular<double> angles =
+        equi_angular(along.nearest, std::max(along.distance, 0.1 * double(along.light->core)), low, high);
     for (const QuadratureNode& node : gauss_legendre(4)) {
         const auto [t, stands_for] = angles.at(node.at);
         add(t, stands_for * node.weight);

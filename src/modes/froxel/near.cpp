@@ -34,7 +34,7 @@ size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, in
     const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
     for (size_t i = 0; i < count; ++i) {
         NearLine& line = lines[i];
-        line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), smallest_radius * smallest_radius);
+        line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), light.core * light.core);
         const float nearest = line.angles.nearest, height = line.angles.height;
         line.angles = equi_angular(nearest, std::sqrt(height * height + line.width2), 0.0f, line.length);
     }
@@ -46,7 +46,7 @@ float falloff_at(const Light& light, vec3 point, float width2) {
     Light unit = light;
     unit.intensity = vec3(1);
     const LightSample arriving = arrival(unit, point);
-    const float reach = std::max(light.radius, smallest_radius);
+    const float reach = capped_radius(light);
     const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
     return arriving.irradiance.x * squared / std::max(squared, width2);
 }

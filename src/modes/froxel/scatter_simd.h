@@ -54,7 +54,7 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
     Floats spread = min(mean, 1.0f - mean) * 2.0f;
     if (!is_distant(light)) {
         const Vec3s offset = splat(light.position) - arrived.point;
-        const float least = std::max(light.radius, smallest_radius);
+        const float least = capped_radius(light);
         const Floats ratio = spread * length * 0.5f / max(sqrt(dot(offset, offset)), least);
         spread = spread / sqrt(fused(ratio * (pi / 6), ratio / (ratio + 1.5f), 1.0f));
     }

@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_layers = 8;   // of BLEND surfaces in a row
-constexpr float horizon = 1e9f; // metres; no ray goes further
+constexpr int max_layers = 8;    // of BLEND surfaces in a row
+constexpr float horizon = 1e12f; // metres; no ray goes further
 constexpr double opaque_depth = 12;
 
 std::vector<vec2> ray_offsets(int tile) {
@@ -76,7 +76,7 @@ float reach_of(const Medium& medium, Ray ray) {
     };
     const double total = depth_to(horizon), enough = std::min(opaque_depth, total - 1e-6);
     if (!(enough > 0)) return 0;
-    float high = 1;
+    float high = std::min(1 / medium.majorant(), horizon);
     while (high < horizon && depth_to(high) < enough) high *= 2;
     while (depth_to(0.5f * high) >= enough) high *= 0.5f;
     float low = 0.5f * high;
@@ -87,14 +87,15 @@ float reach_of(const Medium& medium, Ray ray) {
     return std::min(high, horizon);
 }
 
-float scene_depth(const FroxelGrid& grid, const Box& bounds) {
+float scene_depth(const FroxelGrid& grid, const Snapshot& snapshot) {
+    const Box& bounds = snapshot.bounds;
     float depth = 0;
     for (int corner = 0; corner < 8 && !bounds.empty(); ++corner) {
         const vec3 point(corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
                          corner & 4 ? bounds.high.z : bounds.low.z);
         depth = std::max(depth, glm::dot(point - grid.camera.position, grid.camera.forward));
     }
-    return depth > 0 ? depth : std::max(glm::length(bounds.size()), 1.0f);
+    return depth > 0 ? depth : bounds.empty() ? snapshot.extent : glm::length(bounds.size());
 }
 
 void add_ray(const FroxelGrid& grid, const Snapshot& snapshot, vec2 pixel, float surface, float scene,
@@ -158,7 +159,7 @@ void set_trust(const FroxelGrid& grid, FroxelTiles& tiles) {
 }
 
 FogDepths fog_depths(const FroxelGrid& grid, const FroxelTiles& tiles, const Snapshot& snapshot) {
-    const float scene = scene_depth(grid, snapshot.bounds);
+    const float scene = scene_depth(grid, snapshot);
     std::vector<FogDepths> rows(static_cast<size_t>(grid.size.y));
     parallel_for(grid.size.y, [&](int64_t y) {
         for (int x = 0; x < grid.size.x; ++x)

@@ -48,7 +48,7 @@ template<class Visit>
 void split(const RayMarch& on, size_t piece, double low, double high, const LightAlong* along, const Visit& visit) {
     const MarchSettings& settings = on.frame.rule->settings;
     const FogPieces& fog = on.scratch.fog;
-    constexpr double closest = 1e-3; // metres: nearer to a light parts shrink no further
+    const double closest = 1e-4 * on.frame.snapshot.extent; // nearer to a light parts shrink no further
     const double length = high - low;
     const double away = along ? std::max(along->distance_to(low, high), closest) : double(infinity);
     if (length > away && length > settings.near_light * away) {

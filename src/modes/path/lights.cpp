@@ -33,7 +33,7 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
         return along;
     }
     const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
-    const double closest = glm::dot(offset, direction), nearest = std::max(light.radius, smallest_radius);
+    const double closest = glm::dot(offset, direction), nearest = capped_radius(light);
     along.reach = light_reach(light, line, stretch);
     if (along.reach.empty()) return along;
     along.angles = equi_angular<double>(closest, std::max(glm::length(offset - closest * direction), nearest),

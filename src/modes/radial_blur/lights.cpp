@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-constexpr float far_away = 1e6f; // metres: a sun's place in the picture is where this point of it would be
+constexpr float far_away = 1e5f; // extents of the scene: a sun's place in the picture is that of a point so far off
 
 float smooth(float x) {
     const float t = std::clamp(x, 0.0f, 1.0f);
@@ -37,7 +37,7 @@ vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& to
         sum += medium.optics.albedo * depth, whole += depth;
     }
     const float share = has_cone(light) ? 0.5f * (1 - std::cos(light.outer_cone)) : 1.0f;
-    const float at_edge = std::exp(-whole) / (std::max(towards.t_max, 1e-3f) * 4 * radius);
+    const float at_edge = std::exp(-whole) / (std::max(towards.t_max, light.core) * 4 * radius);
     return sum * light.intensity * (light.volume_scale * share * 2 * at_edge);
 }
 
@@ -60,7 +60,8 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
         const Light& light = snapshot.lights[i];
         const bool sun = is_distant(light);
         if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the picture
-        const vec3 at = sun ? view.camera.position - far_away * light.direction : light.position;
+        const float far = far_away * snapshot.extent;
+        const vec3 at = sun ? view.camera.position - far * light.direction : light.position;
         const std::optional<vec2> position = pixel_of(view.camera, view.size, at);
         const float depth = glm::dot(at - view.camera.position, view.camera.forward);
         if (!position || !(depth > view.camera.near)) continue;
@@ -71,7 +72,7 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
         BlurLight blur{i, *position, sun ? infinity : depth, 0, fade, vec3(0), 0};
         blur.radius = settings.size * static_cast<float>(view.size.y);
         if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
-        const Ray ray{view.camera.position, towards / distance, sun ? far_away : distance};
+        const Ray ray{view.camera.position, towards / distance, sun ? far : distance};
         blur.color =
             sun ? sun_brightness(snapshot, light, ray) : lamp_brightness(snapshot, light, ray, settings.lamp_size);
         blur.share = luminance(blur.color);

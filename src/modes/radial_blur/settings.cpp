@@ -24,7 +24,7 @@ void append_radial_blur_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("radial_blur.size", "picture heights", 0.01, 100,
                               "radius at which the bright sky around a sun has faded",
                               TYNDALL_FIELD(of<RadialBlurSettings>().size)));
-    rows.push_back(number_row("radial_blur.lamp_size", "m", 0.001, 1000, "radius of the bright disc of other lights",
+    rows.push_back(number_row("radial_blur.lamp_size", "m", 1e-6, 1e9, "radius of the bright disc of other lights",
                               TYNDALL_FIELD(of<RadialBlurSettings>().lamp_size)));
     rows.push_back(number_row("radial_blur.fade", "half pictures", 0.01, 100,
                               "how far outside the picture a light is when its rays have faded",

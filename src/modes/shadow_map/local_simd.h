@@ -107,7 +107,7 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
     if (!any(reached)) return;
     const RaysInMap rays(packet, index);
     const Spaced spaced(passing, march.settings.spacing, packet.steps);
-    const Floats scale = max(passing.away, std::max(light.radius, smallest_radius));
+    const Floats scale = max(passing.away, capped_radius(light));
     DepthAlong along(packet);
     Sixteen* extinctions = packet.scratch.extinction.data() + packet.media() * static_cast<size_t>(packet.steps);
     Floats low = spaced.low;

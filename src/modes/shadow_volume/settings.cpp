@@ -18,7 +18,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().nodes)));
     rows.push_back(number_row("shadow_volume.steps", "", 1, 4096, "steps along a ray where fog is sampled",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().steps)));
-    rows.push_back(number_row("shadow_volume.shell_length", "m", 0, 1e6,
+    rows.push_back(number_row("shadow_volume.shell_length", "m", 0, 1e9,
                               "distance behind the occluder at which a shell has faded out; 0 = half the scene's "
                               "diagonal",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_length)));

@@ -3,7 +3,7 @@
 // A sample follows its camera ray through up to 64 BLEND surfaces to the first opaque one (or the 64th layer, taken as
 // opaque), asking the mode for the fog of each stretch in between. Where nothing is hit, the fog ends at the camera's
 // far plane or where the media end; media without end are followed until optical depth 20 or until less than 1e-6 is
-// left, at most 1e9 m. A stretch may have length 0. A picture and any crop of it hold the same bits, at any thread
+// left, at most 1e12 m. A stretch may have length 0. A picture and any crop of it hold the same bits, at any thread
 // count.
 //
 // A mode with Surfaces::post gets the full picture, also for a crop, and adds to it.

@@ -4,10 +4,10 @@
 
 namespace tyndall {
 namespace {
-// Inverse square law, held inside the glowing ball (or a tenth of a millimetre) so that it stays finite.
+// Inverse square law, held inside the glowing ball (or its core) so that it stays finite.
 LightSample punctual_arrival(const Light& light, const vec3& point) {
     const vec3 towards = light.position - point;
-    const float distance = glm::length(towards), reach = std::max(light.radius, smallest_radius);
+    const float distance = glm::length(towards), reach = capped_radius(light);
     const vec3 to_light = distance > 0 ? towards / distance : -light.direction;
     float share = range_window(distance, light.range) / std::max(distance * distance, reach * reach);
     if (has_cone(light)) share *= cone_falloff(light).at(-glm::dot(to_light, light.direction));

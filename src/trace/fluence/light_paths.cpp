@@ -188,7 +188,8 @@ Box light_reach(const Snapshot& snapshot) {
     for (const Light& light : snapshot.lights) reach.grow(light_bounds(light));
     if (reach.empty()) reach = snapshot.bounds;
     if (reach.empty()) reach.grow(vec3(0));
-    const float further = std::min(2 / thickest, std::max(glm::length(reach.size()), 1.0f));
+    const float size = glm::length(reach.size());
+    const float further = std::min(2 / thickest, size > 0 ? size : snapshot.extent);
     reach.low -= further, reach.high += further;
     return reach;
 }

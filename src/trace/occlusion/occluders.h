@@ -41,7 +41,7 @@ struct ShadowTriangle {
 void set_embree_isa(std::string_view isa);
 
 // How far a ray must start from a surface at `position` to miss it: 32 ulps of the largest coordinate.
-inline float shadow_offset(vec3 position) { return 4e-6f * std::max(max_component(glm::abs(position)), 0.01f); }
+inline float shadow_offset(vec3 position) { return 4e-6f * std::max(max_component(glm::abs(position)), 1e-5f); }
 
 class Occluders {
 public:

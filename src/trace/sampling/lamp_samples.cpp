@@ -23,7 +23,7 @@ void set_beam(const View& view, const Light& light, View::Lamp& lamp) {
     const vec3 across = light.direction - glm::dot(light.direction, sight) * sight;
     const float sine = glm::length(across), reach = std::sin(std::min(light.outer_cone, pi / 2));
     if (!has_cone(light) || light.outer_cone >= pi / 2 || reach >= sine) return;
-    const float step = 1e-3f * std::max(glm::distance(light.position, view.camera.position), 1e-3f);
+    const float step = 1e-3f * std::max(glm::distance(light.position, view.camera.position), light.core);
     const std::optional<vec2> beside = pixel_of(view.camera, view.size, light.position + step / sine * across);
     if (!beside || *beside == lamp.at) return;
     lamp.axis = glm::normalize(*beside - lamp.at), lamp.half_angle = std::asin(reach / sine);

@@ -135,12 +135,12 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
     return angle;
 }
 
-// Cell sizes come in steps of a quarter octave and corners at whole multiples, so that the grid stands still while the
-// fog in it drifts and its bounds change a little from frame to frame.
-float stable_size(float cell) { return std::exp2(0.25f * std::round(4 * std::log2(cell))); }
+// Cell sizes come in steps of a quarter octave of `unit` and corners at whole multiples, so that the grid stands still
+// while the fog in it drifts and its bounds change a little from frame to frame.
+float stable_size(float cell, float unit) { return unit * std::exp2(0.25f * std::round(4 * std::log2(cell / unit))); }
 
-vec3 stable_anchor(vec3 point, float extent) {
-    const float step = std::exp2(std::ceil(std::log2(extent)) + 2);
+vec3 stable_anchor(vec3 point, float extent, float unit) {
+    const float step = unit * std::exp2(std::ceil(std::log2(extent / unit)) + 2);
     return glm::round(point / step) * step;
 }
 
@@ -166,39 +166,39 @@ void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
 
 // Columns along the sun's rays.
 void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, const Box& fog,
-             float cells, LightDepthGrid& grid) {
+             float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::parallel;
-    grid.position = stable_anchor(fog.center(), max_component(fog.size()) + blocks[0].radius);
+    grid.position = stable_anchor(fog.center(), max_component(fog.size()) + blocks[0].radius, voxel);
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
     const vec3 extent = fit.high - fit.low;
-    set_size(fit, vec3(stable_size(std::max(extent.x, extent.y) / cells)), grid);
+    set_size(fit, vec3(stable_size(std::max(extent.x, extent.y) / cells, voxel)), grid);
 }
 
 // Distances along columns that spread from a local light: cells, `width` across at distance 1, are cubes two thirds of
 // the way out.
-void fit_distances(const Light& light, Fit fit, float cell, float width, LightDepthGrid& grid) {
+void fit_distances(const Light& light, Fit fit, float cell, float width, float voxel, LightDepthGrid& grid) {
     grid.position = light.position;
     grid.start = fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
     if (!(fit.high.z > fit.low.z)) return;
     const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
-    set_size(fit, vec3(cell, cell, stable_size(width * reference)), grid);
+    set_size(fit, vec3(cell, cell, stable_size(width * reference, voxel)), grid);
 }
 
 void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, vec3 axis,
-                   float angle, float cells, LightDepthGrid& grid) {
+                   float angle, float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::perspective;
     const float tangent = std::tan(std::max(angle, 1e-3f));
     const Fit fit = tightest(media, axis, grid,
                              [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
     if (fit.empty()) return;
-    const float width = stable_size(std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells);
-    fit_distances(light, fit, width, width, grid);
+    const float width = stable_size(std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells, 1);
+    fit_distances(light, fit, width, width, voxel, grid);
 }
 
 // All directions: the octahedron's square of side 2 holds a solid angle of 4π; two thirds of it lie across the fog. An
 // even number of cells, as the square folds about its middle.
-void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, LightDepthGrid& grid) {
+void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::all_around;
     Fit fit;
     fit.grow(0, -1, 1), fit.grow(1, -1, 1);
@@ -207,7 +207,7 @@ void fit_octahedron(std::span<const Block> blocks, const Light& light, float cel
         fit.grow(2, distance - block.radius, distance + block.radius);
     }
     const float width = 1 / std::ceil(cells * (2 / 3.0f));
-    fit_distances(light, fit, width, width * std::sqrt(pi), grid);
+    fit_distances(light, fit, width, width * std::sqrt(pi), voxel, grid);
 }
 }
 
@@ -218,8 +218,9 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
     Box fog;
     for (const Block& block : blocks) fog.grow(block.center);
     const float cells = static_cast<float>(std::max(resolution, 1));
+    const float voxel = glm::length(vec3(media[0]->density.bricks->index_to_world[0]));
     if (is_distant(light)) {
-        fit_sun(media, blocks, light, fog, cells, grid);
+        fit_sun(media, blocks, light, fog, cells, voxel, grid);
         return grid;
     }
 
@@ -228,9 +229,9 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
     const vec3 axis = spot ? light.direction : stable_direction(fog.center() - light.position);
     const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);
     if (spot || angle < widest_view)
-        fit_cone_grid(media, blocks, light, axis, angle, cells, grid);
+        fit_cone_grid(media, blocks, light, axis, angle, cells, voxel, grid);
     else
-        fit_octahedron(blocks, light, cells, grid);
+        fit_octahedron(blocks, light, cells, voxel, grid);
     return grid;
 }
 }

@@ -33,7 +33,7 @@ template<auto member> Slot of_light(Scene& scene, size_t i) { return &(scene.lig
 template<auto member> Slot of_medium(Scene& scene, size_t i) { return &(scene.media[i].*member); }
 template<auto member> Slot of_camera(Scene& scene, size_t i) { return &(scene.cameras[i].*member); }
 
-constexpr float far = 1e9f, bright = 1e12f, tiny = 1e-6f;
+constexpr float far = 1e9f, bright = 1e18f, tiny = 1e-6f;
 
 const Property table[] = {
     // lights
@@ -79,13 +79,13 @@ const Property table[] = {
      of_medium<&MediumSource::height_base>, is_height},
     {Part::medium, "falloff", number, "m", tiny, far, 0.1f, 50, "Metres over which the density falls to 1/e",
      of_medium<&MediumSource::height_falloff>, is_height},
-    {Part::medium, "wind", vector, "m/s", -1000, 1000, -2, 2, "Carries the noise",
+    {Part::medium, "wind", vector, "m/s", -far, far, -2, 2, "Carries the noise",
      [](Scene& s, size_t i) -> Slot { return &s.media[i].recipe->wind; }, is_noise},
     {Part::medium, "translate", vector, "m", -far, far, -10, 10, "Moves the fog", of_medium<&MediumSource::translation>,
      always},
     {Part::medium, "rotate", vector, "degrees", -far, far, -180, 180, "Turns the fog about X, then Y, then Z",
      of_medium<&MediumSource::rotate>, always},
-    {Part::medium, "scale", vector, "", -1e6f, 1e6f, 0.1f, 10, "Factors along the fog's own axes, not 0",
+    {Part::medium, "scale", vector, "", -far, far, 0.1f, 10, "Factors along the fog's own axes, not 0",
      of_medium<&MediumSource::scale>, always},
     {Part::medium, "bounds/low", vector, "m", -far, far, -20, 20, "Lower corner of the box the fog fills",
      [](Scene& s, size_t i) -> Slot { return &s.media[i].bounds.low; }, has_bounds},

@@ -42,7 +42,7 @@ struct FogPieces {
     double depth_at(size_t piece, double t) const; // optical depth from the ray's start
 };
 
-// Replaces `fog` by the pieces of the ray 0..t_max. Left out is what lies beyond 10000 km, behind optical depth 64 of
+// Replaces `fog` by the pieces of the ray 0..t_max. Left out is what lies beyond 1e12 m, behind optical depth 64 of
 // fog in closed form, or where the transmittance has sunk below the least one.
 void find_fog(const Ray& ray, std::span<const Medium> media, double min_transmittance, FogPieces& fog);
 }

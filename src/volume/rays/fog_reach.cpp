@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-constexpr float horizon = 1e9f;     // metres; no ray goes further
+constexpr float horizon = 1e12f;    // metres; no ray goes further
 constexpr double opaque_depth = 20; // e^-20 = 2e-9
 constexpr double negligible_depth = 1e-6;
 
@@ -19,7 +19,7 @@ float reach_of_unbounded(const Medium& medium, const Ray& ray) {
     if (!(total > negligible_depth)) return 0;
     const double enough = std::min(opaque_depth, total - negligible_depth);
 
-    float low = 0, high = 1;
+    float low = 0, high = std::min(1 / medium.majorant(), horizon);
     while (high < horizon && depth_to(medium, ray, high) < enough) low = high, high *= 2;
     for (int i = 0; i < 4; ++i) {
         const float middle = 0.5f * (low + high);

@@ -5,10 +5,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double farthest = 1e7; // metres; fog without end is cut here
+constexpr double farthest = 1e12; // metres; fog without end is cut here
 constexpr double ln2 = 0.69314718055994530942;
 constexpr int highest_band = 24; // density 2^-24 of the ground's; above it height fog is left out
-constexpr double closest = 1e-3; // metres: nearer to a light steps shrink no further
 
 // Calls visit(stretch, largest density, smallest density) along homogeneous or height fog. Height fog comes in bands
 // over which its density halves: band k lies (k-1)·ln 2 to k·ln 2 fall-offs above the base, band 0 below it.
@@ -90,7 +89,8 @@ void append_spans(const Ray& ray, const Medium& medium, double t_end, const Step
     });
 }
 
-void append_near_spans(const Ray& ray, vec3 point, double ratio, double longest, std::vector<Span>& spans) {
+void append_near_spans(const Ray& ray, vec3 point, double closest, double ratio, double longest,
+                       std::vector<Span>& spans) {
     const dvec3 direction(ray.direction), to_point = dvec3(point) - dvec3(ray.origin);
     const double middle = glm::dot(to_point, direction);
     const double distance = glm::length(to_point - middle * direction);

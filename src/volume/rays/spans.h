@@ -21,8 +21,9 @@ double horizon(const Ray& ray, std::span<const Medium> media);
 void append_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule, std::vector<Span>& spans);
 
 // Appends stretches around a local light, each with the rate its distance asks for, where steps of that are shorter
-// than `longest`.
-void append_near_spans(const Ray& ray, vec3 point, double ratio, double longest, std::vector<Span>& spans);
+// than `longest`. Distances below `closest` count as that.
+void append_near_spans(const Ray& ray, vec3 point, double closest, double ratio, double longest,
+                       std::vector<Span>& spans);
 
 // Where both lists have a span extinctions add and the larger rate holds. Without `keep_second`, stretches only the
 // second list has are left out.

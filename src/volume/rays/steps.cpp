@@ -58,7 +58,7 @@ void refine_near(const Ray& ray, const StepRule& rule, const Rates& rates, Scrat
     for (const Span& span : scratch.spans) lowest = std::min(lowest, rates.of(span));
     for (const vec3 point : rule.near_points) {
         scratch.more.clear();
-        append_near_spans(ray, point, rule.near_ratio, 1 / lowest, scratch.more);
+        append_near_spans(ray, point, rule.near_least, rule.near_ratio, 1 / lowest, scratch.more);
         refine(scratch);
     }
     for (const Step& beam : rule.beams) {

@@ -18,13 +18,14 @@ struct StepRule {
     float length = 1;                  // longest step anywhere, metres
     int most = 4096;                   // steps a ray may take; longer steps beyond
     std::span<const vec3> near_points; // positions of local lights ...
-    float near_ratio = 0.25f;          // ... a step is at most this share of the distance to each (counted as >= 1 mm)
+    float near_ratio = 0.25f;          // ... a step is at most this share of the distance to each (but see near_least)
     std::span<const Step> beams{};     // stretches of the ray that need steps of their own ...
     float beam_steps = 8;              // ... at least so many, of equal length
+    float near_least = 1e-3f;          // metres: distances below count as this
 };
 
 // Appends the steps of the ray 0..t_max, ascending and disjoint; together they cover all fog. Steps are equal shares of
 // the local bounds added up, so none is a sliver, and halving every bound halves every step. Left out is what nobody
-// can see: behind optical depth 64 of fog in closed form, height fog thinner than 2^-24, anything beyond 10000 km.
+// can see: behind optical depth 64 of fog in closed form, height fog thinner than 2^-24, anything beyond 1e12 m.
 void append_steps(const Ray& ray, std::span<const Medium> media, const StepRule& rule, std::vector<Step>& steps);
 }

@@ -46,7 +46,7 @@ double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, doubl
 }
 
 double strength(const Light& light, dvec3 to_light, double distance) {
-    const double reach = std::max(light.radius, smallest_radius);
+    const double reach = capped_radius(light);
     double amount = 1 / std::max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) amount *= std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
     if (!has_cone(light)) return amount;
@@ -115,7 +115,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
     for (const Medium& medium : media) add(inside(medium.density.bounds, o, d, ray.t_max));
     if (has_cone(light))
         add(inside_cone(apex, axis, light.outer_cone, o, d)), add(inside_cone(apex, axis, light.inner_cone, o, d));
-    for (const double radius : {double(light.range), double(std::max(light.radius, smallest_radius))})
+    for (const double radius : {double(light.range), double(capped_radius(light))})
         if (!sun && radius > off && std::isfinite(radius)) {
             const double half = std::sqrt(radius * radius - off * off);
             add({nearest - half, nearest + half});

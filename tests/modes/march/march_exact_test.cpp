@@ -84,7 +84,7 @@ TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
 
 TEST(MarchExact, RayThroughTheLightItself) {
     // Inside 0.1 mm the inverse square law is held: s/(4π)·(2·∫ from 1e-4 + 2·1e-4/1e-8), with e^(-s(t+r)) in thin fog.
-    const double s = 1e-3f, reach = smallest_radius;
+    const double s = 1e-3f, reach = Light{}.core;
     const Stage stage = stage_of({homogeneous_medium(1e-3f)}, {point_light({0, 0, 0})}, {});
     const double expected = s / four_pi * (2 * (1 / reach - 1.0 / 2) + 2 / reach) * std::exp(-s * 2);
     const Scatter result = marched(stage.snapshot, exact_settings(), {{-2, 0, 0}, {1, 0, 0}, 4});

@@ -29,8 +29,8 @@ TEST(FogReach, FollowsEndlessFogToOpticalDepth20) {
         EXPECT_GE(depth, 20 * (1 - 1e-6)) << extinction;
         EXPECT_LE(depth, extinction > 20 ? 30 * 1.1 : 20 * 1.1) << extinction;
     }
-    // Fog so thin that it takes more than the horizon of 1e9 m.
-    EXPECT_EQ(fog_reach(std::vector{homogeneous_medium(1e-12f)}, forward), 1e9f);
+    // Fog so thin that it takes more than the horizon of 1e12 m.
+    EXPECT_EQ(fog_reach(std::vector{homogeneous_medium(1e-15f)}, forward), 1e12f);
 }
 
 TEST(FogReach, LosesLessThanAMillionthOfFogThatThinsOut) {
