@@ -3,6 +3,12 @@
 
 namespace tyndall {
 namespace {
+Json world_place(const RayStory& story) {
+    const dvec3 place = dvec3(story.origin) + story.world_origin;
+    if (story.world_origin == dvec3(0)) return story.origin;
+    return std::vector{place.x, place.y, place.z};
+}
+
 Json surface_json(const SurfaceOnRay& surface) {
     return json_object({{"distance", surface.distance},
                         {"name", surface.name},
@@ -78,7 +84,7 @@ std::string explain_json(const RayStory& story, const StoryTitle& title) {
                       {"quality", title.quality},
                       {"pixel", story.pixel},
                       {"size", story.size},
-                      {"origin", story.origin},
+                      {"origin", world_place(story)},
                       {"direction", story.direction},
                       {"end", story.end},
                       {"hits", story.hits},

@@ -5,16 +5,34 @@
 #include <glm/gtc/quaternion.hpp>
 
 namespace tyndall {
-mat4 node_matrix(const Scene& scene, int node, double seconds) {
-    mat4 world(1);
-    for (; node >= 0; node = scene.nodes[node].parent) {
-        const Node& here = scene.nodes[node];
-        world = (here.matrix
-                     ? *here.matrix
-                     : glm::translate(mat4(1), here.translation.at(seconds)) *
-                           glm::mat4_cast(here.rotation.at(seconds)) * glm::scale(mat4(1), here.scale.at(seconds))) *
-                world;
+namespace {
+mat4 own_matrix(const Node& node, double seconds) {
+    if (node.matrix) return *node.matrix;
+    return glm::translate(mat4(1), node.translation.at(seconds)) * glm::mat4_cast(node.rotation.at(seconds)) *
+           glm::scale(mat4(1), node.scale.at(seconds));
+}
+}
+
+dmat4 world_matrix(const Scene& scene, int node, double seconds) {
+    dmat4 world(1);
+    for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
+        const Node& here = scene.nodes[static_cast<size_t>(node)];
+        dmat4 own(own_matrix(here, seconds));
+        own[3] += glm::dvec4(here.remainder, 0);
+        world = own * world;
     }
+    return world;
+}
+
+mat4 node_matrix(const Scene& scene, int node, double seconds) {
+    if (scene.origin != dvec3(0)) {
+        dmat4 world = world_matrix(scene, node, seconds);
+        world[3] -= glm::dvec4(scene.origin, 0);
+        return mat4(world);
+    }
+    mat4 world(1);
+    for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent)
+        world = own_matrix(scene.nodes[static_cast<size_t>(node)], seconds) * world;
     return world;
 }
 

@@ -24,6 +24,7 @@ struct Node {
     Keyed<quat> rotation{quat(1, 0, 0, 0)};
     Keyed<vec3> scale{vec3(1)};
     std::optional<mat4> matrix; // instead of the three
+    dvec3 remainder{0};         // of the place in the file, beyond what floats hold
 };
 
 struct Instance {
@@ -97,6 +98,7 @@ struct Billboard {
 
 struct Scene {
     std::filesystem::path file;
+    dvec3 origin{0}; // what all places count from, in the world: 0 unless the scene lies far out
     double frame_rate = 24;
     int first_frame = 1, last_frame = 1; // what --frames means when it is not given
     ivec2 resolution{640, 360};
@@ -123,7 +125,9 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options =
 // A scene from the text of a scene file that need not exist: paths in it are relative to where `file` would be.
 Scene load_scene_text(std::string_view text, const std::filesystem::path& file, const LoadOptions& options = {});
 
-mat4 node_matrix(const Scene& scene, int node, double seconds); // local to world
+// Local to world, and the same counted from the scene's origin. Node -1 is the world.
+dmat4 world_matrix(const Scene& scene, int node, double seconds);
+mat4 node_matrix(const Scene& scene, int node, double seconds);
 
 // Whether the scene gives keys to a node (-1 = none) or one above it.
 bool is_moving(const Scene& scene, int node);

@@ -18,7 +18,7 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& glow) 
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (!glows(scene, mesh)) return;
     const float brightness = luminance(scene.materials[mesh.material].emission);
-    const mat4 matrix = instance.node < 0 ? mat4(1) : node_matrix(scene, instance.node, snapshot.seconds);
+    const mat4 matrix = node_matrix(scene, instance.node, snapshot.seconds);
     std::vector<int>& places = glow.by_shape[index];
     places.assign(mesh.triangles.size(), -1);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {

@@ -72,8 +72,9 @@ BackgroundNow background_at(const Background& background, double seconds) {
 bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
 
 // Of the scene and its camera at the first frame; without any place, how far light gets in the fog. What must not
-// depend on the unit of length is a share of this.
-float scene_extent(const Scene& scene) {
+// depend on the unit of length is a share of the extent, and lattices that stand still in the world stand on the
+// anchor.
+void set_extent(const Scene& scene, Snapshot& snapshot) {
     const double seconds = moment_of(scene, scene.first_frame).seconds;
     Box box = scene_bounds(scene, seconds);
     for (const LightSource& light : scene.lights)
@@ -86,11 +87,12 @@ float scene_extent(const Scene& scene) {
         else
             box.grow(camera.position.at(seconds)), box.grow(camera.target.at(seconds));
     }
+    if (!box.empty() && is_finite(box.low) && is_finite(box.high)) snapshot.anchor = box.center();
     const float size = box.empty() ? 0 : glm::length(box.size());
-    if (size > 0 && std::isfinite(size)) return size;
+    if (size > 0 && std::isfinite(size)) return void(snapshot.extent = size);
     float extinction = 0;
     for (const MediumSource& medium : scene.media) extinction = std::max(extinction, medium.extinction.at(seconds));
-    return extinction > 0 ? 1 / extinction : Snapshot{}.extent;
+    if (extinction > 0) snapshot.extent = 1 / extinction;
 }
 
 Box scene_bounds(const Snapshot& snapshot) {
@@ -114,7 +116,10 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     snapshot.scene = &scene;
     snapshot.seconds = moment.seconds, snapshot.frame = moment.frame;
     if (previous && previous->scene != &scene) previous = nullptr;
-    snapshot.extent = previous ? previous->extent : scene_extent(scene);
+    if (previous)
+        snapshot.anchor = previous->anchor, snapshot.extent = previous->extent;
+    else
+        set_extent(scene, snapshot);
     for (const LightSource& source : scene.lights) {
         Light light = light_at(scene, source, moment.seconds);
         light.core = core_share * snapshot.extent;

@@ -43,7 +43,8 @@ struct Snapshot {
     vec3 ambient{0};
     BackgroundNow background;
     std::shared_ptr<const Occluders> occluders;
-    float extent = 10;                        // metres: how large the scene is, the same in every frame
+    vec3 anchor{0};                           // the middle of the scene, the same in every frame
+    float extent = 10;                        // metres: how large it is, the same in every frame
     Box bounds;                               // of meshes, local lights and bounded media
     std::vector<std::string> notes;           // what was mended in the files of this frame; say once
     std::vector<FogSource> fog_sources;       // one per medium of the scene: what the next frame can use again

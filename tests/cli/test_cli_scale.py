@@ -1,4 +1,4 @@
-"""The same scene in other units of length gives the same picture: nothing but what the scene says is measured in metres."""
+"""The same scene in other units of length, or far from the world's origin, gives the same picture."""
 import json
 import unittest
 
@@ -27,27 +27,42 @@ class Scale(ProgramTest):
                      "--frames", "1", "--quality", "draft", "--seed", "1", "-q", *settings)
         self.assertEqual(result.returncode, 0, result.stderr)
 
-    def check(self, source, factors):
+    def check(self, source, factors, offsets={}):
         plain = self.path("plain.json")
         write_moved(source, plain)
         self.render(plain, 1)
-        for number, (factor, largest) in enumerate(factors.items()):
-            scaled = self.path(f"scaled{number}.json")
-            write_moved(source, scaled, factor)
-            self.render(scaled, factor)
+        cases = [(factor, (0, 0, 0), most) for factor, most in factors.items()]
+        cases += [(1, offset, most) for offset, most in offsets.items()]
+        for number, (factor, offset, largest) in enumerate(cases):
+            moved = self.path(f"moved{number}.json")
+            write_moved(source, moved, factor, offset)
+            self.render(moved, factor)
             for mode in MODES:
-                result = run("compare", "--json", scaled.with_suffix(f".{mode}.exr"), plain.with_suffix(f".{mode}.exr"))
+                result = run("compare", "--json", moved.with_suffix(f".{mode}.exr"), plain.with_suffix(f".{mode}.exr"))
                 error = json.loads(result.stdout)["metrics"]["E"]
-                self.assertLessEqual(error, largest, f"{source} times {factor}, {mode}")
+                self.assertLessEqual(error, largest, f"{source} times {factor} at {offset}, {mode}")
+        return moved
 
     # Powers of two round nothing, so pictures are the same. Others move edges by a rounding.
     def test_lamps(self):
         source = self.path("lamps.json")
         source.write_text(json.dumps(LAMPS))
-        self.check(source, {2.0**-10: 1e-6, 1e-3: 1e-3, 1e5: 1e-3, 2.0**16: 1e-6})
+        self.check(source, {2.0**-10: 1e-6, 1e-3: 1e-3, 1e5: 1e-3, 2.0**16: 1e-6},
+                   {(1e5, 2e4, -5e4): 1e-4, (1000000.3, -12345.6, 777777.7): 3e-3})
 
     def test_spots_over_figures(self):
         self.check(SOURCE / "scenes/spotlight.json", {2.0**-10: 1e-4, 1e-3: 3e-3, 1e5: 3e-3, 2.0**16: 1e-4})
+
+    def test_columns_far_from_the_origin(self):
+        moved = self.check(SOURCE / "scenes/pillars.json", {}, {(1e7, 0, -1e7): 1e-3, (1e6, 2e5, -3e6): 1e-3})
+        # Places are told in the world, to the millimetre.
+        story = json.loads(run("explain", moved, "--pixel", "32,18", "--res", "64x36", "--frame", "1", "--json",
+                               "-q").stdout)
+        for value, expected in zip(story["origin"], (1e6 - 1.6, 2e5 + 2.0, -3e6 + 9.5)):
+            self.assertAlmostEqual(value, expected, delta=0.1)
+        bounds = json.loads(run("info", moved, "--json").stdout)["bounds"]
+        self.assertAlmostEqual(bounds["low"][1], 2e5, delta=10)
+        self.assertNotEqual(bounds["low"][0], bounds["high"][0])
 
 
 if __name__ == "__main__":

@@ -37,6 +37,15 @@ Totals totals_of(const Scene& scene) {
     return totals;
 }
 
+Json world_box(const Box& box, dvec3 origin) {
+    if (origin == dvec3(0) || box.empty()) return box;
+    const auto place = [&](vec3 corner) {
+        const dvec3 world = origin + dvec3(corner);
+        return Json(std::vector{world.x, world.y, world.z});
+    };
+    return json_object({{"low", place(box.low)}, {"high", place(box.high)}});
+}
+
 Json lights_json(const Scene& scene) {
     return json_list(scene.lights, [](const LightSource& light) {
         return json_object({{"name", light.name},
@@ -75,7 +84,7 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
                       {"triangles", totals.triangles},
                       {"materials", scene.materials.size()},
                       {"textures", scene.textures.size()},
-                      {"bounds", totals.bounds},
+                      {"bounds", world_box(totals.bounds, scene.origin)},
                       {"animated_nodes", totals.animated_nodes},
                       {"animation_seconds", totals.last_key},
                       {"cameras", cameras},
@@ -93,7 +102,8 @@ std::string content_text(const Scene& scene) {
                        count_text(scene.meshes.size(), "mesh") + ", " + count_text(scene.materials.size(), "material") +
                        ", " + count_text(scene.textures.size(), "texture") + "\n";
     if (!totals.bounds.empty())
-        text += "  world         " + vector_text(totals.bounds.low) + " to " + vector_text(totals.bounds.high) + " m\n";
+        text += "  world         " + place_text(totals.bounds.low, scene.origin) + " to " +
+                place_text(totals.bounds.high, scene.origin) + " m\n";
     if (totals.animated_nodes)
         text += "  animation     " + count_text(totals.animated_nodes, "node") + ", " +
                 seconds_text(double{totals.last_key}) + "\n";

@@ -98,8 +98,9 @@ double difference(const Answer& answer, const Answer& reference);
 struct RayStory {
     ivec2 pixel{0}, size{0};
     vec3 origin{0}, direction{0, 0, -1};
-    double end = 0;    // of the ray: its opaque surface, or where no more fog is to be seen
-    bool hits = false; // whether an opaque surface is there
+    dvec3 world_origin{0}; // what `origin` counts from
+    double end = 0;        // of the ray: its opaque surface, or where no more fog is to be seen
+    bool hits = false;     // whether an opaque surface is there
     std::vector<SurfaceOnRay> surfaces;
     vec3 background{0}; // radiance, and the share of it that arrives
     float background_share = 0;

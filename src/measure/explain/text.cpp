@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "measure/report/grid_report.h"
 
 #include <algorithm>
 
@@ -20,7 +21,8 @@ std::string surface_text(const SurfaceOnRay& surface) {
 
 std::string ray_text(const RayStory& story) {
     std::string text = "The ray\n";
-    text += "  from " + color_text(story.origin) + " m towards " + color_text(story.direction) + "\n";
+    text +=
+        "  from " + place_text(story.origin, story.world_origin) + " m towards " + color_text(story.direction) + "\n";
     if (story.steps.empty()) {
         text += "  no fog on its way\n";
     } else {

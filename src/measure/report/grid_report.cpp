@@ -8,6 +8,11 @@ std::string vector_text(vec3 v) {
     return formatted("%.4g %.4g %.4g", static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
 }
 
+std::string place_text(vec3 place, dvec3 origin) {
+    const dvec3 world = origin + dvec3(place);
+    return origin == dvec3(0) ? vector_text(place) : formatted("%.10g %.10g %.10g", world.x, world.y, world.z);
+}
+
 ivec3 voxels_across(const VdbGridInfo& grid) { return glm::max(grid.active_high - grid.active_low + 1, ivec3(0)); }
 
 Box world_bounds(const VdbGridInfo& grid) {

@@ -5,6 +5,7 @@
 namespace tyndall {
 // "0.1 0.2 0.3": for people.
 std::string vector_text(vec3 value);
+std::string place_text(vec3 place, dvec3 origin); // counted from an origin, in the world
 
 ivec3 voxels_across(const VdbGridInfo& grid);
 

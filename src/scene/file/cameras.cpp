@@ -11,12 +11,12 @@ void check_aim(const CameraSource& camera, const Field& field) {
         if (up == vec3(0)) refuse(field.member("up"), "has no direction: its length is 0");
 }
 
-CameraSource camera_source(const Field& field, std::string_view default_name) {
+CameraSource camera_source(const Field& field, std::string_view default_name, dvec3 origin) {
     CameraSource camera;
     camera.name = field.json->string_or("name", default_name);
     camera.entry = field.pointer;
-    camera.position = keyed_vector(field.member("position"));
-    camera.target = keyed_vector(field.member("target"));
+    camera.position = keyed_place(field.member("position"), origin);
+    camera.target = keyed_place(field.member("target"), origin);
     if (const Field up = field.member("up")) camera.up = keyed_vector(up);
     check_aim(camera, field);
 
@@ -59,14 +59,14 @@ void read_cameras(const Field& root, Scene& scene) {
         for (size_t i = 0; i < cameras.json->items.size(); ++i) {
             const Field field = cameras.item(i);
             if (!field.member("name")) refuse(field, "a camera in a list needs a name");
-            add(camera_source(field, ""), field, scene);
+            add(camera_source(field, "", scene.origin), field, scene);
         }
     if (static_cast<int>(scene.cameras.size()) > first_here) scene.camera = first_here;
 
     const Field chosen = root.member("camera");
     if (!chosen) return;
     if (chosen.json->kind == Json::Kind::object) {
-        add(camera_source(chosen, "camera"), chosen, scene);
+        add(camera_source(chosen, "camera", scene.origin), chosen, scene);
         scene.camera = static_cast<int>(scene.cameras.size()) - 1;
         return;
     }

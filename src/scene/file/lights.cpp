@@ -26,7 +26,7 @@ void check_fields(const Field& field, const LightTraits& kind) {
 }
 
 // Where the light is and shines: given here, or left with the node of the glTF.
-void read_placement(const Field& field, LightSource& light) {
+void read_placement(const Field& field, dvec3 origin, LightSource& light) {
     const Field position = field.member("position"), target = field.member("target");
     const Field direction = field.member("direction");
     if (!position && !target && !direction) {
@@ -39,10 +39,10 @@ void read_placement(const Field& field, LightSource& light) {
     if (is_distant(light) && target && !position)
         refuse(target, "needs a position to aim from; a sun can have a direction instead");
     light.node = -1;
-    if (position) light.position = keyed_vector(position);
+    if (position) light.position = keyed_place(position, origin);
     if (direction) light.direction = keyed_vector(direction);
     light.target.reset();
-    if (target) light.target = keyed_vector(target);
+    if (target) light.target = keyed_place(target, origin);
     if (target) light.direction = difference(*light.target, light.position, target);
     for (const vec3 value : light.direction.values)
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
@@ -116,7 +116,7 @@ void read_lights(const Field& root, Scene& scene) {
         if (!known && find(scene, light.name)) refuse(field, "the name \"" + light.name + "\" is taken");
         check_fields(field, traits_of(light.kind));
         light.entry = field.pointer;
-        read_placement(field, light);
+        read_placement(field, scene.origin, light);
         read_fields(field, light);
         if (known)
             *known = light;
@@ -135,7 +135,8 @@ void read_billboards(const Field& root, Scene& scene) {
         card.light = field.member("light").json->string;
         if (!find(scene, card.light))
             refuse(field.member("light"), unknown_name("light", card.light, light_names(scene)));
-        card.from = read_vector(field.member("from")), card.to = read_vector(field.member("to"));
+        card.from = vec3(read_place(field.member("from")) - scene.origin);
+        card.to = vec3(read_place(field.member("to")) - scene.origin);
         if (card.from == card.to) refuse(field.member("to"), "is the same point as from");
         if (const Field width = field.member("width_from")) card.width_from = read_number(width);
         if (const Field width = field.member("width_to")) card.width_to = read_number(width);

@@ -17,8 +17,9 @@ PhaseKind phase_named(std::string_view name) {
     return static_cast<PhaseKind>(std::ranges::find(phase_kinds, name, &PhaseTraits::name) - phase_kinds);
 }
 
-void read_transform(const Field& field, MediumSource& medium) {
-    if (const Field translate = field.member("translate")) medium.translation = keyed_vector(translate);
+void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
+    const Field translate = field.member("translate");
+    medium.translation = translate ? keyed_place(translate, origin) : Keyed<vec3>(vec3(dvec3(0) - origin));
     if (const Field rotate = field.member("rotate"))
         medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
     const Field scale = field.member("scale");
@@ -28,10 +29,11 @@ void read_transform(const Field& field, MediumSource& medium) {
         if (value.x * value.y * value.z == 0) refuse(scale, "must not be 0: the fog would have no volume");
 }
 
-void read_bounds(const Field& field, MediumSource& medium) {
+// `origin` is that of a medium without a transform, whose own space is then counted from there.
+void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
     const Field bounds = field.member("bounds");
     if (!bounds) return;
-    medium.bounds = {read_vector(bounds.member("low")), read_vector(bounds.member("high"))};
+    medium.bounds = {vec3(read_place(bounds.member("low")) - origin), vec3(read_place(bounds.member("high")) - origin)};
     for (int axis = 0; axis < 3; ++axis)
         if (medium.bounds.low[axis] >= medium.bounds.high[axis])
             refuse(bounds.member("high").item(axis), "must be greater than low");
@@ -132,9 +134,13 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     if (medium.kind == MediumKind::vdb) read_vdb_source(field, medium, scene);
     medium.z_up = field.json->string_or("up_axis", "Y") == "Z";
     read_optics(field, medium);
-    read_bounds(field, medium);
-    read_transform(field, medium);
+    const bool moved = field.member("translate") || field.member("rotate") || field.member("scale");
+    const bool analytic = medium.kind == MediumKind::homogeneous || medium.kind == MediumKind::height;
+    const dvec3 in_bounds = analytic && !moved ? scene.origin : dvec3(0);
+    read_bounds(field, in_bounds, medium);
+    read_transform(field, scene.origin - in_bounds, medium);
     if (const Field base = field.member("base")) medium.height_base = keyed_number(base);
+    for (float& base : medium.height_base.values) base = static_cast<float>(double{base} - scene.origin.y);
     if (const Field falloff = field.member("falloff")) medium.height_falloff = keyed_number(falloff);
     return medium;
 }

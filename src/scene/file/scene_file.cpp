@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "scene/file/origin.h"
 #include "scene/file/stand_ins.h"
 #include "scene/gltf/gltf.h"
 #include "scene_schema.h"
@@ -72,6 +73,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
     } else if (const Field lights = root.member("gltf_lights")) {
         refuse(lights, "says nothing without a glTF");
     }
+    scene.origin = far_origin(root, scene);
     read_cameras(root, scene);
     read_lights(root, scene);
     read_media(root, scene);
@@ -116,6 +118,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
         if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
     if (extension == ".gltf" || extension == ".glb") {
         load_gltf(file, options, scene);
+        scene.origin = far_origin({}, scene);
         add_missing_light_and_fog(scene);
     } else {
         const Json document = parse_json(read_file(file), file.string());

@@ -16,7 +16,7 @@ Interpolation interpolation_named(std::string_view name) {
     return name == "smooth" ? Interpolation::smooth : Interpolation::linear;
 }
 
-template<class T> Keyed<T> keyed(const Field& field, T (*read)(const Field&)) {
+template<class T, class Read> Keyed<T> keyed(const Field& field, const Read& read) {
     if (field.json->kind != Json::Kind::object) return read(field);
     const Field keys = field.member("keys");
     Keyed<T> result;
@@ -65,6 +65,13 @@ vec3 read_vector(const Field& field) {
     return {read_number(field.item(0)), read_number(field.item(1)), read_number(field.item(2))};
 }
 
+dvec3 read_place(const Field& field) {
+    if (field.json->kind == Json::Kind::object) return read_place(field.member("keys").item(0).item(1));
+    dvec3 place;
+    for (int axis = 0; axis < 3; ++axis) place[axis] = field.item(static_cast<size_t>(axis)).json->number;
+    return place;
+}
+
 vec3 read_color(const Field& field) {
     return field.json->kind == Json::Kind::number ? vec3(read_number(field)) : read_vector(field);
 }
@@ -72,6 +79,9 @@ vec3 read_color(const Field& field) {
 Keyed<float> keyed_number(const Field& field) { return keyed<float>(field, read_number); }
 Keyed<float> keyed_degrees(const Field& field) { return keyed<float>(field, read_degrees); }
 Keyed<vec3> keyed_vector(const Field& field) { return keyed<vec3>(field, read_vector); }
+Keyed<vec3> keyed_place(const Field& field, dvec3 origin) {
+    return keyed<vec3>(field, [&](const Field& place) { return vec3(read_place(place) - origin); });
+}
 Keyed<vec3> keyed_color(const Field& field) { return keyed<vec3>(field, read_color); }
 
 Keyed<quat> rotation_of(const Keyed<vec3>& degrees) {

@@ -22,12 +22,14 @@ struct Field {
 
 float read_number(const Field& field);
 vec3 read_vector(const Field& field); // [x, y, z]
+dvec3 read_place(const Field& field); // of [x, y, z], or of the first key
 vec3 read_color(const Field& field);  // [r, g, b], or one number for all three
 inline float read_degrees(const Field& field) { return glm::radians(read_number(field)); }
 
 Keyed<float> keyed_number(const Field& field);
 Keyed<float> keyed_degrees(const Field& field); // to radians
 Keyed<vec3> keyed_vector(const Field& field);
+Keyed<vec3> keyed_place(const Field& field, dvec3 origin); // counted from an origin
 Keyed<vec3> keyed_color(const Field& field);
 
 // Degrees about X, then Y, then Z. Turns between keys stay as written, however far: they are cut into small steps.

@@ -60,9 +60,10 @@ void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& chann
     if (index < 0) return;
     Node& node = document.scene->nodes[index];
     if (node.matrix) return document.count("animations of nodes with a matrix are left out");
-    if (channel.target_path == "translation")
+    if (channel.target_path == "translation") {
         play(document, keys_of<vec3>(document, sampler, 3, pointer), node.translation);
-    else if (channel.target_path == "scale")
+        node.remainder = dvec3(0);
+    } else if (channel.target_path == "scale")
         play(document, keys_of<vec3>(document, sampler, 3, pointer), node.scale);
     else if (channel.target_path == "rotation") {
         Keyed<quat> keys = keys_of<quat>(document, sampler, 4, pointer);

@@ -28,9 +28,13 @@ void read_place(GltfDocument& document, const tinygltf::Node& source, Node& node
         matrix[0].w = matrix[1].w = matrix[2].w = 0, matrix[3].w = 1;
         if (std::abs(glm::determinant(glm::dmat3(matrix))) < 1e-30) document.count("nodes are scaled to nothing");
         node.matrix = matrix;
+        for (int axis = 0; axis < 3; ++axis) node.remainder[axis] = source.matrix[12 + axis] - matrix[3][axis];
         return;
     }
     node.translation = triple(source.translation, vec3(0));
+    for (size_t axis = 0; axis < source.translation.size() && axis < 3; ++axis)
+        node.remainder[static_cast<int>(axis)] =
+            source.translation[axis] - node.translation.values[0][static_cast<int>(axis)];
     const vec3 scale = triple(source.scale, vec3(1));
     if (scale.x * scale.y * scale.z == 0) document.count("nodes are scaled to nothing");
     node.scale = scale;
@@ -119,6 +123,8 @@ int skin_node(GltfDocument& document, int index) {
     node.matrix = node_matrix(*document.scene, document.nodes[skin.joints[0]], 0) * inverse_bind;
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite((*node.matrix)[i / 4][i % 4])) return document.nodes[index];
+    const dmat4 place = world_matrix(*document.scene, document.nodes[skin.joints[0]], 0) * dmat4(inverse_bind);
+    node.remainder = dvec3(place[3]) - dvec3((*node.matrix)[3]);
     document.scene->nodes.push_back(std::move(node));
     return static_cast<int>(document.scene->nodes.size()) - 1;
 }

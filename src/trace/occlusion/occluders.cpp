@@ -10,7 +10,7 @@ bool has_triangles(const Scene& scene, const Instance& instance) {
 }
 
 mat4 instance_matrix(const Scene& scene, const Instance& instance, double seconds) {
-    return instance.node < 0 ? mat4(1) : node_matrix(scene, instance.node, seconds);
+    return node_matrix(scene, instance.node, seconds);
 }
 
 std::shared_ptr<const OccluderSet> shared_or_made(const Scene& scene, std::vector<int> instances, double seconds,

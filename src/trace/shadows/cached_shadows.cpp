@@ -18,7 +18,7 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
     Box fog; // all that maps ask of the media
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     CacheKey key = shadow_key(snapshot, light);
-    key.add(view).add(fog).add(snapshot.bounds).add(snapshot.extent);
+    key.add(view).add(fog).add(snapshot.bounds).add(snapshot.anchor).add(snapshot.extent);
     key.add(options.resolution).add(options.cascades).add(options.pcf).add(options.bias);
     return cached(snapshot, std::move(key), [&] { return make_shadow_map(view, snapshot, light, options); });
 }

@@ -139,9 +139,12 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
 // while the fog in it drifts and its bounds change a little from frame to frame.
 float stable_size(float cell, float unit) { return unit * std::exp2(0.25f * std::round(4 * std::log2(cell / unit))); }
 
-vec3 stable_anchor(vec3 point, float extent, float unit) {
+// Where the volume's own coordinates begin: a place that does not move when bricks come and go.
+vec3 first_voxel(const BrickPool& pool) { return vec3(pool.index_to_world * vec4(-vec3(pool.low), 1)); }
+
+vec3 stable_anchor(vec3 point, vec3 base, float extent, float unit) {
     const float step = unit * std::exp2(std::ceil(std::log2(extent / unit)) + 2);
-    return glm::round(point / step) * step;
+    return base + glm::round((point - base) / step) * step;
 }
 
 vec3 stable_direction(vec3 towards) {
@@ -168,7 +171,8 @@ void set_size(const Fit& fit, vec3 cell, LightDepthGrid& grid) {
 void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, const Box& fog,
              float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::parallel;
-    grid.position = stable_anchor(fog.center(), max_component(fog.size()) + blocks[0].radius, voxel);
+    grid.position = stable_anchor(fog.center(), first_voxel(*media[0]->density.bricks),
+                                  max_component(fog.size()) + blocks[0].radius, voxel);
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
     const vec3 extent = fit.high - fit.low;

@@ -201,7 +201,7 @@ vec3 value_at(const Scene& scene, const Property& property, size_t index, double
     const std::string_view name = property.name;
     if (property.part == Part::light && scene.lights[index].node >= 0 && (name == "position" || name == "direction")) {
         const LightPlace place = light_place(scene, index, seconds);
-        return name == "position" ? place.position : place.direction;
+        return name == "position" ? place.position + vec3(scene.origin) : place.direction;
     }
     const Slot slot = slot_of(scene, property, index);
     vec3 value(0);
@@ -210,6 +210,10 @@ vec3 value_at(const Scene& scene, const Property& property, size_t index, double
     if (const auto* number = std::get_if<float*>(&slot)) value.x = **number;
     if (const auto* vector_value = std::get_if<vec3*>(&slot)) value = **vector_value;
     if (const auto* flag = std::get_if<bool*>(&slot)) value.x = **flag;
+    if (property.is_place() && scene.origin != dvec3(0)) {
+        const vec3 origin(scene.origin);
+        value += property.kind == ValueKind::number ? vec3(origin.y, 0, 0) : origin;
+    }
     return property.is_angle() ? glm::degrees(value) : value;
 }
 

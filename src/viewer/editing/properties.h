@@ -29,6 +29,12 @@ struct Property {
     Slot (*slot)(Scene& scene, size_t index);
     bool (*applies)(const Scene& scene, size_t index); // whether this light, medium … has it now
 
+    // Whether it is a place in the world, which a scene counts from its origin.
+    bool is_place() const {
+        const std::string_view member(name);
+        return member == "position" || member == "target" || member == "translate" || member == "base" ||
+               member.starts_with("bounds/");
+    }
     bool is_angle() const { return std::string_view(unit) == "degrees" && kind == ValueKind::number; }
 };
 

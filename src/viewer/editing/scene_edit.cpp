@@ -151,6 +151,8 @@ std::vector<Edit> apply(Scene& scene, const Edit& edit) {
     clean.value += 0.0f; // -0 is 0: JSON readers do not keep its sign
     const Property& property = find_property(scene, clean.part, clean.index, clean.property);
     check_value(scene, property, clean);
+    if (property.is_place() && scene.origin != dvec3(0))
+        refuse(place_of(scene, clean), "lies too far from the world's origin to be moved here; change the file");
     const bool places = clean.part == Part::light && (clean.property == "position" || clean.property == "direction");
     if (!places || scene.lights[clean.index].node < 0) {
         apply_single(scene, clean);

@@ -169,8 +169,8 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
 }
 
 TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
-    // The number of rays that differ falls with the texel, so their root mean square by 4 from 64 to 1024 texels; less is
-    // asked for, as it is few rays.
+    // The number of rays that differ falls with the texel, so their root mean square by 4 from 64 to 1024 texels; less
+    // is asked for, as it is few rays.
     const std::vector<Ray> rays = picture_rays();
     for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
         const HalfShadowed box(light);

@@ -81,16 +81,17 @@ Interval<double> depths(const Camera& camera, const Box& box) {
     return range;
 }
 
-// A picture whose texels have sizes of a fixed series of `unit` and lie on a fixed lattice of the world, so that edges
-// of shadows do not swim when the camera moves.
-ShadowPicture picture_of(const ShadowMap& map, const Across& region, double unit, int resolution) {
+// A picture whose texels have sizes of a fixed series of the scene's extent and lie on a fixed lattice of the world, so
+// that edges of shadows do not swim when the camera moves.
+ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snapshot& snapshot, int resolution) {
+    const double unit = snapshot.extent;
     ShadowPicture picture;
     for (int axis = 0; axis < 2; ++axis) {
         const double length = std::max(region.high[axis] - region.low[axis], 1e-6 * unit) / unit;
         const double texels = resolution - 2 * spare;
         const double texel =
             unit * std::exp2(std::ceil(steps_per_octave * std::log2(length / texels)) / steps_per_octave);
-        const double origin = glm::dot(row(map, axis), dvec3(map.position));
+        const double origin = glm::dot(row(map, axis), dvec3(map.position) - dvec3(snapshot.anchor));
         const double low = std::floor((origin + region.low[axis]) / texel) - spare + 1;
         const double wanted = std::ceil((origin + region.high[axis]) / texel) - low + spare - 1;
         picture.size[axis] = static_cast<int>(std::clamp<double>(wanted, 2 * spare, resolution));
@@ -127,7 +128,7 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOpt
         Across seen = across(map, view, range.low, i == options.cascades ? range.high : split);
         seen.cut(region);
         if (seen.empty()) continue;
-        const ShadowPicture picture = picture_of(map, seen, snapshot.extent, options.resolution);
+        const ShadowPicture picture = picture_of(map, seen, snapshot, options.resolution);
         const auto density = [](const ShadowPicture& p) { return std::sqrt(double(p.scale.x) * p.scale.y); };
         if (!pictures.empty() && density(pictures.back()) > worth_it * density(picture)) continue;
         pictures.push_back(picture);

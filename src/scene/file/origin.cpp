@@ -1,0 +1,55 @@
+#include "scene/file/origin.h"
+
+#include "scene/scene.h"
+
+#include <optional>
+
+namespace tyndall {
+namespace {
+constexpr double far_out = 64; // times as far from the world's origin as the picture is deep
+
+// What is looked at: where, and how large it is.
+struct Sight {
+    dvec3 place;
+    double size;
+};
+
+// The entry that read_cameras() makes the default camera; empty when that is one of the glTF's.
+Field camera_field(const Field& root) {
+    if (!root) return {};
+    const Field chosen = root.member("camera"), cameras = root.member("cameras");
+    if (chosen && chosen.json->kind == Json::Kind::object) return chosen;
+    for (size_t i = 0; cameras && i < cameras.json->items.size(); ++i)
+        if (!chosen || cameras.item(i).json->string_or("name", "") == chosen.json->string) return cameras.item(i);
+    return {};
+}
+
+Sight sight_of(const Field& camera) {
+    const dvec3 position = read_place(camera.member("position"));
+    return {position, glm::length(read_place(camera.member("target")) - position)};
+}
+
+std::optional<Sight> sight_of(const Field& root, const Scene& scene) {
+    const Box bounds = scene_bounds(scene, 0);
+    if (bounds.empty()) return {};
+    const double size = glm::length(dvec3(bounds.size()));
+    const Field chosen = root ? root.member("camera") : Field{};
+    for (const CameraSource& camera : scene.cameras)
+        if (!chosen || camera.name == chosen.json->string)
+            return Sight{dvec3(world_matrix(scene, camera.node, 0)[3]), size};
+    return Sight{dvec3(bounds.center()), size};
+}
+}
+
+dvec3 far_origin(const Field& root, const Scene& scene) {
+    const Field camera = camera_field(root);
+    const std::optional<Sight> sight = camera ? sight_of(camera) : sight_of(root, scene);
+    if (!sight || !(sight->size > 0)) return dvec3(0);
+    const dvec3 away = glm::abs(sight->place);
+    if (!(std::max({away.x, away.y, away.z}) > far_out * sight->size)) return dvec3(0);
+
+    // Round numbers, so that adding it back loses nothing.
+    const double step = std::exp2(std::ceil(std::log2(sight->size)));
+    return glm::round(sight->place / step) * step;
+}
+}
