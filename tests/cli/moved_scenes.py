@@ -1,7 +1,8 @@
-"""Scenes in other units of length, and far from the origin: files that show the same picture as the ones they are made from."""
+"""Scenes in other units of length, and far from the origin: files that show the picture of the ones they are made from."""
 import copy
 import json
 import pathlib
+import shutil
 import struct
 
 
@@ -50,7 +51,9 @@ def _move_gltf(source, target, factor, offset):
     gltf, rest = _read_glb(source)
     for buffer in gltf.get("buffers", []) + gltf.get("images", []):
         if "uri" in buffer and not buffer["uri"].startswith("data:"):
-            buffer["uri"] = str((source.parent / buffer["uri"]).resolve())
+            name = f"{target.stem}_{pathlib.Path(buffer['uri']).name}"
+            shutil.copy(source.parent / buffer["uri"], target.with_name(name))
+            buffer["uri"] = name
     for light in gltf.get("extensions", {}).get("KHR_lights_punctual", {}).get("lights", []):
         if light["type"] != "directional":
             light["intensity"] = light.get("intensity", 1) * factor**2

@@ -197,6 +197,18 @@ TEST(SceneEdit, TheGroundGoesWithTheHorizonUntilItHasItsOwn) {
     EXPECT_EQ(scene.background.color.values[0], vec3(4));
 }
 
+TEST(SceneEdit, FarScenesShowPlacesOfTheWorldAndKeepThem) {
+    Scene scene;
+    scene.origin = dvec3(1 << 20, 64, 0);
+    LightSource lamp;
+    lamp.name = "lamp", lamp.position = vec3(1, 2, 3);
+    scene.lights = {lamp};
+    EXPECT_EQ(now(scene, "lights/lamp/radius"), vec3(0));
+    const Property& position = find_property(scene, Part::light, 0, "position");
+    EXPECT_EQ(value_at(scene, position, 0, 0), vec3((1 << 20) + 1, 66, 3));
+    EXPECT_THAT(refusal(scene, "lights/lamp/position", "[0, 0, 0]"), testing::HasSubstr("too far from the world's"));
+}
+
 TEST(SceneEdit, RefusesWhatASceneFileMayNotSayAndChangesNothing) {
     const Studio studio;
     Scene scene = load_scene(studio.file);
