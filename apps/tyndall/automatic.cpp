@@ -1,5 +1,6 @@
 #include "automatic.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
@@ -41,7 +42,9 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
     Progress progress(globals.progress, "plan", 1, globals.json);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
     const View view = view_of(scene, request, request.settings, request.frames[0]);
-    const Goal goal{request.target_error, request.time_budget, request.quality};
+    double seconds = request.time_budget;
+    if (seconds > 0) seconds = std::max(request.started + seconds - steady_seconds(), 1e-3);
+    const Goal goal{request.target_error, seconds, request.quality};
     const auto plan_with = [&](std::span<const Mode> candidates) {
         return make_plan(candidates, view, first, request.settings, goal, control,
                          planning_share * static_cast<double>(request.frames.size()));

@@ -1,5 +1,6 @@
 #include "common.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/simd/isa.h"
 #include "base/text.h"
@@ -11,6 +12,12 @@
 #include <new>
 
 namespace tyndall {
+namespace {
+const double started = steady_seconds();
+}
+
+double program_start() { return started; }
+
 std::atomic<bool>& cancel_flag() {
     static std::atomic<bool> flag{false};
     return flag;

@@ -39,6 +39,9 @@ Run add_view(const Command& program);
 // Becomes the viewer, which reads its own command line. Throws Error when it is not there.
 int start_viewer(std::vector<std::string> arguments);
 
+// By steady_seconds, when the program began.
+double program_start();
+
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.

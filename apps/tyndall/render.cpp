@@ -1,5 +1,6 @@
 // tyndall render: the frames of a scene to OpenEXR files, and PNGs for looking at.
 #include "automatic.h"
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/frames.h"
@@ -134,6 +135,11 @@ int outcome(const std::vector<Rendered>& all, const std::string& scene) {
     uint64_t non_finite = 0;
     for (const Rendered& one : all) non_finite += one.report.non_finite;
     for (const Rendered& one : all)
+        if (non_finite == 0 && one.report.late > 0)
+            fail(ExitCode::differs, scene,
+                 "all frames were written, but took " + seconds_text(one.report.late) +
+                     " more than --time-budget: loading, one ray per pixel and writing need that");
+    for (const Rendered& one : all)
         if (non_finite == 0 && one.report.missed)
             fail(ExitCode::differs, scene,
                  formatted("all frames were written, but the error of %d of them may be larger than %g",
@@ -216,7 +222,8 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     std::vector<Rendered> all;
     std::string reports;
     Snapshot shared;
-    for (const RenderRequest& request : requests) {
+    for (RenderRequest& request : requests) {
+        request.started = all.empty() ? program_start() : steady_seconds();
         all.push_back(render_frames(scene, request, texts, stats_name(texts, request, several),
                                     several ? request.mode : "render", shared, globals));
         reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().request, all.back().plan);

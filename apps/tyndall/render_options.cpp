@@ -95,9 +95,10 @@ void add_how(const Command& command, RenderOptions& texts) {
            "E");
     option("--time-budget", texts.time_budget,
            "the best picture in so many seconds for each frame, but one ray per pixel\n"
-           "at least; not for billboard and radial-blur. Measuring, preparing and rendering count,\n"
-           "loading and writing do not. The picture depends on the machine; with\n"
-           "--target-error what comes first ends it",
+           "at least; not for billboard and radial-blur. It is the time of the whole process,\n"
+           "loading, measuring and writing included: N frames take N times as long at most, and\n"
+           "what one leaves the next may use. Exit code 1 when that is not enough. The picture\n"
+           "depends on the machine; with --target-error what comes first ends it",
            "SECONDS");
     option("--orders", texts.orders,
            "how many times light scatters, in fog or on surfaces, or all of them\n"

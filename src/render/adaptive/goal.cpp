@@ -36,10 +36,12 @@ struct Chooser {
     bool systematic = has_integrator(mode);
     Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
 
-    std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready = {}) const {
+    std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
+                                 std::function<bool()> stop) const {
+        if (goal.seconds == 0) stop = {};
         return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
                                                   systematic ? &truth : nullptr, std::move(chances), salt, options,
-                                                  std::move(ready)));
+                                                  std::move(ready), std::move(stop)));
     }
 
     // Draws more tiles as long as `worth` says that a tighter bound would be.
@@ -81,16 +83,19 @@ struct Chooser {
     }
 };
 
-// Without a limit of time always; else where that leaves most of it.
-std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start) {
+// Without a limit of time always; else where that leaves most of it. `sample` becomes the variance of one sample, where
+// that was measured to find out.
+std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, SquaredError& sample) {
     const auto& [mode, view, snapshot, settings, goal, options, candidates, systematic, truth] = chooser;
     if (!systematic) return nullptr;
     std::shared_ptr<const Prepared> prepared;
     double prepare_seconds = 0;
     if (goal.seconds > 0) {
-        const Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view), 0, options);
+        Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view), 0, options);
+        grow(first);
         const Measured coarse = measure(first, mode, candidates[0].settings, goal.clock);
         const double left = goal.seconds - (goal.clock() - start);
+        sample = coarse.sample;
         if (scout_samples * coarse.sample_seconds > scout_share * left) return nullptr;
         prepared = coarse.prepared, prepare_seconds = coarse.prepare_seconds;
     }
@@ -132,12 +137,16 @@ double Choice::expected(double samples) const {
 
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options) {
-    const bool timed = goal.seconds > 0, systematic = has_integrator(mode);
+    const bool timed = goal.seconds > 0;
     const auto spent = [&] { return goal.clock() - start; };
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const std::shared_ptr<const Scout> scout = scout_for(chooser, start);
-    const std::shared_ptr<Pilot> pilot = chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0);
-    while (timed && systematic && !pilot->is_full() && spent() < truth_share * goal.seconds) grow(*pilot);
+    SquaredError sample; // on more tiles than the truth may have time for
+    const std::shared_ptr<const Scout> scout = scout_for(chooser, start, sample);
+    const double piloting = spent();
+    const std::shared_ptr<Pilot> pilot =
+        chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0, nullptr,
+                      [&] { return spent() - piloting > truth_share * goal.seconds; });
+    pilot->stop = {}; // it refers to this call
 
     std::optional<Choice> best;
     for (const Candidate& candidate : chooser.candidates) {
@@ -151,6 +160,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
             if (room) break;
             continue;
         }
+        if (!scout && sample.value > 0) next.measured.sample = sample;
         const double now = spent();
         const auto samples = [&](const Choice& choice) {
             return std::max(1.0, std::floor((goal.seconds - now) / choice.measured.sample_seconds));
@@ -165,14 +175,23 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     return std::move(*best);
 }
 
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds,
+double check_seconds(const Choice& choice) {
+    if (!choice.has_integrator || choice.is_truth || !choice.pilot) return 0;
+    const Pilot& pilot = *choice.pilot;
+    const double own = choice.measured.sample_seconds * pilot.samples() / pilot.pixels();
+    return (pilot.seconds + own) / (pilot.drawings * pilot.passes);
+}
+
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds, double until,
                const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
                uint32_t salt, const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     const bool shows_noise = !picture.variance.empty();
-    const std::shared_ptr<Pilot> pilot = chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), salt,
-                                                       choice.pilot ? choice.pilot->prepared : nullptr);
+    const std::shared_ptr<Pilot> pilot =
+        chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), salt,
+                      choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; });
+    pilot->stop = {}; // it refers to this call
     Choice result = choice;
     const auto decides = [&](const Measured& measured) {
         const double left = goal.error * goal.error - noise.bound * noise.bound;

@@ -50,10 +50,14 @@ bool leaves_room(const Choice& choice, double error);
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
 
+// What checked() is likely to take.
+double check_seconds(const Choice& choice);
+
 // What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
 // candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
 // place: one that gets there sooner than more samples do, of which rendering took `rendered_seconds` so far.
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds,
+// By the goal's clock, few tiles are looked at after `until`, where the goal has seconds.
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds, double until,
                const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
                uint32_t salt, const FrameOptions& options);
 }

@@ -61,7 +61,7 @@ SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile
 }
 
 namespace {
-constexpr int tile_side = 4;
+constexpr size_t tiles_between_stops = 8;
 constexpr uint32_t use_pilot = 0x9170u;
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
@@ -125,6 +125,13 @@ void follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
     });
 }
 
+// The first tiles, in an order of chance, stand for all.
+void keep_first(size_t count, Pilot& pilot) {
+    const double share = static_cast<double>(count) / static_cast<double>(pilot.tiles.size());
+    pilot.tiles.resize(count);
+    for (DrawnTile& tile : pilot.tiles) tile.stands_for /= share, tile.chance *= share;
+}
+
 // All passes over all tiles, of which `seen` tiles have had `passes`.
 void follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
     for (int pass = passes; pass < pilot.passes && seen > 0; ++pass) follow(tracer, pilot, pass, 0, seen, result);
@@ -173,7 +180,7 @@ SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const 
 
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
-                 std::shared_ptr<const Prepared> prepared) {
+                 std::shared_ptr<const Prepared> prepared, std::function<bool()> stop) {
     Pilot pilot{&mode, &snapshot, options.cancel};
     if (truth) pilot.truth_settings = *truth;
     pilot.view = view, pilot.seed = view.seed, pilot.chances = std::move(chances);
@@ -181,6 +188,7 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
     pilot.view.lamp_samples = pilot.view.edge_samples = 1, pilot.view.allotted = nullptr;
     pilot.view.seed = hash(view.seed, use_pilot, salt);
     pilot.view.lamps = lamps_in(view, snapshot);
+    pilot.stop = std::move(stop);
     if (truth) pilot.prepared = prepared ? std::move(prepared) : prepare(pilot, mode, snapshot, *truth);
     grow(pilot);
     return pilot;
@@ -203,7 +211,11 @@ void grow(Pilot& pilot, bool by_noise) {
         const double before = pilot.drawings++, now = pilot.drawings;
         for (DrawnTile& tile : pilot.tiles) tile.stands_for *= before / now;
         const uint32_t seed = hash(pilot.view.seed, static_cast<uint32_t>(pilot.drawings));
-        for (DrawnTile tile : draw_tiles(pilot.chances, drawing_tiles, seed)) {
+        std::vector<DrawnTile> drawn = draw_tiles(pilot.chances, drawing_tiles, seed);
+        std::ranges::sort(drawn, {}, [&](const DrawnTile& tile) {
+            return hash(static_cast<uint32_t>(tile.corner.x), static_cast<uint32_t>(tile.corner.y), seed);
+        });
+        for (DrawnTile tile : drawn) {
             const auto same = std::ranges::find(pilot.tiles, tile.corner, &DrawnTile::corner);
             tile.stands_for /= now;
             if (same == pilot.tiles.end())
@@ -214,8 +226,15 @@ void grow(Pilot& pilot, bool by_noise) {
     }
     if (!pilot.truth_settings) return;
     const double start = steady_seconds();
-    follow_rest(tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared), pilot,
-                seen, passes, pilot.truth);
+    const FrameTracer tracer =
+        tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared);
+    const size_t all = pilot.tiles.size();
+    for (size_t done = 0; seen == 0 && pilot.stop && done < all; done += tiles_between_stops) {
+        follow(tracer, pilot, 0, done, std::min(done + tiles_between_stops, all), pilot.truth);
+        if (pilot.stop() && done + tiles_between_stops < all) keep_first(done + tiles_between_stops, pilot), done = all;
+    }
+    const bool followed = seen == 0 && pilot.stop;
+    if (!followed) follow_rest(tracer, pilot, seen, passes, pilot.truth);
     pilot.seconds += steady_seconds() - start;
 }
 

@@ -50,6 +50,7 @@ struct Pilot {
     std::shared_ptr<const Prepared> prepared{}; // for the truth
     std::vector<vec3> truth{};                  // pilot_values of each tile; empty = the candidate's
     double seconds = 0;                         // following it took
+    std::function<bool()> stop{};               // says when time is up; a few tiles are followed anyway
 
     double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the picture
     bool is_full() const { return drawings >= max_drawings || static_cast<double>(tiles.size()) >= all(); }
@@ -62,7 +63,7 @@ struct Pilot {
 // With one drawing; those of another `salt` are independent of it. `prepared` for the truth, where it is already.
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
-                 std::shared_ptr<const Prepared> prepared = {});
+                 std::shared_ptr<const Prepared> prepared = {}, std::function<bool()> stop = {});
 
 // Draws tiles once more and follows the truth there; or follows it as often again on those there are.
 void grow(Pilot& pilot, bool by_noise = false);

@@ -15,7 +15,9 @@ namespace {
 // Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
 // which show by then.
 constexpr double max_first_samples = 64;
-constexpr uint32_t max_checks = 3; // of finished pictures; each but the last may ask for a finer candidate
+constexpr double max_check_share = 0.2; // of the seconds there are
+constexpr double longest_seconds = 600; // where none are given, and an error is far
+constexpr uint32_t max_checks = 3;      // of finished pictures; each but the last may ask for a finer candidate
 
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.
@@ -43,9 +45,10 @@ struct Rounds {
     double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
     double first_part = 1;   // of an allotment
     double done = 0, expected = max_target_samples;
-    int freedom = 0; // differences between batches so far
+    int freedom = 0;          // differences between batches so far
+    double check_seconds = 0; // that the check of the picture will take
 
-    double left() const { return goal.seconds - (goal.clock() - start); }
+    double left() const { return goal.seconds - check_seconds - (goal.clock() - start); }
     int max_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
     // Samples that are allotted at once.
@@ -144,8 +147,10 @@ double next_part(Rounds& rounds, const FrameStats& stats) {
         wanted = std::clamp(rounds.expected - rounds.done, 0.125 * rounds.done, rounds.done);
     }
     if (rounds.goal.seconds > 0) {
-        wanted = std::min(wanted, rounds.left() / rounds.work_seconds);
-        if (wanted < 0.1 && rounds.done > 0) return 0;
+        // Tiles that take most samples may cost more than others: the first part shows it.
+        const double safe = rounds.done > 0 ? 0.9 : 0.5;
+        wanted = std::min(wanted, safe * rounds.left() / rounds.work_seconds);
+        if (wanted < 0.1 * std::max(rounds.done, 0.5) && rounds.done > 0) return 0;
         if (rounds.goal.error == 0) rounds.expected = rounds.done + wanted;
     }
     return std::max(wanted, 0.05);
@@ -162,7 +167,7 @@ double next_round(Rounds& rounds, const FrameStats& stats) {
         wanted = std::min(std::clamp(static_cast<int>(rounds.expected) - samples, least, samples), wanted);
     }
     if (rounds.goal.seconds > 0) {
-        const double time = std::floor(std::min<double>(rounds.left() / rounds.work_seconds, wanted));
+        const double time = std::floor(std::min<double>(0.9 * rounds.left() / rounds.work_seconds, wanted));
         if (time < std::max({2, batches / 8, samples / 16})) return 0;
         wanted = static_cast<int>(time);
         if (rounds.goal.error == 0) rounds.expected = samples + wanted;
@@ -247,6 +252,9 @@ void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStat
     rounds.choice = choice, rounds.allotment.reset(), rounds.first_part = 1;
     rounds.done = 0, rounds.freedom = 0, rounds.expected = max_target_samples;
     rounds.work_seconds = choice.measured.sample_seconds;
+    rounds.check_seconds = check_seconds(choice);
+    if (rounds.goal.seconds > 0 && rounds.check_seconds > max_check_share * rounds.goal.seconds)
+        rounds.check_seconds = 0; // there is no time for one
     rendering.settings = choice.candidate.settings, rendering.prepared = choice.measured.prepared;
     if (!rendering.prepared && choice.scout && choice.scout->candidate.name == choice.candidate.name)
         rendering.prepared = choice.scout->prepared;
@@ -310,16 +318,23 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     if (measured) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
+        if (goal.error > 0 && has_integrator(mode)) {
+            const double more = rounds.choice->seconds_to(goal.error) - rounds.choice->measured.prepare_seconds;
+            stats.forecast_seconds = stats.prepare_seconds + more + rounds.check_seconds;
+            if (goal.seconds == 0 && stats.forecast_seconds > longest_seconds) goal.seconds = longest_seconds;
+            if (options.forecast) options.forecast(stats.forecast_seconds);
+        }
     }
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const double begun = goal.clock();
         const bool scouted = measured && rounds.choice->scout;
         render_rounds(rounds, rendering, scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds),
                       result, stats, round);
-        if (!has_integrator(mode)) break;
+        if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
-        const Choice after = checked(*rounds.choice, result, *stats.noise, goal.clock() - begun, mode, rounds.view,
-                                     snapshot, settings, goal, check, options);
+        const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
+        const Choice after = checked(*rounds.choice, result, *stats.noise, goal.clock() - begun, until, mode,
+                                     rounds.view, snapshot, settings, goal, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;

@@ -37,12 +37,13 @@ Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snaps
                        History* history);
 
 struct FrameOptions {
-    bool halves = false;                  // of the batches
-    History* history = nullptr;           // of the frames before; null = none is kept
-    std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)
-    std::function<void(double)> progress; // 0..1, from any thread
+    bool halves = false;                    // of the batches
+    History* history = nullptr;             // of the frames before; null = none is kept
+    std::atomic<bool>* cancel = nullptr;    // set from outside to stop early (throws Error)
+    std::function<void(double)> progress;   // 0..1, from any thread
+    std::function<void(double)> forecast{}; // of what a goal will take, seconds; where one is made, before long work
     // Already, with the same settings and a view that differs in samples and seed only.
-    std::shared_ptr<const Prepared> prepared;
+    std::shared_ptr<const Prepared> prepared{};
 };
 
 // Throws Error (internal) when cancelled.

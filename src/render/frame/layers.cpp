@@ -61,22 +61,28 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-// Standard error of an image's mean from the means of its square tiles. What differs between tiles for another reason
-// than chance makes it larger.
-double standard_error(const Image<vec3>& image, double mean) {
+// Of an image's mean: its standard error, and how much of it comes in one lump, the third moment over the variance.
+struct Spread {
+    double error = 0, lump = 0;
+};
+
+// From the means of its square tiles. What differs between tiles for another reason than chance makes it larger.
+Spread spread_of(const Image<vec3>& image, double mean) {
     int side = largest_tile;
     while (side > 1 && tiles_across(image.size.x, side) * tiles_across(image.size.y, side) < fewest_tiles) side /= 2;
     const ivec2 tiles(tiles_across(image.size.x, side), tiles_across(image.size.y, side));
     const int count = tiles.x * tiles.y;
-    if (count < 2) return 0;
+    if (count < 2) return {};
 
     std::vector<double> excess(static_cast<size_t>(count), 0.0); // of each tile's sum over what the mean makes expect
     for (int y = 0; y < image.size.y; ++y)
         for (int x = 0; x < image.size.x; ++x)
             excess[static_cast<size_t>(y / side * tiles.x + x / side)] += channel_mean(image.at(x, y)) - mean;
-    double squares = 0;
-    for (const double value : excess) squares += value * value;
-    return std::sqrt(squares * count / (count - 1)) / static_cast<double>(image.pixels.size());
+    double squares = 0, cubes = 0;
+    for (const double value : excess) squares += value * value, cubes += value * value * value;
+    const double pixels = static_cast<double>(image.pixels.size());
+    return {std::sqrt(squares * count / (count - 1)) / pixels,
+            squares > 0 ? std::max(cubes / squares, 0.0) / pixels : 0};
 }
 
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, int freedom) {
@@ -86,7 +92,9 @@ Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, int fre
 
     // At best the variances are as well known as those of normal distributions, with channels that agree.
     const double best = variance * std::sqrt(2.0 / (freedom * static_cast<double>(picture.pixels.size())));
-    const double high = variance + confidence * std::max(standard_error(variances, variance), best);
+    const Spread spread = spread_of(variances, variance);
+    const double half = confidence * spread.lump / 2; // Wilson (1927), as for counts of lumps
+    const double high = variance + confidence * (half + std::hypot(std::max(spread.error, best), half));
     return {std::sqrt(variance) / mean, std::sqrt(high) / mean};
 }
 }

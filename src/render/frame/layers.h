@@ -50,6 +50,7 @@ struct FrameStats {
     std::optional<Noise> noise;           // for more than one batch
     std::optional<Integrator> integrator; // where it was measured
     double goal_seconds = 0;              // of a goal: all that its time counts
+    double forecast_seconds = 0;          // of it, made before most of it; 0 = none was made, infinite = out of reach
 
     std::optional<Noise> error() const; // noise and integrator together
 

@@ -35,7 +35,8 @@ struct RenderRequest {
     float exposure = 0;                        // added to the scene's, for PNGs
     ExrOptions exr;
     double target_error = 0; // render until the error is below this share of the picture's mean; 0 = none is asked for
-    double time_budget = 0;  // seconds for each frame, loading and writing apart; 0 = as many as it takes
+    double time_budget = 0;  // seconds for each frame, all that is done for it counted; 0 = as many as it takes
+    double started = 0;      // by steady_seconds, when the budget of the first frame began
     int history = 0;         // frames before each that a mode with a history looks at first
     bool png = false, resume = false;
     std::string unsaved; // edits that the scene's files do not have; for hash and header

@@ -51,7 +51,23 @@ struct Pipeline {
     RenderReport report;
     std::mutex reporting;         // held to change the report
     std::atomic<int> settled = 0; // frames rendered or kept
+    int rendered = 0;             // frames
 };
+
+// Writing is likely to take so long.
+double seconds_to_write(const RenderRequest& request, const View& view) {
+    const double pixels = static_cast<double>(view.size.x) * view.size.y;
+    return 0.01 + pixels * (request.png ? 1e-6 : 5e-7);
+}
+
+// Until the next frame has to be rendered; 0 where there is no limit. What earlier frames left, it may use.
+double seconds_left(const Pipeline& pipeline, const View& view) {
+    const RenderRequest& request = pipeline.request;
+    if (request.time_budget == 0) return 0;
+    const double end = request.started + request.time_budget * (pipeline.rendered + 1);
+    constexpr double safe = 0.96; // something may hold the process up
+    return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
+}
 
 float png_exposure(const Pipeline& pipeline, int frame) {
     return pipeline.request.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
@@ -165,6 +181,15 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     work.snapshot.cache_before = previous.cache;
 }
 
+// What a frame will take, where that is long enough to be told.
+void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
+    constexpr double long_work = 10;
+    if (seconds < long_work) return;
+    if (seconds == infinity)
+        return say(pipeline, work, "will not get to the error that is wanted: it may be too small");
+    say(pipeline, work, "will take about " + seconds_text(seconds));
+}
+
 void render(Pipeline& pipeline, Work& work) {
     const RenderRequest& request = pipeline.request;
     const RenderPlan& plan = pipeline.plan;
@@ -175,16 +200,20 @@ void render(Pipeline& pipeline, Work& work) {
     try {
         History history;
         if (request.history > 0) warm_up(pipeline, work, history), options.history = &history;
-        const Goal goal{
-            request.target_error, request.time_budget, request.quality, {}, work.index == 0 ? plan.choice : nullptr,
-            plan.wanted};
+        const Goal goal{request.target_error,
+                        seconds_left(pipeline, work.view),
+                        request.quality,
+                        {},
+                        work.index == 0 ? plan.choice : nullptr,
+                        plan.wanted};
+        options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
         work.layers = has_goal(request)
                           ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
                           : render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
-    ++pipeline.settled;
+    ++pipeline.settled, ++pipeline.rendered;
     work.report.seconds = steady_seconds() - start;
 }
 
@@ -200,7 +229,8 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request, co
     text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
     if (stats.integrator && plan.settings.fluence.orders > 1)
         text += ", of light scattered once: what the grid for the rest adds to it is not measured";
-    if (request.time_budget > 0) text += formatted(", %.3g s of %.3g s", stats.goal_seconds, request.time_budget);
+    if (request.time_budget > 0)
+        text += formatted(", %.3g s of a budget of %.3g s", stats.goal_seconds, request.time_budget);
     return text;
 }
 
@@ -263,6 +293,15 @@ void run(Pipeline& pipeline) {
     if (rendered) write(pipeline, *rendered);
 }
 
+// Over the budgets of all frames, where that is more than a hitch or there was no time for a second ray per pixel.
+double seconds_late(const RenderRequest& request, const RenderReport& report) {
+    const double all = request.time_budget * static_cast<double>(request.frames.size());
+    const double late = all > 0 ? steady_seconds() - request.started - all : 0;
+    const bool least = std::ranges::any_of(
+        report.frames, [](const FrameReport& frame) { return !frame.kept && frame.stats.samples <= 1; });
+    return late > (least ? 0 : std::max(0.1 * all, 0.2)) ? late : 0;
+}
+
 uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -300,6 +339,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
     for (const FrameReport& frame : report.frames)
         report.missed +=
             request.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > request.target_error;
+    report.late = seconds_late(request, report);
     report.cancelled = cancel && report.frames.size() < request.frames.size();
     report.seconds = steady_seconds() - start;
     report.peak_memory_bytes = peak_memory();

@@ -34,6 +34,7 @@ struct RenderReport {
     Limitations limitations;         // of the mode in the first frame, where whoever asked looked for them
     std::vector<std::string> notes;
     int missed = 0;         // frames that are further off than the target error
+    double late = 0;        // seconds that all frames took over their time budgets
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;

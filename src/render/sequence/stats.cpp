@@ -30,6 +30,8 @@ Json frame_json(const FrameReport& frame) {
         json.members.emplace_back("integrator_bound", frame.stats.integrator->error.bound);
     }
     if (frame.stats.goal_seconds > 0) json.members.emplace_back("goal_seconds", frame.stats.goal_seconds);
+    if (frame.stats.forecast_seconds > 0 && frame.stats.forecast_seconds < infinity)
+        json.members.emplace_back("forecast_seconds", frame.stats.forecast_seconds);
     if (frame.stats.non_finite) json.members.emplace_back("first_non_finite", frame.stats.first_non_finite);
     return json;
 }
