@@ -111,6 +111,9 @@ Rendered render_frames(const Scene& scene, const RenderRequest& request, const R
                     texts.mode == automatic ? chosen_plan(scene, request, first.snapshot, globals)
                                             : plan_as_asked(request),
                     {}};
+    const std::vector<std::string> absent = drop_absent_layers(scene, result.plan, result.request);
+    if (!globals.quiet && !absent.empty())
+        say("note: no layer " + joined(absent, ", ") + ": there is no such light in the scene's fog");
     settle_noise(request, result.plan, globals);
     shared = request.frames.size() == 1 ? first.snapshot : Snapshot{};
     shared.cache = nullptr; // the time that a mode takes must not depend on the one before it
@@ -119,11 +122,11 @@ Rendered render_frames(const Scene& scene, const RenderRequest& request, const R
 
     Progress progress(globals.progress, label, static_cast<double>(request.frames.size()), globals.json);
     RenderReport& report = result.report;
-    report = render_sequence(scene, request, result.plan, progress, cancel_flag(), &first);
+    report = render_sequence(scene, result.request, result.plan, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
     report.limitations = std::move(limitations);
-    if (!json.empty()) write_file_atomically(json, stats_json(report, request, result.plan));
+    if (!json.empty()) write_file_atomically(json, stats_json(report, result.request, result.plan));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
         say_summary(report, request);

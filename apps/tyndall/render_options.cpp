@@ -135,9 +135,17 @@ void add_results(const Command& command, RenderOptions& texts) {
     command
         .option("--aov", texts.aov,
                 "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
-                "validity, lights (one layer per light), variance (of the mean), halves\n"
-                "(two independent pictures); none for the picture alone",
+                "surface and background, which with inscatter add up to the picture; lights\n"
+                "(one layer per light), ambient, emission and multiple, which add up to\n"
+                "inscatter; validity, variance (of the mean), halves (two independent\n"
+                "pictures); none for the picture alone",
                 "NAMES")
+        .group(group);
+    command
+        .option("--background", texts.background,
+                "on (default), or off to leave the background out of colour and alpha, for\n"
+                "pictures that go over others",
+                "WHAT")
         .group(group);
     command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
     command.flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)").group(group);
@@ -225,6 +233,9 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     if (!texts.exposure.empty())
         request.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
     if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
+    request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
+    if (!request.background && wants_layer(request, "background"))
+        fail(ExitCode::usage, "--aov", "there is no layer background with --background off");
     request.exr.full_float = texts.full_float;
     request.png = texts.png, request.resume = texts.resume;
     request.isa = chosen_isa(texts.isa);

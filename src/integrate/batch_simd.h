@@ -47,13 +47,13 @@ HWY_INLINE void store_results(const Scatter16& scatter, std::span<Scatter> resul
                          .steps = static_cast<int>(v[5][lane])};
 }
 
-// Adds what one light gave the rays to RayBatch::per_light, where that is asked for.
-HWY_INLINE void add_per_light(const Vec3s& light, size_t index, size_t light_count, const RayBatch& batch) {
-    if (batch.per_light.empty()) return;
+// Adds to a part of the rays' light, where that is asked for.
+HWY_INLINE void add_part(const Vec3s& light, size_t index, const RayBatch& batch) {
+    if (batch.parts.empty()) return;
     alignas(64) float rgb[3][16];
     store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
     for (size_t lane = 0; lane < batch.rays.size(); ++lane)
-        batch.per_light[lane * light_count + index] += vec3(rgb[0][lane], rgb[1][lane], rgb[2][lane]);
+        batch.part(lane, index) += vec3(rgb[0][lane], rgb[1][lane], rgb[2][lane]);
 }
 }
 HWY_AFTER_NAMESPACE();

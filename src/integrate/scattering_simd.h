@@ -7,6 +7,7 @@
 #endif
 
 #include "base/simd/simd.h"
+#include "integrate/ray_batch.h"
 #include "trace/fluence/fluence_simd.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
@@ -42,6 +43,22 @@ HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, cons
     for (size_t m = 0; m < snapshot.media.size(); ++m)
         sum = fused(splat(source_radiance(snapshot.media[m].optics, snapshot.ambient)), extinction(m), sum);
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
+}
+
+// One kind of that light alone.
+template<class Extinction>
+HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
+                         const Vec3s& direction, const Extinction& extinction) {
+    Vec3s sum = splat(vec3(0));
+    if (light == OtherLight::multiple)
+        return fluence ? scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
+    for (size_t m = 0; m < snapshot.media.size(); ++m) {
+        const Optics& optics = snapshot.media[m].optics;
+        const vec3 source =
+            light == OtherLight::ambient ? optics.albedo * snapshot.ambient : source_radiance(optics, vec3(0));
+        sum = fused(splat(source), extinction(m), sum);
+    }
+    return sum;
 }
 }
 HWY_AFTER_NAMESPACE();

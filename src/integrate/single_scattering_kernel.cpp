@@ -144,19 +144,21 @@ Floats find_depths(const Packet& packet) {
 }
 
 // What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.
-vec3 even_glow(const SingleScattering& frame) {
+vec3 even_glow(const SingleScattering& frame, int light) {
     vec3 common(0);
     for (const Medium& medium : frame.snapshot.media) {
-        const vec3 own = source_radiance(medium.optics, frame.snapshot.ambient);
+        const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
+        const vec3 own =
+            light == ambient_light ? medium.optics.albedo * ambient : source_radiance(medium.optics, ambient);
         if (&medium != &frame.snapshot.media.front() && own != common) return vec3(-1);
         common = own;
     }
     return common;
 }
 
-void add_glow(Packet& packet, const Floats& depth) {
+void add_glow(Packet& packet, int light, const Floats& depth) {
     const SingleScattering& frame = packet.frame;
-    const vec3 even = even_glow(frame);
+    const vec3 even = even_glow(frame, light);
     if (even == vec3(0)) return;
     const size_t count = packet.batch.rays.size();
     if (even.x >= 0 && frame.style.range >= StyleSettings().range) {
@@ -170,9 +172,9 @@ void add_glow(Packet& packet, const Floats& depth) {
     for (size_t i = 0; i < count; ++i)
         for (int k = 0; k < cuts.pieces[i]; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;
-            if (counts(packet, i, k)) push_piece(packet, {no_light, i, k, at[0], at[16]});
+            if (counts(packet, i, k)) push_piece(packet, {light, i, k, at[0], at[16]});
         }
-    add_nodes(packet, no_light);
+    add_nodes(packet, light);
 }
 
 float validity_of(const SingleScattering& frame, const Ray& ray) {
@@ -192,18 +194,24 @@ void single_scattering_kernel(const SingleScattering& frame, const RayBatch& bat
     alignas(64) float transmittance[16];
     store(exp(-depth), transmittance);
 
-    vec3 total[16];
-    add_glow(packet, depth);
-    add_fluence(packet);
-    std::copy(packet.radiance, packet.radiance + 16, total);
-    for (size_t light = 0; light < lights; ++light) {
-        std::fill(packet.radiance, packet.radiance + 16, vec3(0));
-        add_light(packet, light);
+    vec3 total[16] = {};
+    const auto take_part = [&](size_t part) {
         for (size_t i = 0; i < count; ++i) {
             total[i] += packet.radiance[i];
-            if (!batch.per_light.empty()) batch.per_light[i * lights + light] += packet.radiance[i];
+            if (!batch.parts.empty()) batch.part(i, part) += packet.radiance[i];
         }
+        std::fill(packet.radiance, packet.radiance + 16, vec3(0));
+    };
+    if (batch.parts.empty()) {
+        add_glow(packet, no_light, depth);
+        add_fluence(packet);
+        take_part(0);
+    } else {
+        add_glow(packet, ambient_light, depth), take_part(batch.index_of(OtherLight::ambient));
+        add_glow(packet, emission_light, depth), take_part(batch.index_of(OtherLight::emission));
+        add_fluence(packet), take_part(batch.index_of(OtherLight::multiple));
     }
+    for (size_t light = 0; light < lights; ++light) add_light(packet, light), take_part(light);
     for (size_t i = 0; i < count; ++i)
         results[i] = {total[i], transmittance[i], validity_of(frame, batch.rays[i]), packet.asked[i]};
 }

@@ -27,10 +27,10 @@ struct Asked {
     vec2 positions[16];
     bool open[16];
 
-    RayBatch batch(std::span<vec3> per_light) const {
+    RayBatch batch(std::span<vec3> parts) const {
         return {.rays = {rays, count},
                 .ids = {ids, count},
-                .per_light = per_light,
+                .parts = parts,
                 .jitter = {jitter, count},
                 .places = {places, count},
                 .positions = {positions, count},
@@ -73,13 +73,13 @@ void compute_tile(const Snapshot& snapshot, const ScatterFunction& whole, ivec2 
             asked.positions[count] = (vec2(x, y) + 0.5f) * vec2(view.size) / vec2(size);
         }
     find_lengths(snapshot, view.camera, asked);
-    const size_t lights = picture.per_light.size();
-    std::vector<vec3> parts(lights * count, vec3(0));
+    const size_t part_count = picture.parts.size();
+    std::vector<vec3> parts(part_count * count, vec3(0));
     whole(asked.batch(parts), {fog, count});
     for (size_t i = 0; i < count; ++i) {
         const auto [x, y] = std::pair(pixels[i].x, pixels[i].y);
         picture.fog.at(x, y) = fog[i], picture.length.at(x, y) = asked.rays[i].t_max;
-        for (size_t l = 0; l < lights; ++l) picture.per_light[l].at(x, y) = parts[i * lights + l];
+        for (size_t p = 0; p < part_count; ++p) picture.parts[p].at(x, y) = parts[i * part_count + p];
     }
 }
 
@@ -90,7 +90,7 @@ std::shared_ptr<FogBuffer> compute(const View& view, const Snapshot& snapshot, R
     picture->view = view;
     picture->fog = Image<Scatter>(size), picture->length = Image<float>(size);
     picture->age = Image<float>(size, 1.0f);
-    if (view.per_light) picture->per_light.assign(snapshot.lights.size(), Image<vec3>(size));
+    if (view.fog_parts) picture->parts.assign(part_count(snapshot.lights.size()), Image<vec3>(size));
     const ivec2 tiles = (size + tile_side - 1) / tile_side;
     parallel_for(int64_t{tiles.x} * tiles.y, [&](int64_t i) {
         compute_tile(snapshot, whole, ivec2(i % tiles.x, i / tiles.x) * tile_side, *picture);
@@ -109,7 +109,7 @@ bool at_eye(const Camera& camera, const Ray& ray) {
 void look_up(const FogBuffer& picture, const ScatterFunction& whole, const RayBatch& batch,
              std::span<Scatter> results) {
     const vec2 scale = vec2(picture.fog.size) / vec2(picture.view.size);
-    const size_t lights = batch.rays.empty() ? 0 : batch.per_light.size() / batch.rays.size();
+    const size_t part_count = batch.rays.empty() ? 0 : batch.parts.size() / batch.rays.size();
     size_t missed[16];
     Asked asked;
     size_t& count = asked.count;
@@ -118,17 +118,17 @@ void look_up(const FogBuffer& picture, const ScatterFunction& whole, const RayBa
         const bool known = !batch.positions.empty() && at_eye(picture.view.camera, ray);
         Taps taps = taps_at(picture.fog.size, known ? batch.positions[i] * scale : vec2(0));
         const Mixed fog = known ? mixed(picture, taps, ray.t_max) : Mixed{};
-        if (!(fog.weight >= enough) || lights != picture.per_light.size()) {
+        if (!(fog.weight >= enough) || part_count != picture.parts.size()) {
             missed[count++] = i;
             continue;
         }
         results[i] = fog.fog;
-        for (size_t l = 0; l < lights; ++l) batch.per_light[i * lights + l] += mixed_light(picture.per_light[l], taps);
+        for (size_t p = 0; p < part_count; ++p) batch.part(i, p) += mixed_light(picture.parts[p], taps);
     }
     if (count == 0) return;
 
     Scatter fog[16];
-    std::vector<vec3> parts(lights * count, vec3(0));
+    std::vector<vec3> parts(part_count * count, vec3(0));
     for (size_t k = 0; k < count; ++k) {
         const size_t i = missed[k];
         asked.rays[k] = batch.rays[i], asked.ids[k] = batch.ids[i];
@@ -144,7 +144,7 @@ void look_up(const FogBuffer& picture, const ScatterFunction& whole, const RayBa
     whole(rest, {fog, count});
     for (size_t k = 0; k < count; ++k) {
         results[missed[k]] = fog[k];
-        for (size_t l = 0; l < lights; ++l) batch.per_light[missed[k] * lights + l] += parts[k * lights + l];
+        for (size_t p = 0; p < part_count; ++p) batch.part(missed[k], p) += parts[k * part_count + p];
     }
 }
 }

@@ -10,9 +10,9 @@ namespace tyndall {
 struct FogBuffer {
     View view; // of the full picture
     Image<Scatter> fog;
-    Image<float> length;                // of the ray, metres
-    std::vector<Image<vec3>> per_light; // empty unless the view wants them
-    Image<float> age;                   // frames that make up a pixel
+    Image<float> length;            // of the ray, metres
+    std::vector<Image<vec3>> parts; // empty unless the view wants them
+    Image<float> age;               // frames that make up a pixel
 };
 
 struct FogBufferOptions {

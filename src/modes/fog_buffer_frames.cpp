@@ -64,20 +64,20 @@ void blur_pattern(FogBuffer& picture) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < size.x; ++x) {
             Scatter sum{vec3(0), 0, 0, 0, vec3(0)};
-            std::vector<vec3> parts(picture.per_light.size(), vec3(0));
+            std::vector<vec3> parts(picture.parts.size(), vec3(0));
             float total = 0;
             for (int j = std::max(y - 2, 0); j <= std::min(y + 2, size.y - 1); ++j)
                 for (int i = std::max(x - 2, 0); i <= std::min(x + 2, size.x - 1); ++i) {
                     if (!like(source.length.at(i, j), source.length.at(x, y))) continue;
                     const float weight = (std::abs(i - x) == 2 ? 0.5f : 1) * (std::abs(j - y) == 2 ? 0.5f : 1);
                     add(sum, source.fog.at(i, j), weight), total += weight;
-                    for (size_t l = 0; l < parts.size(); ++l) parts[l] += source.per_light[l].at(i, j) * weight;
+                    for (size_t l = 0; l < parts.size(); ++l) parts[l] += source.parts[l].at(i, j) * weight;
                 }
             Scatter& result = picture.fog.at(x, y);
             const int steps = result.steps;
             result = {vec3(0), 0, 0, steps, vec3(0)};
             add(result, sum, 1 / total);
-            for (size_t l = 0; l < parts.size(); ++l) picture.per_light[l].at(x, y) = parts[l] / total;
+            for (size_t l = 0; l < parts.size(); ++l) picture.parts[l].at(x, y) = parts[l] / total;
         }
     });
 }
@@ -113,9 +113,14 @@ void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffe
             fog.radiance = glm::mix(glm::clamp(old.fog.radiance, range.low, range.high), fog.radiance, share);
             fog.transmittance = glm::mix(old.fog.transmittance, fog.transmittance, share);
             picture.age.at(x, y) = age;
-            // Parts keep their shares of the whole.
-            for (size_t l = 0; l < now.per_light.size(); ++l)
-                picture.per_light[l].at(x, y) *= fog.radiance / glm::max(now.fog.at(x, y).radiance, vec3(1e-30f));
+            // Parts keep their shares of the whole; what is only remembered goes to the first.
+            for (int c = 0; c < 3 && !now.parts.empty(); ++c) {
+                const float whole = now.fog.at(x, y).radiance[c];
+                if (whole > 0)
+                    for (Image<vec3>& part : picture.parts) part.at(x, y)[c] *= fog.radiance[c] / whole;
+                else
+                    picture.parts[0].at(x, y)[c] = fog.radiance[c];
+            }
         }
     });
 }

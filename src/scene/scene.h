@@ -77,6 +77,7 @@ struct MediumSource {
 };
 
 struct Background {
+    bool stated = false; // the scene says what is there, be it black
     BackgroundKind kind = BackgroundKind::color;
     Keyed<vec3> color{vec3(0)};                   // color; horizon of the sky
     Keyed<vec3> zenith{vec3(0)}, ground{vec3(0)}; // sky

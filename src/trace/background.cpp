@@ -26,6 +26,11 @@ vec2 lat_long_position(vec3 direction, float rotation) {
 }
 }
 
+bool has_background(const BackgroundNow& background) {
+    const vec3 brightest = glm::max(background.color, glm::max(background.zenith, background.ground));
+    return background.stated || background.image || max_component(brightest) > 0;
+}
+
 vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen) {
     switch (background.kind) {
     case BackgroundKind::color:

@@ -59,6 +59,7 @@ bool shines(const Light& light) {
 
 BackgroundNow background_at(const Background& background, double seconds) {
     BackgroundNow now;
+    now.stated = background.stated;
     now.kind = background.kind;
     now.color = background.color.at(seconds);
     now.zenith = background.zenith.at(seconds), now.ground = background.ground.at(seconds);

@@ -19,6 +19,7 @@ struct Scene;
 template<class T> struct Image;
 
 struct BackgroundNow {
+    bool stated = false; // the scene says what is there, be it black
     BackgroundKind kind = BackgroundKind::color;
     vec3 color{0}, zenith{0}, ground{0};
     std::shared_ptr<const Image<vec3>> image;
@@ -68,6 +69,9 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
 
 // Whether surfaces shadow the light.
 bool casts(const Light& light, const Snapshot& snapshot);
+
+// Whether there is one: where the scene says nothing of it, it is black and nothing.
+bool has_background(const BackgroundNow& background);
 
 // Radiance behind everything. `screen` is the position on the picture, 0..1 from the upper left (for plates).
 vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);

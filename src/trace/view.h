@@ -32,9 +32,11 @@ struct View {
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;
-    int lamp_samples = 1;   // most times as many samples around a lamp
-    int edge_samples = 1;   // most times as many samples where the picture changes from pixel to pixel
-    bool per_light = false; // whether the parts of single lights are wanted
+    int lamp_samples = 1;       // most times as many samples around a lamp
+    int edge_samples = 1;       // most times as many samples where the picture changes from pixel to pixel
+    bool surface_parts = false; // whether the light of surfaces and of the background is wanted apart
+    bool fog_parts = false;     // and that in fog by where it comes from
+    bool background = true;     // whether the background is in the picture
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 

@@ -9,7 +9,7 @@ COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "ex
 OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
-               "--exposure", "--light-units", "--missing", "--aov", "--png", "--resume", "--seed", "--isa",
+               "--exposure", "--light-units", "--missing", "--aov", "--background", "--png", "--resume", "--seed", "--isa",
                "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],

@@ -1,4 +1,5 @@
-"""Every command in README.md and docs runs as it stands there. The long ones run with TYNDALL_NIGHTLY=1."""
+"""Every command in README.md and docs runs as it stands there. The long ones and those of oiiotool run with
+TYNDALL_NIGHTLY=1."""
 import os
 import pathlib
 import re
@@ -11,7 +12,7 @@ import unittest
 from program import SOURCE, TYNDALL, ProgramTest
 
 # What takes longer than a few seconds on two cores, or wants a display.
-LONG = re.compile(r"tyndall (chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--samples [0-9]{3}|--orders all")
+LONG = re.compile(r"oiiotool|tyndall (chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--samples [0-9]{3}|--orders all")
 ELSEWHERE = re.compile(r"tyndall (view|COMMAND|--help)")  # the viewer has tests of its own
 
 
@@ -23,7 +24,7 @@ def commands():
     """Page and words of every command line: indented by four, without comments."""
     for page in pages():
         for line in page.read_text().splitlines():
-            if line.startswith("    tyndall ") and not ELSEWHERE.search(line):
+            if line.startswith(("    tyndall ", "    oiiotool ")) and not ELSEWHERE.search(line):
                 yield page.name, shlex.split(re.split(r"\s#\s", line)[0])
 
 
@@ -39,7 +40,7 @@ class Docs(ProgramTest):
         found = [(page, words) for page, words in commands() if long or not LONG.search(" ".join(words))]
         self.assertGreater(len(found), 5)
         for page, words in found:
-            result = subprocess.run([TYNDALL, *words[1:]], cwd=self.directory, capture_output=True, text=True)
+            result = subprocess.run([TYNDALL if words[0] == "tyndall" else words[0], *words[1:]], cwd=self.directory, capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, f"{page}: {' '.join(words)}\n{result.stderr}")
 
     def test_quick_commands(self):

@@ -46,17 +46,17 @@ Seen camera_rays(const View& view, float end, float cut) {
     return seen;
 }
 
-std::vector<Scatter> ask(const ScatterFunction& scatter, const Seen& seen, std::vector<vec3>* per_light = nullptr) {
+std::vector<Scatter> ask(const ScatterFunction& scatter, const Seen& seen, std::vector<vec3>* of_parts = nullptr) {
     std::vector<Scatter> results(seen.rays.size());
     const std::vector<uint32_t> ids(16, 3);
-    const size_t lights = per_light ? per_light->size() / seen.rays.size() : 0;
+    const size_t lights = of_parts ? of_parts->size() / seen.rays.size() : 0;
     for (size_t i = 0; i < seen.rays.size(); i += 16) {
         const size_t n = std::min<size_t>(16, seen.rays.size() - i);
         std::span<vec3> parts;
-        if (per_light) parts = std::span(*per_light).subspan(i * lights, n * lights);
+        if (of_parts) parts = std::span(*of_parts).subspan(i * lights, n * lights);
         scatter({.rays = std::span(seen.rays).subspan(i, n),
                  .ids = std::span(ids).first(n),
-                 .per_light = parts,
+                 .parts = parts,
                  .positions = std::span(seen.positions).subspan(i, n)},
                 std::span(results).subspan(i, n));
     }
@@ -164,10 +164,10 @@ TEST(FogBuffer, RaysThatNothingEndsStayOpen) {
 
 TEST(FogBuffer, LightsAddUp) {
     View view = small_view();
-    view.per_light = true;
+    view.fog_parts = true;
     const Snapshot snapshot = lit_box();
     const Seen seen = box_rays(view, snapshot);
-    std::vector<vec3> parts(seen.rays.size() * 2, vec3(0));
+    std::vector<vec3> parts(seen.rays.size() * part_count(2), vec3(0));
     History history;
     for (int frame = 0; frame < 3; ++frame) {
         parts.assign(parts.size(), vec3(0));
@@ -175,7 +175,8 @@ TEST(FogBuffer, LightsAddUp) {
             from_fog_buffer(view, snapshot, {Resolution::half, true}, march_of(view, snapshot), &history);
         const std::vector<Scatter> results = ask(scatter, seen, &parts);
         for (size_t i = 0; i < results.size(); ++i)
-            ASSERT_NEAR((parts[2 * i] + parts[2 * i + 1]).x, results[i].radiance.x, 1e-4f) << frame;
+            ASSERT_NEAR((parts[part_count(2) * i] + parts[part_count(2) * i + 1]).x, results[i].radiance.x, 1e-4f)
+                << frame;
     }
 }
 

@@ -63,8 +63,8 @@ ScatterFunction prepare_glow(const View&, const Snapshot& snapshot, const Settin
         for (size_t i = 0; i < batch.rays.size(); ++i) {
             const float transmittance = std::exp(-extinction * batch.rays[i].t_max);
             results[i] = {glow * (1 - transmittance), transmittance, 1, 3};
-            for (size_t l = 0; l < lights && !batch.per_light.empty(); ++l)
-                batch.per_light[i * lights + l] = results[i].radiance / static_cast<float>(lights);
+            for (size_t l = 0; l < lights && !batch.parts.empty(); ++l)
+                batch.part(i, l) = results[i].radiance / static_cast<float>(lights);
         }
     };
 }

@@ -7,15 +7,15 @@
 
 namespace tyndall::test {
 namespace {
-std::vector<Scatter> taken(const ScatterFunction& scatter, const std::vector<Ray>& rays, size_t packet, size_t lights,
-                           std::vector<vec3>* per_light) {
+std::vector<Scatter> taken(const ScatterFunction& scatter, const std::vector<Ray>& rays, size_t packet, size_t parts,
+                           std::vector<vec3>* of_parts) {
     std::vector<Scatter> results(rays.size());
     const std::vector<uint32_t> ids(packet, 7);
-    if (per_light) per_light->assign(rays.size() * lights, vec3(0));
+    if (of_parts) of_parts->assign(rays.size() * parts, vec3(0));
     for (size_t first = 0; first < rays.size(); first += packet) {
         const size_t count = std::min(packet, rays.size() - first);
         RayBatch batch{.rays = std::span(rays).subspan(first, count), .ids = std::span(ids).first(count)};
-        if (per_light) batch.per_light = std::span(*per_light).subspan(first * lights, count * lights);
+        if (of_parts) batch.parts = std::span(*of_parts).subspan(first * parts, count * parts);
         scatter(batch, std::span(results).subspan(first, count));
     }
     return results;
@@ -64,9 +64,9 @@ std::vector<Scatter> scattered(const ScatterFunction& scatter, const std::vector
 }
 
 std::vector<Scatter> run_mode(std::string_view mode, const View& view, const Snapshot& snapshot,
-                              const Settings& settings, const std::vector<Ray>& rays, std::vector<vec3>* per_light) {
+                              const Settings& settings, const std::vector<Ray>& rays, std::vector<vec3>* of_parts) {
     const ScatterFunction scatter = find_mode(mode).prepare(view, snapshot, settings, nullptr);
-    return taken(scatter, rays, 16, snapshot.lights.size(), per_light);
+    return taken(scatter, rays, 16, part_count(snapshot.lights.size()), of_parts);
 }
 
 std::vector<Scatter> marched(const Snapshot& snapshot, const Settings& settings, const std::vector<Ray>& rays) {

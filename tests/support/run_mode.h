@@ -15,11 +15,11 @@ double mean_of(const std::vector<Scatter>& results);
 double rms_difference(const std::vector<Scatter>& a, const std::vector<Scatter>& b);
 double relative_rmse(const std::vector<Scatter>& results, const std::vector<Scatter>& truth);
 
-// Light along the rays, taken in packets; `per_light` gets each light's part of it.
+// Light along the rays, taken in packets; `of_parts` gets the parts of it.
 std::vector<Scatter> scattered(const ScatterFunction& scatter, const std::vector<Ray>& rays, size_t packet = 16);
 std::vector<Scatter> run_mode(std::string_view mode, const View& view, const Snapshot& snapshot,
                               const Settings& settings, const std::vector<Ray>& rays,
-                              std::vector<vec3>* per_light = nullptr);
+                              std::vector<vec3>* of_parts = nullptr);
 
 // The same of `march`, which needs no view.
 std::vector<Scatter> marched(const Snapshot& snapshot, const Settings& settings, const std::vector<Ray>& rays);

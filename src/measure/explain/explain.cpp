@@ -17,7 +17,7 @@ namespace {
 View centered(View view) {
     view.crop_low = view.crop_high = ivec2(0);
     view.pixel_samples = view.batches = view.lamp_samples = 1;
-    view.filter = PixelFilter::center, view.per_light = false;
+    view.filter = PixelFilter::center, view.fog_parts = false;
     view.lamps.clear();
     return view;
 }
@@ -56,9 +56,9 @@ void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
 // Fog light of one part by the reference, light by light.
 void add_reference(const Prepared& prepared, const RayPart& part, RayStory& story, float& transmittance) {
     const size_t lights = story.lights.size();
-    std::vector<vec3> of_lights(lights, vec3(0));
+    std::vector<vec3> of_lights(part_count(lights), vec3(0));
     RayBatch batch = part.batch;
-    batch.per_light = of_lights;
+    batch.parts = of_lights;
     Scatter scatter;
     prepared.scatter(batch, {&scatter, 1});
 

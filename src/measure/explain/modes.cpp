@@ -25,7 +25,7 @@ FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view,
 }
 
 void take(const PixelSample& sample, Answer& answer) {
-    answer.inscatter = sample.inscatter, answer.color = sample.color;
+    answer.inscatter = sample.inscatter, answer.color = sample.color();
     answer.transmittance = sample.transmittance, answer.validity = sample.validity, answer.steps = sample.steps;
     answer.finite = sample.finite();
 }
@@ -68,7 +68,7 @@ void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& ans
         if ((s + 1) % static_cast<size_t>(batch_size) == 0) sum.end_batch(batch_size);
     }
     const float count = static_cast<float>(view.pixel_samples);
-    answer.inscatter = vec3(sum.inscatter_mean.mean), answer.color = vec3(sum.color_mean.mean);
+    answer.inscatter = vec3(sum.inscatter_mean.mean), answer.color = sum.mean_color();
     answer.transmittance = sum.transmittance / count, answer.validity = sum.validity / count;
     answer.steps = static_cast<int>(std::lround(steps / view.pixel_samples));
     answer.standard_error = glm::sqrt(sum.inscatter_mean.variance());

@@ -79,14 +79,13 @@ StressScene two_colours(double) {
                         camera_from({0, 0, 4}, vec3(0)));
 }
 
-// The layers of the lights together are the fog's light.
+// The layers of the lights together are the fog's light as it is found without them.
 double sum_off(Trial& trial) {
     const Layers layers = trial.render();
-    Layers sum = layers;
-    sum.color = sum.inscatter = Image<vec3>(layers.size, vec3(0));
-    for (const auto& [name, light] : layers.lights)
+    Layers sum = trial.render(trial.scene, nullptr, true);
+    sum.inscatter = Image<vec3>(layers.size, vec3(0));
+    for (const auto& [name, light] : sum.lights)
         for (size_t i = 0; i < light.pixels.size(); ++i) sum.inscatter.pixels[i] += light.pixels[i];
-    sum.color = layers.color;
     return difference(sum, layers);
 }
 }

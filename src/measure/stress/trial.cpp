@@ -109,9 +109,9 @@ double bias_of_mean(Trial& trial) {
 }
 }
 
-Layers Trial::render(const StressScene& what, History* history) {
+Layers Trial::render(const StressScene& what, History* history, bool parts) {
     View view = what.view;
-    view.per_light = true;
+    view.fog_parts = parts;
     if (is_noise(*this)) view.pixel_samples = noisy_samples;
     FrameOptions options;
     options.cancel = cancel, options.history = history;

@@ -40,7 +40,7 @@ struct Trial {
     Faults faults{};        // of everything rendered but the shared truth
     int noisy_samples = 16; // per pixel, of a mode whose error is noise
 
-    Layers render(const StressScene& what, History* history = nullptr);
+    Layers render(const StressScene& what, History* history = nullptr, bool parts = false);
     Layers render() { return render(scene); }
     Layers truth_of_scene(const StressScene& what); // exact single scattering, at pixel centres
     const Layers& truth();

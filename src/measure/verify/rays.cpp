@@ -53,7 +53,7 @@ RayEstimate path_light(const Snapshot& snapshot, const Ray& ray, int samples, in
     Settings settings;
     settings.path.orders = orders;
     const ScatterFunction scatter = mode_of_all_orders().prepare(View{}, snapshot, settings, nullptr);
-    return estimate_ray(scatter, ray, samples, [](const Scatter& s) { return s.radiance + s.surface; });
+    return estimate_ray(scatter, ray, samples, [](const Scatter& s) { return s.whole(); });
 }
 
 Scatter reference_light(const Snapshot& snapshot, const Ray& ray) {

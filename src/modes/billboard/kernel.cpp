@@ -159,7 +159,7 @@ void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch
         const Light& light = snapshot.lights[l];
         const Vec3s part = whole_light(billboards, l, sums[l], packet) * splat(light.intensity * light.volume_scale);
         radiance = radiance + part;
-        add_per_light(part, l, lights, batch);
+        add_part(part, l, batch);
     }
     Floats depth = 0.0f;
     if (billboards.settings.fog)

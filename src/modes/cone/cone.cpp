@@ -124,7 +124,10 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
         if (medium.density.kind == DensityKind::bricks) cone.grids.push_back(medium.density.bricks->bounds);
     seen.media = homogeneous_media(seen.media);
     cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
-    for (const Medium& medium : seen.media) cone.glow.push_back(source_radiance(medium.optics, seen.ambient));
+    for (const Medium& medium : seen.media) {
+        cone.ambient.push_back(medium.optics.albedo * seen.ambient);
+        cone.emission.push_back(source_radiance(medium.optics, vec3(0)));
+    }
     for (const Light& light : seen.lights) cone.lights.push_back(cone_light(light, seen, cone));
     return cone;
 }

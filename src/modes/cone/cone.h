@@ -44,9 +44,9 @@ struct Cone {
     ConeSettings settings;
     StyleSettings style;
     vec3 eye{0};
-    AnchoredFog fog;        // at the eye
-    std::vector<vec3> glow; // per medium: emission and scattered ambient light per optical depth
-    std::vector<Box> grids; // bounds of media that are drawn evener than they are
+    AnchoredFog fog;                     // at the eye
+    std::vector<vec3> ambient, emission; // per medium: ambient light scattered, and light given off, per optical depth
+    std::vector<Box> grids;              // bounds of media that are drawn evener than they are
     std::vector<ConeLight> lights;
     float noise_rise = 0; // metres so far
     bool casts = false;   // there are surfaces to cast the shadows that are not drawn

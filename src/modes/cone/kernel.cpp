@@ -73,27 +73,41 @@ bool add_even(Packet& packet, const ConeLight* light) {
     return true;
 }
 
-// The light of the sums; clears them.
-Vec3s taken_sums(const Packet& packet, const std::vector<vec3>* colors, vec3 intensity) {
+// The light of the sums, of colours per medium.
+template<class Color> Vec3s light_of_sums(const Packet& packet, const Color& color) {
     Vec3s light = splat(vec3(0));
-    for (size_t m = 0; m < packet.media(); ++m) {
-        const vec3 color = colors ? (*colors)[m] : packet.fog.media[m].optics.albedo;
-        light = fused(splat(color * intensity), load(packet.scratch.sums[m].data()), light);
-        packet.scratch.sums[m].fill(0);
-    }
+    for (size_t m = 0; m < packet.media(); ++m)
+        light = fused(splat(color(m)), load(packet.scratch.sums[m].data()), light);
     return light;
 }
 
+void clear_sums(const Packet& packet) {
+    for (size_t m = 0; m < packet.media(); ++m) packet.scratch.sums[m].fill(0);
+}
+
+float brightest(const std::vector<vec3>& colors) {
+    float result = 0;
+    for (const vec3 color : colors) result = std::max(result, max_component(color));
+    return result;
+}
+
 // Emission and ambient light: of one medium ∫ σ e^-τ dt = 1 - e^-τ, whatever its density.
-Vec3s glow_light(Packet& packet, const Floats& depth) {
+Vec3s glow_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
     const Cone& cone = packet.cone;
-    float brightest = 0;
-    for (const vec3 glow : cone.glow) brightest = std::max(brightest, max_component(glow));
-    if (!(brightest > 0)) return splat(vec3(0));
+    if (!(brightest(cone.ambient) > 0) && !(brightest(cone.emission) > 0)) return splat(vec3(0));
     if (packet.media() == 1 && cone.style.range >= no_range)
-        return splat(cone.glow[0]) * (depth * mean_transmittance(depth * cone.style.view_depth));
-    add_even(packet, nullptr);
-    return taken_sums(packet, &cone.glow, vec3(1));
+        store(depth * mean_transmittance(depth * cone.style.view_depth), packet.scratch.sums[0].data());
+    else
+        add_even(packet, nullptr);
+    if (!batch.parts.empty()) {
+        add_part(light_of_sums(packet, [&](size_t m) { return cone.ambient[m]; }), batch.index_of(OtherLight::ambient),
+                 batch);
+        add_part(light_of_sums(packet, [&](size_t m) { return cone.emission[m]; }),
+                 batch.index_of(OtherLight::emission), batch);
+    }
+    const Vec3s light = light_of_sums(packet, [&](size_t m) { return cone.ambient[m] + cone.emission[m]; });
+    clear_sums(packet);
+    return light;
 }
 
 // Half for each kind of thing that is not as the scene has it: fog drawn even, light without its shadows.
@@ -111,16 +125,19 @@ void cone_packet_kernel(const Cone& cone, const RayBatch& batch, std::span<Scatt
     Packet eye = make_packet(cone, cone.fog, batch, scratch);
     find_fog(eye);
     const Floats depth = view_depth(eye, eye.t_max);
-    Vec3s radiance = glow_light(eye, depth);
+    Vec3s radiance = glow_light(eye, depth, batch);
     Floats unshadowed = 0.0f;
     for (size_t l = 0; media > 0 && l < cone.lights.size(); ++l) {
         const ConeLight& light = cone.lights[l];
         Packet packet = make_packet(cone, light.fog, batch, scratch);
         if (!(is_distant(light.light) ? add_even(packet, &light) : add_local(packet, light))) continue;
-        const Vec3s added = taken_sums(packet, nullptr, light.light.intensity * light.light.volume_scale);
+        const vec3 intensity = light.light.intensity * light.light.volume_scale;
+        const Vec3s added =
+            light_of_sums(packet, [&](size_t m) { return packet.fog.media[m].optics.albedo * intensity; });
+        clear_sums(packet);
         radiance = radiance + added;
         if (cone.casts && light.light.shadows) unshadowed = unshadowed + added.x + added.y + added.z;
-        add_per_light(added, l, cone.lights.size(), batch);
+        add_part(added, l, batch);
     }
 
     alignas(64) float rgbt[5][16];

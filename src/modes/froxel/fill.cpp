@@ -67,7 +67,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         const FroxelLanes lanes = sheet ? in_fog(snapshot.media, whole, extinction) : whole;
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
         if (!any(lit)) continue;
-        Vec3s sum = fill.wants(snapshot.lights.size()) ? glow_of(fill.scene, lanes, extinction) : splat(vec3(0));
+        Vec3s sum = other_light(fill, lanes, extinction);
         const Job job{packet.where, looks,
                       slice,        sample,
                       sheet,        fill.exact() ? &packet.exact[s] : nullptr,

@@ -41,7 +41,7 @@ struct FroxelLight {
 };
 
 struct FillPass {
-    int only = -1;                  // 0..: this light alone; the number of lights: all other light alone
+    int only = -1;                  // 0..: this part of the light alone (see part_count)
     int frame = 0;                  // of the history: 0 looks at the centres, later ones elsewhere in the froxels
     const uint8_t* stale = nullptr; // per froxel, 1 = its light is remembered: find its extinction only
     bool statics = false;           // stale froxels need no extinction either; tiles all stale may be left as they are

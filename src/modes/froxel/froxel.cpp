@@ -29,9 +29,10 @@ struct FroxelFrame {
     bool has_history = false;
     int frame = 0;
 
-    // Of each light, and of all other light: made when first asked for.
+    // What the light is made of, and which part that is: made when first asked for.
     std::once_flag parts_made;
     std::vector<FroxelSums> parts;
+    std::vector<size_t> indices;
 };
 
 // The scene as the settings see it.
@@ -119,27 +120,41 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::sh
     return sums;
 }
 
-void make_parts(FroxelFrame& frame) {
-    const FroxelPicture& picture = frame.picture;
-    const int lights = static_cast<int>(frame.scene.snapshot.lights.size());
-    for (int part = 0; part < lights + frame.has_history; ++part)
-        frame.parts.push_back(integrate_froxels(
-            picture.grid, picture.tiles, fill_froxels(frame.scene, picture.grid, picture.tiles, {part, frame.frame}),
-            picture.view_depth));
+bool has(const FroxelScene& scene, OtherLight light) {
+    if (light == OtherLight::multiple) return scene.fluence != nullptr;
+    if (light == OtherLight::ambient) return max_component(scene.snapshot.ambient) > 0;
+    return std::ranges::any_of(scene.snapshot.media,
+                               [](const Medium& medium) { return max_component(medium.optics.emission.radiance) > 0; });
 }
 
-// The lights' parts are those of this frame alone; where the history changed their sum they change alike.
+void make_parts(FroxelFrame& frame) {
+    const FroxelPicture& picture = frame.picture;
+    const size_t lights = frame.scene.snapshot.lights.size();
+    for (size_t part = 0; part < part_count(lights); ++part) {
+        if (part >= lights && !has(frame.scene, OtherLight{part - lights})) continue;
+        const FillPass pass{static_cast<int>(part), frame.frame};
+        frame.indices.push_back(part);
+        frame.parts.push_back(integrate_froxels(picture.grid, picture.tiles,
+                                                fill_froxels(frame.scene, picture.grid, picture.tiles, pass),
+                                                picture.view_depth));
+    }
+}
+
+// The parts are those of this frame alone; where the history changed their sum they change alike. What it alone
+// remembers goes to the first.
 void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
     std::call_once(frame.parts_made, [&] { make_parts(frame); });
-    const size_t lights = frame.scene.snapshot.lights.size(), parts = frame.parts.size();
+    const size_t parts = frame.parts.size();
     std::vector<vec3> light(batch.rays.size() * parts);
     look_up_froxels(frame.picture, batch, results, frame.parts, light);
     for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
         const std::span<const vec3> of_ray{light.data() + ray * parts, parts};
-        vec3 sum(0), scale(1);
+        vec3 sum(0), scale(1), rest(0);
         for (const vec3& part : of_ray) sum += part;
-        for (int c = 0; c < 3 && frame.has_history; ++c) scale[c] = sum[c] > 0 ? results[ray].radiance[c] / sum[c] : 0;
-        for (size_t i = 0; i < lights; ++i) batch.per_light[ray * lights + i] = scale * of_ray[i];
+        for (int c = 0; c < 3 && frame.has_history; ++c)
+            (sum[c] > 0 ? scale[c] : rest[c]) = results[ray].radiance[c] / (sum[c] > 0 ? sum[c] : 1);
+        for (size_t i = 0; i < parts; ++i)
+            batch.part(ray, frame.indices[i]) += scale * of_ray[i] + (i == 0 ? rest : vec3(0));
     }
 }
 }
@@ -167,7 +182,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
                 : integrate_froxels(picture.grid, picture.tiles,
                                     fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
     return [frame](const RayBatch& batch, std::span<Scatter> results) {
-        if (batch.per_light.empty()) return look_up_froxels(frame->picture, batch, results);
+        if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);
     };
 }

@@ -172,9 +172,15 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
     return scattered_light(light, fill.scene.depths[index], arrived.point, arrived.amount, towards);
 }
 
-Vec3s glow_of(const FroxelScene& scene, const FroxelLanes& lanes, const float (*extinction)[16]) {
-    return glow(scene.snapshot, scene.fluence.get(), lanes.point, lanes.toward,
-                [&](size_t m) HWY_ATTR { return load(extinction[m]); });
+// Light of no single one, as far as it is wanted.
+Vec3s other_light(const Fill& fill, const FroxelLanes& lanes, const float (*extinction)[16]) {
+    const Snapshot& snapshot = fill.scene.snapshot;
+    const FluenceGrid* fluence = fill.scene.fluence.get();
+    const auto extinction_of = [&](size_t m) HWY_ATTR { return load(extinction[m]); };
+    if (fill.pass.only < 0) return glow(snapshot, fluence, lanes.point, lanes.toward, extinction_of);
+    const size_t part = static_cast<size_t>(fill.pass.only), lights = snapshot.lights.size();
+    if (part < lights) return splat(vec3(0));
+    return glow_of(OtherLight{part - lights}, snapshot, fluence, lanes.point, lanes.toward, extinction_of);
 }
 }
 }

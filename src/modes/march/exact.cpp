@@ -85,15 +85,19 @@ template<class Body> void at_nodes(RayMarch& on, const Body& body) {
 }
 
 // Emission and ambient light of all fog, lit or not.
-dvec3 glow(RayMarch& on) {
+struct OtherSums {
+    dvec3 ambient{0}, emission{0};
+};
+OtherSums glow(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
-    dvec3 sum(0);
+    OtherSums sum;
     at_nodes(on, [&](size_t piece, double t, double weight) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 per_density =
                 double(grey_extinction(optics)) * dvec3(optics.albedo * on.frame.snapshot.ambient);
-            sum += weight * fog.density(piece, m, t) * (per_density + dvec3(optics.emission.radiance));
+            const double density = weight * fog.density(piece, m, t);
+            sum.ambient += density * per_density, sum.emission += density * dvec3(optics.emission.radiance);
         }
     });
     return sum;
@@ -270,14 +274,16 @@ void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_
 
     const double stretch = fog.pieces.back().high - fog.pieces.front().low;
     on.longest = frame.rule->settings.step_share * stretch;
-    dvec3 sum = glow(on);
-    if (frame.fluence) sum += scattered_before(on);
-    const std::vector<Light>& lights = frame.snapshot.lights;
-    for (size_t l = 0; l < lights.size(); ++l) {
-        const dvec3 light = light_from(on, batch, ray_index, l);
+    dvec3 sum(0);
+    const auto add = [&](size_t index, const dvec3& light) {
         sum += light;
-        if (!batch.per_light.empty()) batch.per_light[ray_index * lights.size() + l] += vec3(light);
-    }
+        if (!batch.parts.empty()) batch.part(ray_index, index) += vec3(light);
+    };
+    const auto [ambient, emission] = glow(on);
+    add(batch.index_of(OtherLight::ambient), ambient), add(batch.index_of(OtherLight::emission), emission);
+    if (frame.fluence) add(batch.index_of(OtherLight::multiple), scattered_before(on));
+    const std::vector<Light>& lights = frame.snapshot.lights;
+    for (size_t l = 0; l < lights.size(); ++l) add(l, light_from(on, batch, ray_index, l));
     result.radiance = vec3(sum);
     result.transmittance = static_cast<float>(std::exp(-fog.depth));
     result.steps = on.nodes;

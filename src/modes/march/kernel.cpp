@@ -148,13 +148,19 @@ void march_packet_kernel(const SingleScattering& frame, const RayBatch& batch, s
             weight = seen * points.length * mean_transmittance(depth * frame.style.view_depth) *
                      style_fade(frame.style, frame.camera, points.position);
         }
-        const Vec3s glowing = glow(frame.snapshot, frame.fluence.get(), points.position, packet.direction,
-                                   [&](size_t m) HWY_ATTR { return packet.extinction(m); });
-        totals.radiance = totals.radiance + glowing * weight;
+        const auto extinction_of = [&](size_t m) HWY_ATTR { return packet.extinction(m); };
+        const FluenceGrid* fluence = frame.fluence.get();
+        totals.radiance =
+            totals.radiance + glow(frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight;
+        for (size_t i = 0; !batch.parts.empty() && i < other_lights; ++i) {
+            const OtherLight other{i};
+            add_part(glow_of(other, frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight,
+                     batch.index_of(other), batch);
+        }
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(frame, light, points, packet, batch, k) * weight;
             totals.radiance = totals.radiance + added;
-            add_per_light(added, light, light_count, batch);
+            add_part(added, light, batch);
         }
         totals.depth = totals.depth + depth;
         totals.transmittance = exp(-totals.depth);

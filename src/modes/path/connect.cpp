@@ -12,7 +12,6 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
                     std::span<Scatter> results) {
     float visibility[16];
     find_visibility(tracer, connections, visibility);
-    const size_t lights = batch.per_light.empty() ? 0 : tracer.snapshot.lights.size();
     for (size_t i = 0; i < connections.size(); ++i) {
         Connection& c = connections[i];
         float passing = visibility[i];
@@ -22,7 +21,10 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
                 passing *= ratio_transmittance(medium, way, {0, c.fog_length}, c.random, results[c.lane].steps);
         const vec3 arriving = c.light * passing;
         (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;
-        if (lights && c.light_index >= 0) batch.per_light[c.lane * lights + c.light_index] += arriving;
+        if (!c.in_fog || batch.parts.empty()) continue;
+        const bool glowing = c.light_index < 0;
+        batch.part(c.lane, glowing ? batch.index_of(OtherLight::emission) : static_cast<size_t>(c.light_index)) +=
+            arriving;
     }
 }
 }

@@ -30,7 +30,8 @@ Connection connection_to_glow(vec3 point, const EmissivePoint& target);
 // Share of light that surfaces let through, of up to 16 connections; 1 for dark ones and lights without shadows.
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility);
 
-// Adds what each connection brings to the results, and to batch.per_light when wanted. Empties the list.
+// Adds what each connection brings to the results, and, where it is scattered in fog, to the batch's parts. Empties the
+// list.
 void connect(const PathTracer& tracer, std::vector<Connection>& connections, const RayBatch& batch,
              std::span<Scatter> results);
 }

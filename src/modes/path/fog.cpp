@@ -113,7 +113,8 @@ void gather_emission(const Walk& walk, Segment& line) {
         const float density = density_at(medium, line.rest.at(distance));
         if (!(density > 0)) continue;
         const float share = line.through * passing_share(walk, line, {0, distance});
-        add_light(walk, line, emission * (share * density * range.length()), walk.order == 0 || line.walker.in_fog);
+        add_light(walk, line, emission * (share * density * range.length()), OtherLight::emission,
+                  walk.order == 0 || line.walker.in_fog);
     }
 }
 
@@ -195,7 +196,7 @@ void collide(const Walk& walk, Segment& line) {
     const Optics& optics = snapshot.media[hit].optics;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
     if (thin_range(line, snapshot.media[hit]).empty())
-        add_light(walk, line, optics.emission.radiance / grey_extinction(optics), in_fog);
+        add_light(walk, line, optics.emission.radiance / grey_extinction(optics), OtherLight::emission, in_fog);
     if (!walk.turns) return;
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);

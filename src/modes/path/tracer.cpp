@@ -67,10 +67,13 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
 
 // Nothing more is met: the background for the eye, the surroundings for everything else.
 void leave(const Walk& walk, Segment& line) {
-    const vec3 radiance = walk.order == 0 ? background_radiance(walk.snapshot.background, line.walker.ray.direction,
-                                                                screen_position(walk.tracer, line.walker.ray))
-                                          : walk.snapshot.ambient;
-    add_light(walk, line, radiance * line.through, line.walker.in_fog);
+    if (walk.order == 0)
+        walk.results[line.walker.lane].background +=
+            line.walker.throughput * line.through *
+            background_radiance(walk.snapshot.background, line.walker.ray.direction,
+                                screen_position(walk.tracer, line.walker.ray));
+    else
+        add_light(walk, line, walk.snapshot.ambient * line.through, OtherLight::ambient, line.walker.in_fog);
     line.walking = false, line.through = 0;
 }
 
@@ -129,9 +132,11 @@ void follow_lines(const Walk& walk) {
 }
 }
 
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, bool in_fog) {
-    Scatter& result = walk.results[line.walker.lane];
-    (in_fog ? result.radiance : result.surface) += line.walker.throughput * radiance;
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog) {
+    const size_t lane = line.walker.lane;
+    const vec3 added = line.walker.throughput * radiance;
+    (in_fog ? walk.results[lane].radiance : walk.results[lane].surface) += added;
+    if (in_fog && !walk.batch.parts.empty()) walk.batch.part(lane, walk.batch.index_of(light)) += added;
 }
 
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {
@@ -161,7 +166,7 @@ void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, 
         const float aimed =
             line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
         const float weight = aimed > 0 ? line.walker.density / (line.walker.density + aimed) : 1;
-        add_light(walk, line, surface.emission * (share * weight), line.walker.in_fog);
+        add_light(walk, line, surface.emission * (share * weight), OtherLight::emission, line.walker.in_fog);
     }
     if (walk.turns && share > 0) gather_at_surface(walk, line, surface, share);
     if (line.walking && (surface.alpha >= 1 || line.numbers(use_blend).x < surface.alpha)) {

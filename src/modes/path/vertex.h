@@ -103,7 +103,7 @@ struct Walk {
 };
 
 // Adds light that comes down the line undimmed by what the line has met so far.
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, bool in_fog);
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
 
 // Queues a connection that brings `light` down the line when nothing is in its way.
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);

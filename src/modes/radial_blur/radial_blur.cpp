@@ -27,7 +27,7 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
     const View& view = blur.view;
     const ivec2 size = shared_size(view.size, blur.settings.resolution);
     Addition addition{Image<vec3>(view.size), Image<float>(view.size, 1.0f), {}};
-    if (view.per_light) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(view.size));
+    if (view.fog_parts) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(view.size));
     if (blur.lights.empty()) return addition;
 
     const bool highlights = blur.settings.source == BlurSource::highlights;
@@ -40,7 +40,7 @@ Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
             highlights ? blurred(bright, blur.line, center, infinity, view)
                        : blurred(unoccluded_glow(view, blur.snapshot, light, size), blur.line, center, radius, view);
         const vec3 color = (highlights ? vec3(light.share) : light.color) * light.fade;
-        add_glow(smeared, color, addition.radiance, view.per_light ? &addition.per_light[light.index] : nullptr);
+        add_glow(smeared, color, addition.radiance, view.fog_parts ? &addition.per_light[light.index] : nullptr);
     }
     for (size_t i = 0; i < addition.validity.pixels.size(); ++i)
         if (max_component(addition.radiance.pixels[i]) > 0) addition.validity.pixels[i] = 0;

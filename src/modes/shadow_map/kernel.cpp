@@ -73,10 +73,16 @@ void march_sun(const Packet& packet, size_t index) {
 // Gives what the media scattered its colour.
 void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     const Snapshot& snapshot = packet.march.snapshot;
+    const RayBatch& batch = packet.batch;
+    const bool apart = !batch.parts.empty();
     result.radiance = vec3(0);
     for (size_t m = 0; m < packet.media(); ++m) {
-        result.radiance +=
-            source_radiance(snapshot.media[m].optics, snapshot.ambient) * packet.scratch.glowing[m][lane];
+        const Optics& optics = snapshot.media[m].optics;
+        const float glowing = packet.scratch.glowing[m][lane];
+        result.radiance += source_radiance(optics, snapshot.ambient) * glowing;
+        if (!apart) continue;
+        batch.part(lane, batch.index_of(OtherLight::ambient)) += optics.albedo * snapshot.ambient * glowing;
+        batch.part(lane, batch.index_of(OtherLight::emission)) += source_radiance(optics, vec3(0)) * glowing;
     }
     for (size_t i = 0; i < packet.lights(); ++i) {
         vec3 part(0);
@@ -84,7 +90,7 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
             part += snapshot.media[m].optics.albedo * packet.scratch.scattered[i * packet.media() + m][lane];
         part *= snapshot.lights[i].intensity * snapshot.lights[i].volume_scale;
         result.radiance += part;
-        if (!packet.batch.per_light.empty()) packet.batch.per_light[lane * packet.lights() + i] += part;
+        if (apart) batch.part(lane, i) += part;
     }
 }
 

@@ -98,7 +98,7 @@ void follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::
             vec3* mean = &result[2 * (16 * static_cast<size_t>(s / half) + places[i])];
             const bool fresh = s % half == 0;
             const float share = 1 / static_cast<float>(half), kept = samples[i].finite() ? share : quiet_nan;
-            mean[0] = (fresh ? vec3(0) : mean[0]) + kept * samples[i].color;
+            mean[0] = (fresh ? vec3(0) : mean[0]) + kept * samples[i].color();
             mean[1] = (fresh ? vec3(0) : mean[1]) + kept * samples[i].inscatter;
         }
     }
@@ -184,7 +184,7 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
     Pilot pilot{&mode, &snapshot, options.cancel};
     if (truth) pilot.truth_settings = *truth;
     pilot.view = view, pilot.seed = view.seed, pilot.chances = std::move(chances);
-    pilot.view.per_light = false, pilot.view.pixel_samples = pilot.view.batches = 2;
+    pilot.view.surface_parts = pilot.view.fog_parts = false, pilot.view.pixel_samples = pilot.view.batches = 2;
     pilot.view.lamp_samples = pilot.view.edge_samples = 1, pilot.view.allotted = nullptr;
     pilot.view.seed = hash(view.seed, use_pilot, salt);
     pilot.view.lamps = lamps_in(view, snapshot);

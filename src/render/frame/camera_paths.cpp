@@ -113,7 +113,7 @@ RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s) {
 
 namespace {
 // One whole ray for each sample, from the eye to the far plane.
-void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
+void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     const size_t count = static_cast<size_t>(s.count);
     Ray rays[16];
     float near[16];
@@ -122,7 +122,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     const RayNumbers numbers = ray_numbers(tracer.view, 0, s);
     tracer.scatter({.rays = {rays, count},
                     .ids = {numbers.ids, count},
-                    .per_light = per_light,
+                    .parts = parts,
                     .jitter = {numbers.jitter, count},
                     .places = {numbers.places, count},
                     .clip_near = {near, count},
@@ -131,7 +131,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
 
     for (size_t i = 0; i < count; ++i) {
         PixelSample& result = samples[i];
-        result.color = scatter[i].radiance + scatter[i].surface;
+        result.surface = scatter[i].surface, result.background = scatter[i].background;
         result.inscatter = scatter[i].radiance;
         result.transmittance = scatter[i].transmittance;
         result.validity = scatter[i].validity;
@@ -141,9 +141,8 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
 }
 }
 
-void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples,
-                      std::span<vec3> per_light) {
-    add_light(tracer, s, samples, per_light);
+void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
+    add_light(tracer, s, samples, parts);
 
     // What covers the background, and the depth.
     for (int layer = 0; layer < max_layers; ++layer) {

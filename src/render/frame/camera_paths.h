@@ -68,6 +68,5 @@ bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<
 RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s);
 
 // Modes with Surfaces::own: one whole ray for each path.
-void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples,
-                      std::span<vec3> per_light);
+void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts);
 }

@@ -24,6 +24,7 @@ struct Probes {
 Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
     View centers = tracer.view;
     centers.pixel_samples = centers.batches = 1, centers.lamps.clear(), centers.filter = PixelFilter::center;
+    centers.background = true; // left out or not, the other layers are the same
     const FrameTracer prober{centers,         tracer.snapshot,     tracer.scatter,
                              tracer.surfaces, tracer.light_points, tracer.light_depths};
     Probes probes{low, Image<vec2>(high - low)};
@@ -40,7 +41,7 @@ Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats
             trace_samples(prober, {pixels, count}, 0, {samples, count}, {});
             for (size_t i = 0; i < count; ++i) {
                 ++counted.camera_rays, counted.steps += static_cast<uint64_t>(samples[i].steps);
-                const vec3 a = samples[i].color, b = samples[i].inscatter;
+                const vec3 a = samples[i].color(), b = samples[i].inscatter;
                 if (samples[i].finite())
                     probes.values.at(pixels[i].x - low.x, pixels[i].y - low.y) = {a.x + a.y + a.z, b.x + b.y + b.z};
             }

@@ -28,8 +28,8 @@ struct FrameTask {
     FrameTracer tracer;
     double mode_seconds = 0;                              // its preparation
     std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
-    std::vector<size_t> light_layers; // the layer each light of the snapshot adds to; empty unless asked for
     Layers layers;
+    std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
 };
 
 Layers make_layers(const View& view, bool halves) {
@@ -43,12 +43,15 @@ Layers make_layers(const View& view, bool halves) {
     layers.color = layers.inscatter = Image<vec3>(layers.size);
     layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
     if (view.batches > 1) layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+    if (view.surface_parts || view.fog_parts) layers.surface = layers.background = Image<vec3>(layers.size);
+    if (view.fog_parts) layers.ambient = layers.emission = layers.multiple = Image<vec3>(layers.size);
     if (halves) layers.half_a = layers.half_b = Image<vec3>(layers.size);
     return layers;
 }
 
-// Lights of one name share a layer; dark lights of the scene have theirs, so that every frame holds the same layers.
-std::vector<size_t> make_light_layers(const Snapshot& snapshot, Layers& layers) {
+// Where the parts of fog light go. Lights of one name share a layer; dark lights of the scene have theirs, so that
+// every frame holds the same layers.
+std::vector<Image<vec3>*> make_parts(const Snapshot& snapshot, Layers& layers) {
     const auto find_or_add = [&](const std::string& name) {
         for (size_t i = 0; i < layers.lights.size(); ++i)
             if (layers.lights[i].first == name) return i;
@@ -57,8 +60,11 @@ std::vector<size_t> make_light_layers(const Snapshot& snapshot, Layers& layers) 
     };
     if (snapshot.scene)
         for (const LightSource& light : snapshot.scene->lights) find_or_add(light.name);
-    std::vector<size_t> result;
-    for (const Light& light : snapshot.lights) result.push_back(find_or_add(light.name));
+    std::vector<size_t> places;
+    for (const Light& light : snapshot.lights) places.push_back(find_or_add(light.name));
+    std::vector<Image<vec3>*> result;
+    for (const size_t place : places) result.push_back(&layers.lights[place].second);
+    result.insert(result.end(), {&layers.ambient, &layers.emission, &layers.multiple});
     return result;
 }
 
@@ -87,24 +93,24 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
         }
     if (!wanted) return;
 
-    const size_t lights = task.light_layers.size();
+    const size_t part_count = task.parts.size();
     const int sample_count = samples_of(view, corner), batch_size = sample_count / view.batches;
     if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
     PixelSum sums[16];
     PixelSample samples[16];
-    std::vector<vec3> light_parts(lights * count), light_sums(lights * count, vec3(0));
+    std::vector<vec3> fog_parts(part_count * count), part_sums(part_count * count, vec3(0));
     for (int s = 0; s < sample_count; ++s) {
-        trace_samples(task.tracer, {pixels, count}, s, {samples, count}, light_parts);
+        trace_samples(task.tracer, {pixels, count}, s, {samples, count}, fog_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(layers, pixels[i])) continue;
             ++stats.camera_rays, stats.steps += static_cast<uint64_t>(samples[i].steps);
-            const std::span<const vec3> parts{light_parts.data() + i * lights, lights};
+            const std::span<const vec3> parts{fog_parts.data() + i * part_count, part_count};
             if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
                 count_dropped(pixels[i], stats);
                 continue;
             }
             sums[i].add(samples[i]);
-            for (size_t l = 0; l < lights; ++l) light_sums[i * lights + l] += parts[l];
+            for (size_t k = 0; k < part_count; ++k) part_sums[i * part_count + k] += parts[k];
         }
         if ((s + 1) % batch_size) continue;
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
@@ -115,8 +121,8 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
         if (!contains(layers, pixels[i])) continue;
         const ivec2 p = pixels[i] - layers.low;
         store_pixel(sums[i], sample_count, p, layers);
-        for (size_t l = 0; l < lights; ++l)
-            layers.lights[task.light_layers[l]].second.at(p.x, p.y) += light_sums[i * lights + l] / samples_float;
+        for (size_t k = 0; k < part_count; ++k)
+            task.parts[k]->at(p.x, p.y) += part_sums[i * part_count + k] / samples_float;
     }
 }
 
@@ -142,9 +148,8 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                     settings.terms.light_points, prepared->light_depths},
                    options.prepared ? 0 : prepared->mode_seconds,
                    scatter_seconds,
-                   {},
-                   std::move(layers)};
-    if (view.per_light) task.light_layers = make_light_layers(snapshot, task.layers);
+                   std::move(layers),
+                   {}};
     return task;
 }
 
@@ -183,6 +188,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     assert(view.pixel_samples > 0 && view.batches > 0 && view.pixel_samples % view.batches == 0);
     const double start = steady_seconds();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
+    if (view.fog_parts) task.parts = make_parts(snapshot, task.layers);
     const double prepared = steady_seconds();
 
     // Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
@@ -213,6 +219,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
     for (const FrameStats& block : block_stats) stats.add(block);
     stats.add(probed);
+    add_up(layers);
     if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
     return std::move(task.layers);
 }
@@ -228,7 +235,9 @@ template<class T> void crop(Image<T>& image, ivec2 low, ivec2 size) {
 
 void crop(Layers& layers, ivec2 low, ivec2 high) {
     const ivec2 size = high - low;
-    for (Image<vec3>* image : {&layers.color, &layers.inscatter}) crop(*image, low, size);
+    for (Image<vec3>* image : {&layers.color, &layers.inscatter, &layers.surface, &layers.background, &layers.ambient,
+                               &layers.emission, &layers.multiple})
+        crop(*image, low, size);
     for (Image<float>* image : {&layers.alpha, &layers.depth, &layers.transmittance, &layers.validity})
         crop(*image, low, size);
     for (auto& [name, image] : layers.lights) crop(image, low, size);
@@ -239,22 +248,26 @@ void add(const Image<vec3>& part, Image<vec3>& sum) {
     for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += part.pixels[i];
 }
 
-// The whole picture without fog light first: what the mode adds to a pixel depends on others.
+// The whole picture without fog light first: what the mode adds to a pixel depends on others, and on the background
+// even where that is left out.
 Layers render_post(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                    const FrameOptions& options, FrameStats& stats) {
     View whole = view;
     whole.crop_low = whole.crop_high = ivec2(0);
+    whole.background = true, whole.surface_parts = true;
     Layers layers = render_pixels(mode, whole, snapshot, settings, options, stats);
 
     const double start = steady_seconds();
     const Addition addition = mode.prepare_post(view, snapshot, settings)({layers.color, layers.alpha, layers.depth});
-    add(addition.radiance, layers.color), add(addition.radiance, layers.inscatter);
+    add(addition.radiance, layers.inscatter);
     for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
         layers.validity.pixels[i] = std::min(layers.validity.pixels[i], addition.validity.pixels[i]);
-    if (view.per_light) {
-        const std::vector<size_t> places = make_light_layers(snapshot, layers);
-        for (size_t l = 0; l < places.size(); ++l) add(addition.per_light[l], layers.lights[places[l]].second);
+    if (view.fog_parts) {
+        const std::vector<Image<vec3>*> parts = make_parts(snapshot, layers);
+        for (size_t l = 0; l < addition.per_light.size(); ++l) add(addition.per_light[l], *parts[l]);
     }
+    if (!view.background) std::ranges::fill(layers.background.pixels, vec3(0));
+    add_up(layers);
     const double seconds = steady_seconds() - start;
     stats.render_seconds += seconds, stats.fog_seconds += seconds;
     if (view.crop_low != view.crop_high) crop(layers, view.crop_low, view.crop_high);
@@ -267,6 +280,8 @@ Layers render_frame(const Mode& mode, const View& given, const Snapshot& snapsho
     const bool post = mode.surfaces == Surfaces::post;
     View view = given;
     if (mode.surfaces == Surfaces::shared) view.lamps = lamps_in(view, snapshot);
-    return (post ? render_post : render_pixels)(mode, view, snapshot, settings, options, stats);
+    Layers layers = (post ? render_post : render_pixels)(mode, view, snapshot, settings, options, stats);
+    if (view.background && has_background(snapshot.background)) std::ranges::fill(layers.alpha.pixels, 1.0f);
+    return layers;
 }
 }

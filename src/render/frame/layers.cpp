@@ -30,9 +30,24 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
     blend(layers.half_a, other.half_a, share);
     blend(layers.half_b, other.half_b, share);
     for (size_t i = 0; i < layers.lights.size(); ++i) blend(layers.lights[i].second, other.lights[i].second, share);
+    for (const auto part :
+         {&Layers::surface, &Layers::background, &Layers::ambient, &Layers::emission, &Layers::multiple})
+        blend(layers.*part, other.*part, share);
+    add_up(layers);
     blend_variance(layers.variance, other.variance, share);
     blend_variance(layers.inscatter_variance, other.inscatter_variance, share);
 }
+}
+
+void add_up(Layers& layers) {
+    for (size_t i = 0; i < layers.ambient.pixels.size(); ++i) {
+        vec3 sum(0);
+        for (const auto& [name, light] : layers.lights) sum += light.pixels[i];
+        layers.inscatter.pixels[i] =
+            sum + layers.ambient.pixels[i] + layers.emission.pixels[i] + layers.multiple.pixels[i];
+    }
+    for (size_t i = 0; i < layers.surface.pixels.size(); ++i)
+        layers.color.pixels[i] = layers.surface.pixels[i] + layers.background.pixels[i] + layers.inscatter.pixels[i];
 }
 
 void blend_layers(Layers& layers, const Layers& other, float share) {

@@ -21,7 +21,7 @@ struct Noise {
 struct Layers {
     ivec2 display{0}, low{0}, size{0};        // full picture; where the pixels lie in it
     Image<vec3> color;                        // surfaces and background through fog, plus fog light
-    Image<float> alpha;                       // 1 - what shows of the background
+    Image<float> alpha;                       // coverage: 1 - what shows of a background that is not in the colour
     Image<float> depth;                       // planar z of the first opaque surface at the sample nearest the pixel's
                                               // centre, metres; infinite = none
     Image<vec3> inscatter;                    // fog light alone, as far as BLEND surfaces in front let it through
@@ -29,9 +29,15 @@ struct Layers {
     Image<float> validity;                    // of the least valid stretch of a sample
     Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
     Image<vec3> half_a, half_b;               // on request: colour of the even and of the odd batches
-    std::vector<std::pair<std::string, Image<vec3>>> lights; // fog and surface light by light name, on request: every
-                                                             // light of the scene, dark ones too
+    Image<vec3> surface, background;          // on request: the colour without fog light
+    // On request, what fog light is made of: by light name, every light of the scene, dark ones too; then OtherLight.
+    std::vector<std::pair<std::string, Image<vec3>>> lights;
+    Image<vec3> ambient, emission, multiple;
 };
+
+// Makes fog light, and then colour, the float sums of the parts there are: surface + background + inscatter, and the
+// lights in their order + ambient + emission + multiple.
+void add_up(Layers& layers);
 
 // How far the mode is from the truth whatever the number of samples, and what it was set to.
 struct Integrator {
@@ -63,7 +69,7 @@ struct TileShares {
     Image<float> shares;
 };
 
-// Into the layers a share of other ones, with the variances of such a mean. Depth stays.
+// Into the layers a share of other ones, with the variances of such a mean. Depth stays; parts add up again.
 void blend_layers(Layers& layers, const Layers& other, float share);
 void blend_layers(Layers& layers, const Layers& other, const TileShares& shares);
 

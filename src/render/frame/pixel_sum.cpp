@@ -12,7 +12,7 @@ vec3 RunningMean::variance() const {
 }
 
 void PixelSum::add(const PixelSample& sample) {
-    color += sample.color, inscatter += sample.inscatter;
+    surface += sample.surface, background += sample.background, inscatter += sample.inscatter;
     const float w = sample.weight;
     ++kept, weight += w, alpha += w * sample.alpha, transmittance += w * sample.transmittance,
         validity += w * sample.validity;
@@ -21,16 +21,26 @@ void PixelSum::add(const PixelSample& sample) {
 
 void PixelSum::end_batch(int samples) {
     const float count = static_cast<float>(samples);
+    const vec3 color = surface + background + inscatter;
     half_means[color_mean.count % 2].add(color / count);
     color_mean.add(color / count);
+    surface_mean.add(surface / count), background_mean.add(background / count);
     inscatter_mean.add(inscatter / count);
-    color = inscatter = vec3(0);
+    surface = background = inscatter = vec3(0);
+}
+
+vec3 PixelSum::mean_color() const {
+    return vec3(surface_mean.mean) + vec3(background_mean.mean) + vec3(inscatter_mean.mean);
 }
 
 void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers) {
     const float all = static_cast<float>(samples);
     const float count = sum.kept ? sum.weight * all / static_cast<float>(sum.kept) : all;
-    layers.color.at(p.x, p.y) = vec3(sum.color_mean.mean);
+    layers.color.at(p.x, p.y) = sum.mean_color();
+    if (!layers.surface.empty()) {
+        layers.surface.at(p.x, p.y) = vec3(sum.surface_mean.mean);
+        layers.background.at(p.x, p.y) = vec3(sum.background_mean.mean);
+    }
     layers.inscatter.at(p.x, p.y) = vec3(sum.inscatter_mean.mean);
     layers.alpha.at(p.x, p.y) = sum.alpha / count;
     layers.depth.at(p.x, p.y) = sum.depth;

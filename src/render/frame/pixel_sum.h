@@ -12,15 +12,16 @@ struct RunningMean {
     vec3 variance() const; // squares / (n (n-1)); 0 for fewer than two
 };
 
-// Colour and fog light go through the means of batches; everything else is summed over all samples.
+// What makes up the colour goes through the means of batches; everything else is summed over all samples.
 struct PixelSum {
-    vec3 color{0}, inscatter{0}; // of the current batch
-    RunningMean color_mean, inscatter_mean, half_means[2];
+    vec3 surface{0}, background{0}, inscatter{0}; // of the current batch
+    RunningMean surface_mean, background_mean, inscatter_mean, color_mean, half_means[2];
     float weight = 0, alpha = 0, transmittance = 0, validity = 0; // weighted
     int kept = 0;                                                 // samples
     float depth = infinity, off_center = infinity;
 
     void add(const PixelSample& sample);
+    vec3 mean_color() const;
     void end_batch(int samples); // even batches go to the first half, odd ones to the second
 };
 

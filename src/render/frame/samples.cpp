@@ -5,14 +5,15 @@
 #include "render/frame/camera_paths.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 
 namespace tyndall {
 namespace {
 void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<PixelSample> samples,
-             std::span<vec3> per_light) {
-    const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
+             std::span<vec3> parts) {
+    const size_t part_count = parts.size() / samples.size();
     Ray rays[16];
     Scatter scatter[16];
     bool open[16];
@@ -24,34 +25,32 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
 
     const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
     const size_t count = static_cast<size_t>(s.count);
-    std::vector<vec3> light_parts(lights * count, vec3(0));
+    std::vector<vec3> fog_parts(part_count * count, vec3(0));
     tracer.scatter({.rays = {rays, count},
                     .ids = {numbers.ids, count},
-                    .per_light = light_parts,
+                    .parts = fog_parts,
                     .jitter = {numbers.jitter, count},
                     .places = {numbers.places, count},
                     .positions = {numbers.positions, count},
                     .open = {open, count}},
                    {scatter, count});
 
-    for (int i = 0; i < s.count; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         Path& path = s.path[i];
         PixelSample& result = samples[path.lane];
-        result.color += path.through * scatter[i].radiance;
         result.inscatter += path.through * scatter[i].radiance;
         result.transmittance *= scatter[i].transmittance;
         result.validity = std::min(result.validity, scatter[i].validity);
         result.steps += scatter[i].steps;
-        for (size_t l = 0; l < lights; ++l)
-            per_light[path.lane * lights + l] += path.through * light_parts[i * lights + l];
+        for (size_t p = 0; p < part_count; ++p)
+            parts[static_cast<size_t>(path.lane) * part_count + p] += path.through * fog_parts[i * part_count + p];
         path.through *= scatter[i].transmittance;
     }
 }
 
 // Light of the surfaces met.
 void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, const SurfacesMet& met,
-                  std::span<PixelSample> samples, std::span<vec3> per_light) {
-    const size_t lights = per_light.empty() ? 0 : tracer.snapshot.lights.size();
+                  std::span<PixelSample> samples) {
     const size_t points = static_cast<size_t>(tracer.light_points);
     std::vector<vec2> u(met.count * points);
     vec3 radiance[16];
@@ -64,59 +63,57 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
             u[k * points + p] = {random.x, random.y};
         }
     }
-    std::vector<vec3> light_parts(lights * met.count, vec3(0));
-    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, u, {radiance, met.count},
-                   lights ? &light_parts : nullptr);
+    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, u, {radiance, met.count});
 
     for (size_t k = 0; k < met.count; ++k) {
         const Path& path = s.path[met.which[k]];
-        const float share = path.through * met.points[k].alpha;
-        samples[path.lane].color += share * radiance[k];
-        for (size_t l = 0; l < lights; ++l) per_light[path.lane * lights + l] += share * light_parts[k * lights + l];
+        samples[path.lane].surface += path.through * met.points[k].alpha * radiance[k];
     }
 }
 
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
-    result.color += path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
+    result.background +=
+        path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
     result.alpha = 1 - path.through;
 }
 }
 
 bool PixelSample::finite() const {
-    return is_finite(color) && is_finite(inscatter) && std::isfinite(alpha + transmittance + validity);
+    return is_finite(color()) && is_finite(inscatter) && std::isfinite(alpha + transmittance + validity);
 }
 
 namespace {
-void follow_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> per_light) {
+void follow_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
-        add_fog(tracer, layer, s, samples, per_light);
+        add_fog(tracer, layer, s, samples, parts);
         for (int i = 0; i < s.count; ++i)
             if (!s.hit(i)) add_background(tracer, s.path[i], samples[s.path[i].lane]);
 
         const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
         if (met.count == 0) return;
-        add_surfaces(tracer, layer, s, met, samples, per_light);
+        add_surfaces(tracer, layer, s, met, samples);
         if (!advance(tracer.view, met, s, samples)) return;
     }
 }
 }
 
 void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
-                   std::span<vec3> per_light) {
-    std::fill(per_light.begin(), per_light.end(), vec3(0));
+                   std::span<vec3> parts) {
+    std::fill(parts.begin(), parts.end(), vec3(0));
     PathPacket s;
     start_paths(tracer.view, pixels, sample, s, samples);
     if (tracer.surfaces == Surfaces::own)
-        follow_own_paths(tracer, s, samples, per_light);
+        follow_own_paths(tracer, s, samples, parts);
     else
-        follow_paths(tracer, s, samples, per_light);
+        follow_paths(tracer, s, samples, parts);
 
-    const size_t lights = per_light.size() / pixels.size();
+    const size_t part_count = parts.size() / pixels.size();
     for (size_t i = 0; i < pixels.size(); ++i) {
-        const float weight = samples[i].weight;
-        samples[i].color *= weight, samples[i].inscatter *= weight;
-        for (size_t l = 0; l < lights; ++l) per_light[i * lights + l] *= weight;
+        PixelSample& result = samples[i];
+        if (!tracer.view.background) result.background = vec3(0);
+        result.surface *= result.weight, result.background *= result.weight, result.inscatter *= result.weight;
+        for (vec3& part : parts.subspan(i * part_count, part_count)) part *= result.weight;
     }
 }
 }

@@ -10,13 +10,14 @@
 namespace tyndall {
 // What one camera ray sees.
 struct PixelSample {
-    vec3 color{0}, inscatter{0}; // times the weight
-    float weight = 1;            // of the sample in its pixel
+    vec3 surface{0}, background{0}, inscatter{0}; // what makes up its colour; times the weight
+    float weight = 1;                             // of the sample in its pixel
     float alpha = 0, transmittance = 1, validity = 1;
     float depth = infinity; // planar z of the first opaque surface
     float off_center = 0;   // squared distance of the ray from the pixel's centre, pixels
     int steps = 0;
 
+    vec3 color() const { return surface + background + inscatter; }
     bool finite() const; // of everything but the depth
 };
 
@@ -30,7 +31,7 @@ struct FrameTracer {
     std::span<const LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
 };
 
-// Traces sample `sample` of up to 16 pixels. `per_light` is empty or receives pixels × lights of the snapshot.
+// Traces sample `sample` of up to 16 pixels. `parts` is empty or receives pixels × part_count(lights).
 void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
-                   std::span<vec3> per_light);
+                   std::span<vec3> parts);
 }

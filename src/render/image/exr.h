@@ -1,10 +1,10 @@
 // OpenEXR pictures. The only user of OpenEXR. Encoded in memory, then written atomically.
 //
-// Channels: R G B A (premultiplied; RGB holds the background as far as it shows, A does not), Z, inscatter.R/G/B,
-// transmittance.T, validity.T, light_NAME.R/G/B, Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of
-// the even and odd batches). Half floats, clamped to ±65504 (tyndall:clamped counts them), or 32 bit on request; always
-// 32 bit are Z, 1e10 where there is no surface, Variance and the halves. Rec.709, ZIP, no date and no host: the same
-// input gives the same bytes.
+// Channels: R G B A (premultiplied), Z, surface.R/G/B, background.R/G/B, inscatter.R/G/B, light_NAME.R/G/B (in the
+// order that tyndall:lights names), ambient.R/G/B, emission.R/G/B, multiple.R/G/B, transmittance.T, validity.T,
+// Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of the even and odd batches). Half floats, clamped
+// to ±65504 (tyndall:clamped counts them), or 32 bit on request; always 32 bit are Z, 1e10 where there is no surface,
+// Variance and the halves. Rec.709, ZIP, no date and no host: the same input gives the same bytes.
 #pragma once
 #include "render/frame/layers.h"
 #include "scene/camera.h"
@@ -30,7 +30,7 @@ struct ExrOptions {
     bool full_float = false; // colours as 32 bit instead of half
 };
 
-// Z, inscatter, transmittance, validity, lights, variance, halves: all a file can hold.
+// All a file can hold.
 const std::vector<std::string>& layer_names();
 
 // Throws Error (usage) naming a layer there is none of.

@@ -53,10 +53,10 @@ bool wants(const ExrOptions& options, std::string_view layer) {
 }
 
 // Layer names for lights: letters, digits and _ only, unique, short enough that `light_NAME.R` has 31 bytes.
-std::vector<std::string> light_layer_names(const std::vector<std::string>& lights) {
+std::vector<std::string> light_layer_names(const Layers& layers) {
     std::vector<std::string> result;
     std::set<std::string> taken;
-    for (const std::string& light : lights) {
+    for (const auto& [light, image] : layers.lights) {
         std::string name = "light_";
         for (const char c : light) {
             const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
@@ -89,7 +89,11 @@ std::vector<Channel> make_channels(const Layers& layers, const Image<float>& dep
     add_color(channels, "", layers.color, wide);
     add_value(channels, "A", layers.alpha, wide);
     if (wants(options, "Z")) add_value(channels, "Z", depth, true);
-    if (wants(options, "inscatter")) add_color(channels, "inscatter.", layers.inscatter, wide);
+    const std::pair<const char*, const Image<vec3>*> colors[] = {
+        {"surface", &layers.surface}, {"background", &layers.background}, {"inscatter", &layers.inscatter},
+        {"ambient", &layers.ambient}, {"emission", &layers.emission},     {"multiple", &layers.multiple}};
+    for (const auto& [name, image] : colors)
+        if (wants(options, name)) add_color(channels, std::string(name) + ".", *image, wide);
     if (wants(options, "transmittance")) add_value(channels, "transmittance.T", layers.transmittance, wide);
     if (wants(options, "validity")) add_value(channels, "validity.T", layers.validity, wide);
     if (wants(options, "variance")) add_color(channels, "Variance.", layers.variance, true);
@@ -99,9 +103,7 @@ std::vector<Channel> make_channels(const Layers& layers, const Image<float>& dep
     }
     if (!wants(options, "lights")) return channels;
 
-    std::vector<std::string> names;
-    for (const auto& light : layers.lights) names.push_back(light.first);
-    names = light_layer_names(names);
+    const std::vector<std::string> names = light_layer_names(layers);
     for (size_t i = 0; i < names.size(); ++i) add_color(channels, names[i] + ".", layers.lights[i].second, wide);
     return channels;
 }
@@ -145,6 +147,11 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
         buffer.insert(channel.name, Imf::Slice::Make(type, first, window, step, step * width));
     }
     header.insert("tyndall:clamped", Imf::StringAttribute(std::to_string(clamped)));
+    if (wants(options, "lights")) {
+        std::string names;
+        for (const std::string& name : light_layer_names(layers)) names += (names.empty() ? "" : " ") + name;
+        header.insert("tyndall:lights", Imf::StringAttribute(names));
+    }
 
     MemoryStream stream(file.c_str());
     {
@@ -160,8 +167,9 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
 }
 
 const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names{"Z",      "inscatter", "transmittance", "validity",
-                                                "lights", "variance",  "halves"};
+    static const std::vector<std::string> names{"Z",        "surface",  "background", "inscatter",     "lights",
+                                                "ambient",  "emission", "multiple",   "transmittance", "validity",
+                                                "variance", "halves"};
     return names;
 }
 

@@ -11,6 +11,7 @@
 #include "trace/moment.h"
 #include "trace/view.h"
 
+#include <algorithm>
 #include <set>
 
 namespace tyndall {
@@ -82,6 +83,28 @@ bool measures_noise(const RenderRequest& request) {
     return wants_layer(request, "variance") || wants_layer(request, "halves");
 }
 
+std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan& plan, RenderRequest& request) {
+    const auto lit = [](const Keyed<vec3>& color) {
+        return std::ranges::any_of(color.values, [](vec3 value) { return value != vec3(0); });
+    };
+    const bool surfaces_glow =
+        plan.mode->surfaces == Surfaces::own &&
+        std::ranges::any_of(scene.materials, [](const Material& material) { return material.emission != vec3(0); });
+    const bool fog_glows =
+        std::ranges::any_of(scene.media, [&](const MediumSource& medium) { return lit(medium.emission); });
+    const auto has = [&](std::string_view layer) {
+        if (layer == "ambient") return !scene.media.empty() && lit(scene.ambient);
+        if (layer == "emission") return fog_glows || (!scene.media.empty() && surfaces_glow);
+        return layer != "multiple" || (plan.mode->adds_fluence && plan.settings.fluence.orders > 1);
+    };
+    std::vector<std::string> dropped;
+    std::erase_if(request.exr.layers, [&](const std::string& layer) {
+        if (!has(layer)) dropped.push_back(layer);
+        return !has(layer);
+    });
+    return dropped;
+}
+
 bool wants_layer(const RenderRequest& request, std::string_view layer) {
     return std::ranges::count(request.exr.layers, layer) > 0;
 }
@@ -94,7 +117,10 @@ View view_of(const Scene& scene, const RenderRequest& request, const Settings& s
     view.pixel_samples = settings.pixel.samples;
     view.filter = settings.pixel.filter, view.filter_radius = settings.pixel.filter_radius;
     view.lamp_samples = settings.pixel.lamp_samples, view.edge_samples = settings.pixel.edge_samples;
-    view.jitter = settings.pixel.jitter, view.per_light = wants_layer(request, "lights");
+    view.jitter = settings.pixel.jitter, view.background = request.background;
+    for (const char* layer : {"surface", "background"}) view.surface_parts |= wants_layer(request, layer);
+    for (const char* layer : {"lights", "ambient", "emission", "multiple"})
+        view.fog_parts |= wants_layer(request, layer);
     view.seed = request.seed, view.frame = frame;
     if (measures_noise(request)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;

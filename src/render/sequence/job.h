@@ -38,6 +38,7 @@ struct RenderRequest {
     double time_budget = 0;  // seconds for each frame, all that is done for it counted; 0 = as many as it takes
     double started = 0;      // by steady_seconds, when the budget of the first frame began
     int history = 0;         // frames before each that a mode with a history looks at first
+    bool background = true;  // in the picture
     bool png = false, resume = false;
     std::string unsaved; // edits that the scene's files do not have; for hash and header
 };
@@ -60,6 +61,9 @@ bool has_goal(const RenderRequest& request);
 // Whether layers hold the noise of the pictures. Then each pixel takes noise_batches batches, and as many
 // samples as they divide.
 bool measures_noise(const RenderRequest& request);
+
+// Takes out of the request the layers of light that neither the scene nor the plan has, and returns them.
+std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan& plan, RenderRequest& request);
 
 bool wants_layer(const RenderRequest& request, std::string_view layer);
 

@@ -92,6 +92,7 @@ std::string joined_layers(const ExrOptions& options) {
 std::string option_text(const RenderRequest& request, const Settings& settings) {
     std::string text = " --seed " + std::to_string(request.seed) + " --aov " + joined_layers(request.exr);
     if (request.exr.full_float) text += " --float";
+    if (!request.background) text += " --background off";
     if (request.target_error > 0) text += " --target-error " + number(request.target_error);
     if (request.time_budget > 0) text += " --time-budget " + number(request.time_budget);
     if (request.history > 0) text += " --history " + std::to_string(request.history);

@@ -22,6 +22,7 @@ void read_background(const Field& root, Scene& scene) {
     const Field field = root.member("background");
     if (!field) return;
     Background& background = scene.background;
+    background.stated = true;
     const Field color = field.member("color"), sky = field.member("sky"), image = field.member("image");
     if (static_cast<bool>(color) + static_cast<bool>(sky) + static_cast<bool>(image) != 1)
         refuse(field, "needs exactly one of color, sky and image");

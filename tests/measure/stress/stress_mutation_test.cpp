@@ -52,7 +52,7 @@ template<class Change> ScatterFunction changed(ScatterFunction scatter, Change c
 ScatterFunction without_parts(ScatterFunction scatter) {
     return [scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
         RayBatch whole = batch;
-        whole.per_light = {};
+        whole.parts = {};
         scatter(whole, results);
     };
 }

@@ -219,17 +219,18 @@ TEST(Cone, FollowsTheReferenceInEvenFogUnderALampAndASun) {
         const Sample2 at = sample2(i, 3);
         rays.push_back(towards({0, 1, 7}, {4 * at.x - 2, 3 * at.y - 1, 0}, 12));
     }
-    std::vector<vec3> per_light;
+    std::vector<vec3> parts;
     View view;
     view.camera.position = {0, 1, 7};
     const std::vector<Scatter> exact = marched(snapshot, exact_settings(), rays);
-    const std::vector<Scatter> got = run_mode("cone", view, snapshot, {}, rays, &per_light);
+    const std::vector<Scatter> got = run_mode("cone", view, snapshot, {}, rays, &parts);
     for (size_t i = 0; i < rays.size(); ++i) {
         EXPECT_NEAR(glm::distance(got[i].radiance, exact[i].radiance) / glm::length(exact[i].radiance), 0, 2e-3);
         EXPECT_NEAR(got[i].transmittance / exact[i].transmittance, 1, 1e-5);
-        const vec3 ambient = got[i].radiance - per_light[2 * i] - per_light[2 * i + 1];
+        const vec3 *of_ray = &parts[part_count(2) * i], ambient = got[i].radiance - of_ray[0] - of_ray[1];
         const vec3 expected = vec3(0.9f, 0.8f, 0.7f) * 0.02f * (1 - got[i].transmittance);
         EXPECT_NEAR(glm::distance(ambient, expected), 0, 1e-6f * glm::length(got[i].radiance) + 1e-7f);
+        EXPECT_NEAR(glm::distance(of_ray[2], expected), 0, 1e-6f * glm::length(got[i].radiance) + 1e-7f);
     }
 }
 

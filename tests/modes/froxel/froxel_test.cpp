@@ -217,9 +217,9 @@ TEST(Froxel, PartsOfTheLightsAddUp) {
         for (const Ray& ray :
              {picture_rays(view, stage.snapshot, 8)[900], picture_rays(view, stage.snapshot, 8)[1500]}) {
             Scatter result;
-            vec3 parts[2]{};
+            vec3 parts[part_count(2)]{};
             const uint32_t id = 0;
-            scatter({.rays = {&ray, 1}, .ids = {&id, 1}, .per_light = parts}, {&result, 1});
+            scatter({.rays = {&ray, 1}, .ids = {&id, 1}, .parts = parts}, {&result, 1});
             EXPECT_GT(parts[0].x, 0);
             EXPECT_GT(parts[1].x, 0);
             EXPECT_NEAR((parts[0].x + parts[1].x) / result.radiance.x, 1, 1e-5);

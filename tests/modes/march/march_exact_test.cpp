@@ -271,12 +271,13 @@ TEST(MarchExact, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     const std::vector<Ray> rays = busy_rays(64);
     const ScatterFunction scatter = find_mode("march").prepare(View{}, stage.snapshot, exact_settings(), nullptr);
     std::vector<Scatter> alone(64), together(64);
-    std::vector<vec3> parts(128, vec3(0));
+    constexpr size_t count = part_count(2);
+    std::vector<vec3> parts(64 * count, vec3(0));
     const std::vector<uint32_t> ids(16, 7);
     for (size_t b = 0; b < 4; ++b)
         scatter({.rays = std::span(rays).subspan(16 * b, 16),
                  .ids = ids,
-                 .per_light = std::span(parts).subspan(32 * b, 32)},
+                 .parts = std::span(parts).subspan(16 * count * b, 16 * count)},
                 std::span(alone).subspan(16 * b, 16));
     parallel_for(4, [&](int64_t b) {
         scatter({.rays = std::span(rays).subspan(16 * b, 16), .ids = ids}, std::span(together).subspan(16 * b, 16));
@@ -287,8 +288,10 @@ TEST(MarchExact, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     for (size_t i = 0; i < 64; ++i) {
         EXPECT_EQ(alone[i].radiance, together[i].radiance);
         EXPECT_EQ(alone[i].transmittance, together[i].transmittance);
-        const vec3 sum = parts[2 * i] + parts[2 * i + 1] + glow[i].radiance;
+        const vec3* of_ray = &parts[count * i];
+        const vec3 glowing = of_ray[2] + of_ray[3], sum = of_ray[0] + of_ray[1] + glowing;
         EXPECT_NEAR(sum.x / alone[i].radiance.x, 1, 1e-6);
+        EXPECT_NEAR(glowing.x / glow[i].radiance.x, 1, 1e-6);
     }
 }
 }

@@ -122,13 +122,18 @@ TEST(MarchSlices, PartsOfTheLightsAddUp) {
     const std::vector<Ray> rays = busy_rays(16);
     const Settings settings = settings_for(Quality::preview);
     std::vector<Scatter> results(16);
-    std::vector<vec3> parts(32, vec3(0));
+    constexpr size_t count = part_count(2);
+    std::vector<vec3> parts(16 * count, vec3(0));
     const std::vector<uint32_t> ids(16, 7);
-    find_mode("march").prepare(View{}, stage.snapshot, settings,
-                               nullptr)({.rays = rays, .ids = ids, .per_light = parts}, results);
+    find_mode("march").prepare(View{}, stage.snapshot, settings, nullptr)({.rays = rays, .ids = ids, .parts = parts},
+                                                                          results);
     const std::vector<Scatter> glow = marched(dark.snapshot, settings, rays);
-    for (size_t i = 0; i < 16; ++i)
-        EXPECT_NEAR((parts[2 * i] + parts[2 * i + 1] + glow[i].radiance).x / results[i].radiance.x, 1, 1e-5);
+    for (size_t i = 0; i < 16; ++i) {
+        const vec3* of_ray = &parts[count * i];
+        const vec3 glowing = of_ray[2] + of_ray[3];
+        EXPECT_NEAR((of_ray[0] + of_ray[1] + glowing).x / results[i].radiance.x, 1, 1e-5);
+        EXPECT_NEAR(glowing.x / glow[i].radiance.x, 1, 1e-5);
+    }
 }
 }
 }

@@ -54,11 +54,11 @@ std::vector<double> difference(const std::vector<Scatter>& a, const std::vector<
     return result;
 }
 
-vec3 all_light(const Scatter& s) { return s.radiance + s.surface; }
+vec3 all_light(const Scatter& s) { return s.whole(); }
 
 vec3 fog_light(const Scatter& s) { return s.radiance; }
 
-vec3 surface_light(const Scatter& s) { return s.surface; }
+vec3 surface_light(const Scatter& s) { return s.surface + s.background; }
 
 ScatterFunction path_mode(const Snapshot& snapshot, int orders) {
     Settings settings;

@@ -328,11 +328,11 @@ TEST(Path, LightsArePartsOfTheWhole) {
     for (uint32_t i = 0; i < 50; ++i) {
         std::vector<uint32_t> ids(16);
         for (uint32_t lane = 0; lane < 16; ++lane) ids[lane] = i * 16 + lane;
-        std::vector<vec3> parts(32, vec3(0));
+        std::vector<vec3> parts(16 * part_count(2), vec3(0));
         std::vector<Scatter> results(16);
-        scatter({.rays = rays, .ids = ids, .per_light = parts}, results);
+        scatter({.rays = rays, .ids = ids, .parts = parts}, results);
         for (size_t lane = 0; lane < 16; ++lane) {
-            const vec3 sum = parts[2 * lane] + parts[2 * lane + 1];
+            const vec3 sum = parts[part_count(2) * lane] + parts[part_count(2) * lane + 1];
             EXPECT_NEAR(sum.x, all_light(results[lane]).x, 1e-5f * (1 + sum.x));
         }
     }

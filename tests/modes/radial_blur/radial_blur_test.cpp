@@ -132,7 +132,7 @@ TEST(RadialBlur, ItsDiscIsRound) {
 
 TEST(RadialBlur, LightsAddUp) {
     View view = view_towards({0, 0, -1}, {48, 27});
-    view.per_light = true;
+    view.fog_parts = true;
     const Snapshot both =
         snapshot_of({homogeneous_medium(0.1f)}, {sun_light({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
     const Addition addition = blur(view, both, Settings{});

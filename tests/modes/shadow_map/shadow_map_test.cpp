@@ -191,11 +191,12 @@ TEST(ShadowMapMarch, PartsOfLightsAddUp) {
     const ScatterFunction scatter = find_mode("shadow-map").prepare(tiny_view(), box.snapshot, Settings{}, nullptr);
     const std::vector<Ray> rays = picture_rays(4);
     const std::vector<uint32_t> ids(16, 7);
-    std::vector<vec3> parts(32, vec3(0));
+    std::vector<vec3> parts(16 * part_count(2), vec3(0));
     std::vector<Scatter> results(16);
-    scatter({.rays = rays, .ids = ids, .per_light = parts}, results);
+    scatter({.rays = rays, .ids = ids, .parts = parts}, results);
     for (size_t i = 0; i < 16; ++i)
-        EXPECT_NEAR(parts[2 * i].x + parts[2 * i + 1].x, results[i].radiance.x, 1e-6f * results[i].radiance.x);
+        EXPECT_NEAR(parts[part_count(2) * i].x + parts[part_count(2) * i + 1].x, results[i].radiance.x,
+                    1e-6f * results[i].radiance.x);
 }
 
 TEST(ShadowMapMarch, TwoHalfDensityCopiesEqualOne) {

@@ -243,19 +243,20 @@ TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     const std::vector<Scatter> alone = drawn("shadow-volume", picture, stage.snapshot, {});
     const ScatterFunction scatter = find_mode("shadow-volume").prepare(picture.view, stage.snapshot, {}, nullptr);
     std::vector<Scatter> together(alone.size());
-    std::vector<vec3> parts(3 * alone.size(), vec3(0));
+    constexpr size_t count = part_count(3);
+    std::vector<vec3> parts(count * alone.size(), vec3(0));
     const std::vector<uint32_t> ids(16, 7);
     parallel_for(64, [&](int64_t p) {
         const size_t first = 16 * static_cast<size_t>(p);
         scatter({.rays = std::span(picture.rays).subspan(first, 16),
                  .ids = ids,
-                 .per_light = std::span(parts).subspan(3 * first, 48),
+                 .parts = std::span(parts).subspan(count * first, count * 16),
                  .positions = std::span(picture.positions).subspan(first, 16)},
                 std::span(together).subspan(first, 16));
     });
     for (size_t i = 0; i < alone.size(); ++i) {
         EXPECT_EQ(alone[i].radiance, together[i].radiance);
-        const vec3 sum = parts[3 * i] + parts[3 * i + 1] + parts[3 * i + 2];
+        const vec3 sum = parts[count * i] + parts[count * i + 1] + parts[count * i + 2];
         EXPECT_NEAR(sum.x, alone[i].radiance.x, 1e-6f * (1 + sum.x));
     }
 }

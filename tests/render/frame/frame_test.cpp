@@ -24,7 +24,7 @@ namespace {
 Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot, FrameStats& stats,
                 bool per_light = false) {
     View asked = view;
-    asked.per_light = per_light;
+    asked.fog_parts = per_light;
     return render_frame(mode, asked, snapshot, Settings{}, FrameOptions{}, stats);
 }
 Layers rendered(const Mode& mode, const View& view, const Snapshot& snapshot) {
@@ -44,7 +44,10 @@ TEST(Frame, CompositesFogBetweenTransparentSurfaces) {
     snapshot.media[0].density.bounds.low.z = snapshot.media[0].world_bounds.low.z = -9;
     snapshot.background.color = behind;
 
-    const Layers layers = rendered(mode_of(prepare_glow), plain_view({8, 8}, 2, 2.0f), snapshot);
+    View view = plain_view({8, 8}, 2, 2.0f);
+    const Layers layers = rendered(mode_of(prepare_glow), view, snapshot);
+    view.background = false;
+    const Layers bare = rendered(mode_of(prepare_glow), view, snapshot);
     const float t1 = std::exp(-2 * extinction), t2 = std::exp(-3 * extinction), t3 = std::exp(-4 * extinction);
     const vec3 fog1 = glow * (1 - t1), fog2 = glow * (1 - t2), fog3 = glow * (1 - t3);
     const vec3 beyond2 = fog3 + t3 * behind, beyond1 = fog2 + t2 * (0.25f * second + 0.75f * beyond2);
@@ -52,7 +55,9 @@ TEST(Frame, CompositesFogBetweenTransparentSurfaces) {
     for (int i = 0; i < 64; ++i) {
         expect_near(layers.color.pixels[i], fog1 + t1 * (0.5f * first + 0.5f * beyond1), 1e-5f);
         expect_near(layers.inscatter.pixels[i], fog1 + t1 * 0.5f * (fog2 + t2 * 0.75f * fog3), 1e-5f);
-        EXPECT_NEAR(layers.alpha.pixels[i], 1 - through, 1e-6f);
+        EXPECT_EQ(layers.alpha.pixels[i], 1) << "the background is in the picture";
+        EXPECT_NEAR(bare.alpha.pixels[i], 1 - through, 1e-6f);
+        expect_near(bare.color.pixels[i], layers.color.pixels[i] - through * behind, 1e-5f);
         EXPECT_NEAR(layers.transmittance.pixels[i], t1 * t2 * t3, 1e-6f);
         EXPECT_EQ(layers.validity.pixels[i], 1);
         EXPECT_TRUE(std::isinf(layers.depth.pixels[i]));
@@ -72,16 +77,69 @@ TEST(Frame, OpaqueSurfacesHideWhatIsBehind) {
     EXPECT_FLOAT_EQ(layers.transmittance.at(1, 2), t);
 }
 
-TEST(Frame, ShowsTheBackgroundWithoutCoveringIt) {
+TEST(Frame, ABackgroundCoversWhatItIsSeenIn) {
     const Scene scene;
     Snapshot snapshot = snapshot_of(scene);
     snapshot.background.color = vec3(0.25f, 0.5f, 1);
     const Layers layers = rendered(mode_of(prepare_glow), plain_view({5, 3}, 3), snapshot);
     for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
         expect_near(layers.color.pixels[i], snapshot.background.color, 1e-6f);
-        EXPECT_EQ(layers.alpha.pixels[i], 0);
+        EXPECT_EQ(layers.alpha.pixels[i], 1);
         EXPECT_EQ(layers.transmittance.pixels[i], 1);
     }
+
+    // Left out, or not there, it does not. One that the scene says is black is there.
+    View view = plain_view({5, 3}, 3);
+    view.background = false;
+    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 0);
+    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).color.at(2, 1), vec3(0));
+    view.background = true, snapshot.background.color = vec3(0);
+    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 0);
+    snapshot.background.stated = true;
+    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 1);
+}
+
+namespace {
+void expect_sums(const Layers& layers) {
+    for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
+        vec3 fog(0);
+        for (const auto& [name, light] : layers.lights) fog += light.pixels[i];
+        ASSERT_EQ(layers.inscatter.pixels[i],
+                  fog + layers.ambient.pixels[i] + layers.emission.pixels[i] + layers.multiple.pixels[i]);
+        ASSERT_EQ(layers.color.pixels[i],
+                  layers.surface.pixels[i] + layers.background.pixels[i] + layers.inscatter.pixels[i]);
+    }
+}
+}
+
+TEST(Frame, LayersAddUpBitForBit) {
+    Scene scene;
+    add_plane(scene, -2, 0.7f, vec3(4, 2, 1), 0.3f);
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.3f)});
+    snapshot.background.color = vec3(0.7f, 0.2f, 0.1f), snapshot.lights.resize(3);
+    snapshot.lights[1].name = "b", snapshot.lights[2].name = "c";
+    View view = plain_view({33, 21}, 6);
+    view.camera.far = 9;
+    FrameStats stats;
+    const Layers plain = rendered(mode_of(prepare_glow), view, snapshot, stats);
+    Layers one = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    view.seed = 1, view.pixel_samples = 4;
+    const Layers other = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    expect_sums(one);
+    EXPECT_GT(max_component(one.surface.at(16, 10)), 0);
+    EXPECT_GT(max_component(one.background.at(16, 10)), 0);
+    for (size_t i = 0; i < plain.color.pixels.size(); ++i)
+        expect_near(one.color.pixels[i], plain.color.pixels[i], 1e-6f);
+    blend_layers(one, other, 0.3f);
+    expect_sums(one);
+
+    // Each is the same whether the background counts or not.
+    view.background = false;
+    const Layers bare = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    expect_sums(bare);
+    EXPECT_TRUE(same_bits(bare.surface, other.surface));
+    EXPECT_TRUE(same_bits(bare.inscatter, other.inscatter));
+    EXPECT_EQ(bare.background.at(16, 10), vec3(0));
 }
 
 TEST(Frame, FogWithoutEndHidesTheBackground) {
@@ -287,7 +345,7 @@ TEST(Frame, SplitsTheLightByName) {
     }
     add_plane(scene, -3, 50, vec3(0));
     scene.materials[0].base_color = vec3(0.8f);
-    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.2f)});
+    Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.2f, Box{vec3(-50, -50, -3), vec3(50, 50, 1)})});
     for (const char* name : {"key", "key", "rim"}) {
         Light light;
         light.name = name, light.kind = LightKind::sun, light.direction = vec3(0, 0, -1);
@@ -302,11 +360,11 @@ TEST(Frame, SplitsTheLightByName) {
     EXPECT_EQ(layers.lights[2].first, "rim");
     for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
         const vec3 key = layers.lights[0].second.pixels[i], rim = layers.lights[2].second.pixels[i];
-        expect_near(key + rim, layers.color.pixels[i], 1e-5f);
+        expect_near(key + rim, layers.inscatter.pixels[i], 1e-5f);
         expect_near(layers.lights[1].second.pixels[i], vec3(0), 0);
-        // The fog is said to come from three lights alike, the surface gets 2 + 2 and 6.
-        const vec3 fog = layers.inscatter.pixels[i], surface = layers.color.pixels[i] - fog;
-        expect_near(key, fog * (2.0f / 3) + 0.4f * surface, 1e-5f);
+        // The fog is said to come from three lights alike, of which two have a name; surfaces are apart.
+        expect_near(key, layers.inscatter.pixels[i] * (2.0f / 3), 1e-5f);
+        EXPECT_GT(layers.surface.pixels[i].x, 0);
     }
 }
 

@@ -34,7 +34,7 @@ Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
         result.transmittance *= transmittance;
         through *= transmittance;
         if (!hit) {
-            result.surface += through * snapshot.background.color;
+            result.background += through * snapshot.background.color;
             break;
         }
         const SurfacePoint point = snapshot.occluders->surface(tested, hits, 0);
@@ -49,12 +49,10 @@ Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
 
 ScatterFunction prepare_follow(const View&, const Snapshot& snapshot, const Settings&, History*) {
     return [&snapshot](const RayBatch& batch, std::span<Scatter> results) {
-        const size_t lights = batch.per_light.size() / results.size();
+        const size_t lights = batch.parts.empty() ? 0 : snapshot.lights.size();
         for (size_t i = 0; i < results.size(); ++i) {
             results[i] = followed(snapshot, batch.rays[i], batch.clip_near[i]);
-            for (size_t l = 0; l < lights; ++l)
-                batch.per_light[i * lights + l] =
-                    static_cast<float>(l + 1) / 3 * (results[i].radiance + results[i].surface);
+            for (size_t l = 0; l < lights; ++l) batch.part(i, l) = static_cast<float>(l + 1) / 3 * results[i].radiance;
         }
     };
 }
@@ -130,7 +128,9 @@ ScatterFunction prepare_half(const View&, const Snapshot&, const Settings&, Hist
 TEST(OwnSurfaces, LeaveAlphaAndDepthToTheRenderer) {
     const Scene scene = layered_scene();
     const Snapshot snapshot = layered_snapshot(scene);
-    const Layers layers = rendered(own_mode(prepare_half), plain_view({40, 40}, 1, 2.0f), snapshot);
+    View view = plain_view({40, 40}, 1, 2.0f);
+    view.background = false;
+    const Layers layers = rendered(own_mode(prepare_half), view, snapshot);
     const auto expect = [&](ivec2 p, float alpha, float depth) {
         EXPECT_EQ(layers.color.at(p.x, p.y), vec3(3));
         EXPECT_EQ(layers.inscatter.at(p.x, p.y), vec3(1));
@@ -189,12 +189,12 @@ TEST(OwnSurfaces, SplitTheLightByName) {
         snapshot.lights.push_back(light);
     }
     View view = plain_view({9, 9}, 2, 2.0f);
-    view.per_light = true;
+    view.fog_parts = true;
     const Layers layers = rendered(own_mode(prepare_follow), view, snapshot, FrameOptions{});
     ASSERT_EQ(layers.lights.size(), 2u);
     for (size_t i = 0; i < layers.color.pixels.size(); ++i)
         for (int l = 0; l < 2; ++l) {
-            const vec3 part = layers.lights[l].second.pixels[i], whole = layers.color.pixels[i];
+            const vec3 part = layers.lights[l].second.pixels[i], whole = layers.inscatter.pixels[i];
             ASSERT_LE(max_component(glm::abs(part - whole * ((l + 1) / 3.0f))), rounding);
         }
 }

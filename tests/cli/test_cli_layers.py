@@ -1,0 +1,203 @@
+"""Layers that add up to the picture in every mode, and what alpha covers."""
+import json
+import struct
+import unittest
+import zlib
+
+from exr import added, read_channels
+from program import SOURCE, TRIANGLE, ProgramTest, gltf, lit_scene
+
+PARTS = "surface,background,inscatter,lights,ambient,emission,multiple"
+OTHER = ("ambient", "emission", "multiple")
+
+
+def png(width, height, pixel):
+    """An 8-bit RGB picture; pixel(x, y) gives its bytes."""
+    lines = b"".join(b"\0" + b"".join(bytes(pixel(x, y)) for x in range(width)) for y in range(height))
+
+    def block(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    return (b"\x89PNG\r\n\x1a\n" + block(b"IHDR", struct.pack(">2I5B", width, height, 8, 2, 0, 0, 0)) +
+            block(b"IDAT", zlib.compress(lines)) + block(b"IEND", b""))
+
+
+def panes():
+    """A glowing pane of glass before a wall that glows too; both catch light."""
+    def material(red, alpha):
+        return {"pbrMetallicRoughness": {"baseColorFactor": [red, 0.6, 0.4, alpha], "metallicFactor": 0},
+                "emissiveFactor": [0.05, 0.02, 0.01], "alphaMode": "BLEND" if alpha < 1 else "OPAQUE",
+                "doubleSided": True}
+
+    meshes = [{"primitives": [{"attributes": {"POSITION": 0}, "material": i}]} for i in range(2)]
+    nodes = [{"mesh": 0, "translation": [-0.5, 0, 0.5]}, {"mesh": 1, "translation": [-0.2, 0.1, -0.5]}]
+    return gltf(scenes=[{"nodes": [0, 1]}], nodes=nodes, meshes=meshes, materials=[material(0.8, 0.4), material(0.5, 1)])
+
+
+def fog(**changes):
+    return {"type": "homogeneous", "extinction": 0.6, "emission": [0.02, 0.03, 0.01],
+            "bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]}, **changes}
+
+
+LAMPS = [{"name": "sun", "type": "sun", "direction": [-0.6, -0.7, -0.3], "intensity": 3},
+         {"name": "a lamp", "type": "point", "position": [0.3, 0.8, 0.2], "intensity": 0.5,
+         "color": [0.4, 0.8, 1]}]
+
+
+class LayersTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("triangle.bin", TRIANGLE)
+        self.write("panes.gltf", panes())
+        self.write("sky.png", png(8, 4, lambda x, y: (30 * x, 60 * y, 90)))
+        self.rich = self.write("rich.json", lit_scene(
+            gltf="panes.gltf", lights=LAMPS, ambient=[0.1, 0.2, 0.3], background={"image": "sky.png", "intensity": 0.5},
+            media=[fog(), fog(extinction=0.3, emission=[0, 0, 0], albedo=[0.9, 0.5, 0.3])]))
+
+    def render(self, scene, name, *options, aov=PARTS, samples=2):
+        options += ("--samples", samples) if samples else ()
+        self.succeed("render", scene, "-o", self.path(name), "--frames", "1", "--aov", aov, "-q", *options)
+        return self.read(name)
+
+    def read(self, name):
+        """The channels, and the layers that make up inscatter in their order."""
+        channels = read_channels(self.path(name))
+        lights = self.attributes(name)["tyndall:lights"].split() if any("light_" in c for c in channels) else []
+        return channels, lights + [part for part in OTHER if f"{part}.R" in channels]
+
+
+class Layers(LayersTest):
+    def sums(self, channels, parts):
+        for c in "RGB":
+            behind = [channels[f"{part}.{c}"] for part in ("surface", "background") if f"{part}.{c}" in channels]
+            yield added(*(channels[f"{part}.{c}"] for part in parts)), channels[f"inscatter.{c}"]
+            yield added(*behind, channels[f"inscatter.{c}"]), channels[c]
+
+    def check_exact(self, name):
+        channels, parts = self.read(name)
+        for sum, whole in self.sums(channels, parts):
+            self.assertEqual(sum, whole, name)
+        return channels, parts
+
+    def check_all_modes(self, scene, *options, modes="all"):
+        """Renders float layers in all modes, and the pictures alone, which have to be the same up to rounding."""
+        for aov, name in ((PARTS, "layers.exr"), ("none", "alone.exr")):
+            self.succeed("render", scene, "-o", self.path(name), "--frames", "1", "--samples", "2", "--mode", modes,
+                         "--float", "--aov", aov, "-q", *options)
+        found = sorted(self.directory.glob("layers.*.exr"))
+        self.assertGreater(len(found), 1)
+        for path in found:
+            channels, _ = self.check_exact(path.name)
+            alone = read_channels(self.path(path.name.replace("layers", "alone")))
+            squares = sum((x - y) ** 2 for c in "RGB" for x, y in zip(channels[c], alone[c]))
+            mean = sum(sum(alone[c]) for c in "RGB") / (3 * len(alone["R"]))
+            self.assertLessEqual((squares / (3 * len(alone["R"]))) ** 0.5, 1e-6 * mean, path.name)
+
+    def test_they_add_up_bit_for_bit_in_all_modes(self):
+        self.check_all_modes(self.rich)
+        _, parts = self.read("layers.march.exr")
+        self.assertEqual(parts, ["light_sun", "light_a_lamp", "ambient", "emission"])
+        channels, _ = self.read("layers.march.exr")
+        for layer in [*parts, "surface", "background", "inscatter"]:
+            self.assertGreater(max(channels[f"{layer}.G"]), 0, layer)
+
+    def test_they_add_up_in_scenes_that_ship(self):
+        for scene in ("spotlight", "pillars"):
+            self.check_all_modes(SOURCE / f"scenes/{scene}.json", "--res", "48x27", "--quality", "draft")
+
+    def test_they_add_up_with_multiple_scattering_and_history(self):
+        self.check_all_modes(self.rich, "--orders", "3", "--quality", "draft", modes="march,froxel,path")
+        _, parts = self.read("layers.froxel.exr")
+        self.assertEqual(parts[-1], "multiple")
+        _, parts = self.read("layers.path.exr")
+        self.assertNotIn("multiple", parts, "path knows whose light it is")
+        self.check_all_modes(self.rich, "--history", "3", modes="froxel,cone,shadow-map")
+        self.check_all_modes(self.rich, "--set", "cone.resolution=half", "--set", "shadow_map.fog_resolution=half",
+                             modes="cone,shadow-map")
+
+    def test_halves_add_up_within_their_rounding(self):
+        channels, parts = self.render(self.rich, "half.exr")
+        exact, _ = self.render(self.rich, "float.exr", "--float")
+        for sum, whole in self.sums(channels, parts):
+            for x, y in zip(sum, whole):
+                self.assertLessEqual(abs(x - y), 2 ** -10 * abs(y) + 1e-6)
+        self.assertNotEqual(channels["inscatter.R"], exact["inscatter.R"])
+
+    def test_settings_decide_what_is_measured_and_still_add_up(self):
+        self.render(self.rich, "noise.exr", "--float", aov=PARTS + ",variance,halves", samples=32)
+        self.check_exact("noise.exr")
+        self.render(self.rich, "goal.exr", "--float", "--target-error", "0.3", samples=None)
+        self.check_exact("goal.exr")
+
+    def test_a_crop_is_part_of_the_whole(self):
+        for mode in ("march", "path", "radial-blur"):
+            for options in ([], ["--background", "off"]):
+                aov = PARTS if not options else PARTS.replace("background,", "")
+                whole, _ = self.render(self.rich, "whole.exr", "--mode", mode, *options, aov=aov)
+                crop, _ = self.render(self.rich, "crop.exr", "--mode", mode, "--crop", "8,4,20,13", *options, aov=aov)
+                for name, values in crop.items():
+                    part = [whole[name][32 * y + x] for y in range(4, 13) for x in range(8, 20)]
+                    self.assertEqual(values.tolist(), part, f"{mode} {name}")
+
+    def test_only_layers_that_the_scene_has_are_written(self):
+        scene = self.write("plain.json", lit_scene())
+        options = ("--samples", "1", "--aov", "inscatter,lights,ambient,emission,multiple")
+        result = self.succeed("render", scene, "-o", self.path("plain.exr"), *options)
+        self.assertIn("note: no layer ambient, emission, multiple", result.stderr)
+        names = {channel["name"].split(".")[0] for channel in self.info("plain.exr")["channels"]}
+        self.assertEqual(names, {"R", "G", "B", "A", "inscatter", "light_sun"})
+        again = self.succeed("render", scene, "-o", self.path("plain.exr"), *options, "--resume", "--json")
+        self.assertTrue(json.loads(again.stdout)["frames"][0]["kept"])
+
+
+class Background(LayersTest):
+    def test_alpha_is_one_where_the_background_is_in_the_picture(self):
+        for mode in ("march", "path", "radial-blur", "froxel"):
+            with_it, _ = self.render(self.rich, "on.exr", "--float", "--mode", mode)
+            without, _ = self.render(self.rich, "off.exr", "--float", "--mode", mode, "--background", "off",
+                                     aov=PARTS.replace("background,", ""))
+            self.assertEqual(set(with_it["A"]), {1.0}, mode)
+            self.assertLess(min(without["A"]), 0.05, mode)
+            self.assertEqual(max(without["A"]), 1, mode)
+            self.assertTrue(0.1 < without["A"][32 * 9 + 20] < 1, f"{mode}: fog")
+            for c in "RGB":
+                self.assertEqual(without[f"surface.{c}"], with_it[f"surface.{c}"], mode)
+                self.assertEqual(without[f"inscatter.{c}"], with_it[f"inscatter.{c}"], mode)
+                self.assertEqual(without[c], added(without[f"surface.{c}"], without[f"inscatter.{c}"]), mode)
+
+    def test_over_the_background_is_the_picture_with_it(self):
+        scene = self.write("even.json", lit_scene(background={"color": [0.3, 0.5, 0.2]}, ambient=[0.1, 0.1, 0.1]))
+        whole, _ = self.render(scene, "whole.exr", "--float", aov="none")
+        front, _ = self.render(scene, "front.exr", "--float", "--background", "off", aov="none")
+        for c, plate in zip("RGB", (0.3, 0.5, 0.2)):
+            for value, own, alpha in zip(whole[c], front[c], front["A"]):
+                self.assertAlmostEqual(value, own + (1 - alpha) * plate, delta=1e-6)
+
+    def test_none_covers_nothing_and_a_black_one_all(self):
+        none = self.write("none.json", {k: v for k, v in lit_scene().items() if k != "background"})
+        self.assertLess(min(self.render(none, "none.exr", aov="none")[0]["A"]), 0.05)
+        black = self.write("black.json", lit_scene(background={"color": [0, 0, 0]}))
+        self.assertEqual(set(self.render(black, "black.exr", aov="none")[0]["A"]), {1.0})
+
+    def test_the_header_and_resume_know_the_option(self):
+        options = ("--samples", "1", "--resume", "--json")
+
+        def kept(*more):
+            result = self.succeed("render", self.rich, "-o", self.path("out.exr"), *options, *more)
+            return json.loads(result.stdout)["frames"][0]["kept"]
+
+        self.assertFalse(kept("--background", "off"))
+        self.assertIn(" --background off", self.attributes("out.exr")["tyndall:command"])
+        self.assertTrue(kept("--background", "off"))
+        self.assertFalse(kept())
+        self.assertNotIn("--background", self.attributes("out.exr")["tyndall:command"])
+        self.assertTrue(kept("--background", "on"))
+
+    def test_it_has_no_layer_when_it_is_left_out(self):
+        refused = ["render", self.rich, "-o", self.path("out.exr"), "--background", "off", "--aov", "background"]
+        self.refuse(2, ["--aov", "--background off"], *refused)
+        self.refuse(2, ["--background", "of"], "render", self.rich, "-o", self.path("out.exr"), "--background", "of")
+
+
+if __name__ == "__main__":
+    unittest.main()
