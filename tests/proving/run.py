@@ -20,27 +20,28 @@ from pictures import error_against, find_truth, load_truth, render, save_truth
 from scene_files import write_scene
 
 SOURCE = pathlib.Path(__file__).parents[2]
-TRUTH_SECONDS, ATTEMPTS = 120, 6  # of processor time: a minute on two cores
+ATTEMPTS = 6
 SLACK = 1.05  # of the error asked for
 LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 8), ("preview", 16), ("final", 16), ("final", 32),
           ("final", 64), ("final", 128), ("final", 256), ("final", 512), ("reference", 64), ("reference", 256),
           ("reference", 1024)]
 
 
-def scene_with_truth(seed, program, folder, wanted, truths):
+def scene_with_truth(seed, folder, wanted, options):
     """The first drawing of a seed whose truth can be had: scene file, frame, truth and how many drawings went before.
     Truths are kept in a folder, where there is one."""
-    known = truths / f"{seed}.npz" if truths else None
+    program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
     if known and known.exists():
         truth, attempt = load_truth(known)
         drawn, size = draw(seed, attempt)
-        return write_scene(drawn, size, folder / f"{seed}.{attempt}", program), drawn.frame, truth, attempt
+        return write_scene(drawn, options.size or size, folder / f"{seed}.{attempt}", program), drawn.frame, truth, attempt
     for attempt in range(ATTEMPTS):
         drawn, size = draw(seed, attempt)
+        size = options.size or size
         place = folder / f"{seed}.{attempt}"
         scene = write_scene(drawn, size, place, program)
         plain = write_scene(drawn.plain, size, place / "plain", program) if drawn.plain else scene
-        truth = find_truth(program, plain, drawn.frame, place, wanted, TRUTH_SECONDS)
+        truth = find_truth(program, plain, drawn.frame, place, wanted, options.truth_seconds)
         if truth:
             if known:
                 save_truth(truth, attempt, known)
@@ -70,8 +71,7 @@ def prove(seed, options):
     """Rows of one seed."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"proving_{seed}_"))
     try:
-        scene, frame, truth, redrawn = scene_with_truth(seed, options.program, folder, 0.2 * min(options.targets),
-                                                       options.truths)
+        scene, frame, truth, redrawn = scene_with_truth(seed, folder, 0.2 * min(options.targets), options)
         common = {"seed": seed, "family": family_of(seed).__name__, "redrawn": redrawn}
         if truth is None:
             return [common | {"refused": True}]
@@ -111,7 +111,7 @@ def table(rows):
     lines = []
     for row in rows:
         if row.get("refused"):
-            lines.append(f"{row['seed']:6d} {row['family']:12s} no truth in {TRUTH_SECONDS} s")
+            lines.append(f"{row['seed']:6d} {row['family']:12s} no truth")
             continue
         marks = ("" if met(row) else "  not met") + ("" if row["bound"] is None or bound_holds(row) else "  BOUND BROKEN")
         lines.append(f"{row['seed']:6d} {row['family']:12s} {row['mode']:6s} asked {row['asked']:.3f} said {number(row['promised'])}"
@@ -166,6 +166,9 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("proving"))
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once; each takes two threads")
     parser.add_argument("--ladder", action="store_true")
+    parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), help="of all pictures")
+    parser.add_argument("--truth-seconds", type=float, default=120,
+                        help="of processor time that a truth may take: by default a minute on two cores")
     parser.add_argument("--timeout", type=float, default=600)
     parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
     parser.add_argument("--keep", action="store_true", help="keep the scenes")

@@ -67,7 +67,7 @@ struct Rounds {
     // The view of so much work, and the work it is. What is allotted may come in parts.
     View round_view(double& work, int round, const AllottedPart* part) const {
         View result = view;
-        if (round) result.seed = hash(view.seed, static_cast<uint32_t>(round));
+        result.seed = hash(view.seed, static_cast<uint32_t>(round));
         result.batches = part ? unit() : std::min(max_batches(), static_cast<int>(work));
         result.pixel_samples = part ? unit() : static_cast<int>(work) / result.batches * result.batches;
         if (part)
@@ -313,7 +313,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     Rendering rendering{mode, snapshot, options, settings, nullptr};
     stats = {};
     Layers result;
-    int round = 0;
+    int round = 1; // the scout is the first: none may take its random numbers again
     const bool measured = has_integrator(mode) || goal.seconds > 0;
     if (measured) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
