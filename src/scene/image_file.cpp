@@ -35,8 +35,10 @@ void check_length(std::string_view bytes, std::string_view where) {
     if (bytes.size() > size_t{1} << 30) refuse(where, "the image file is over 1 GiB");
 }
 
-[[noreturn]] void refuse_undecodable(std::string_view where) {
-    refuse(where, std::string("the image cannot be decoded: ") + stbi_failure_reason());
+// The library gives no reason where it reads past the end.
+[[noreturn]] void refuse_undecodable(std::string_view where, std::string_view what) {
+    const char* reason = stbi_failure_reason();
+    refuse(where, std::string(what) + ": " + (reason ? reason : "it is damaged"));
 }
 
 // IEC 61966-2-1.
@@ -56,7 +58,7 @@ Image<vec3> decode_radiance(std::string_view bytes, std::string_view where) {
     int channels;
     const std::unique_ptr<float, Free> data(
         stbi_loadf_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 3));
-    if (!data) refuse_undecodable(where);
+    if (!data) refuse_undecodable(where, "the image cannot be decoded");
     Image<vec3> image(size);
     for (size_t i = 0; i < image.pixels.size(); ++i) {
         image.pixels[i] = {data.get()[3 * i], data.get()[3 * i + 1], data.get()[3 * i + 2]};
@@ -80,7 +82,7 @@ ivec2 image_size(std::string_view bytes, std::string_view where) {
     if (image_format(bytes) == ImageFormat::png && bytes.size() >= 24) {
         size = {big_endian(bytes.substr(16)), big_endian(bytes.substr(20))};
     } else if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels)) {
-        refuse(where, std::string("not a usable image header: ") + stbi_failure_reason());
+        refuse_undecodable(where, "not a usable image header");
     }
     if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_image_side)
         refuse(where, "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
@@ -95,7 +97,7 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
     int channels;
     const std::unique_ptr<stbi_uc, Free> data(
         stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 4));
-    if (!data) refuse_undecodable(where);
+    if (!data) refuse_undecodable(where, "the image cannot be decoded");
 
     const std::array<float, 256>& table = linear_table();
     Image<vec4> image(size);

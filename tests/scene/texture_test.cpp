@@ -25,6 +25,16 @@ TEST(Texture, CentresOfTexelsAreExact) {
     expect_near(sample_texture(texture, {0.5f, 0.5f}), {0.5f, 0.5f, 0.5f, 0.75f}, 1e-5f);
 }
 
+// The decoder refuses such a block without saying why.
+TEST(Texture, ABlockLongerThanTheFileIsRefusedInALine) {
+    for (const char high : {'\x7f', '\x80', '\xff'}) {
+        std::string bytes = png_of({1, 1}, {{1, 2, 3, 255}});
+        bytes[bytes.find("IDAT") - 4] = high;
+        const std::string message = error_of([&] { decode_texture(bytes, "here"); }).what();
+        EXPECT_NE(message.find("the image cannot be decoded"), message.npos) << message;
+    }
+}
+
 TEST(Texture, RepeatsMirrorsAndHolds) {
     Texture texture = four_texels();
     expect_near(sample_texture(texture, {3.25f, -6.75f}), {1, 0, 0, 1}, 1e-5f);

@@ -53,8 +53,8 @@ const std::string* find(const Metadata& metadata, std::string_view key) {
     return nullptr;
 }
 
-// True when the file is this frame made by these settings and every voxel of it can be read.
-bool is_right(const std::filesystem::path& file, const std::string& name, const std::string& hash, int frame) {
+// True when the file is this frame made by these settings, to the last byte.
+bool is_right(const std::filesystem::path& file, const std::string& hash, int frame) {
     if (!std::filesystem::exists(file)) return false;
     try {
         const Metadata metadata = vdb_metadata(file);
@@ -63,9 +63,7 @@ bool is_right(const std::filesystem::path& file, const std::string& name, const 
         if (!made_by || *made_by != hash || !shows) return false;
         double number = 0;
         std::from_chars(shows->data(), shows->data() + shows->size(), number);
-        if (number != frame) return false;
-        read_vdb(file, name);
-        return true;
+        return number == frame && is_as_written(file);
     } catch (const Error&) {
         return false; // cut or damaged: made again
     }
@@ -137,7 +135,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
     for (const int frame : frames) {
         if (options.cancel && *options.cancel) break;
         const std::filesystem::path file = frame_name(pattern, frame);
-        if (options.resume && is_right(file, recipe.name, hash, frame)) {
+        if (options.resume && is_right(file, hash, frame)) {
             writers.keep(file);
             continue;
         }

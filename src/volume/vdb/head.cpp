@@ -1,5 +1,6 @@
 #include "volume/vdb/head.h"
 
+#include "base/io/file.h"
 #include "base/text.h"
 
 #include <openvdb/MetaMap.h>
@@ -35,6 +36,12 @@ openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creat
 
 // Where the 36 characters of the UUID stand; the library would fill them at random.
 constexpr size_t uuid_begin = 21, uuid_bytes = 36;
+constexpr std::string_view nought = "00000000-0000-0000-0000-000000000000";
+
+std::string uuid_of(std::string digits) {
+    for (const size_t hyphen : {8, 13, 18, 23}) digits.insert(hyphen, "-");
+    return digits;
+}
 
 void write_header(std::ostream& stream) {
     write_value<int64_t>(stream, openvdb::OPENVDB_MAGIC);
@@ -42,7 +49,7 @@ void write_header(std::ostream& stream) {
     write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MAJOR_VERSION);
     write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MINOR_VERSION);
     write_value<char>(stream, 1); // the grids say where they begin and end
-    stream << "00000000-0000-0000-0000-000000000000";
+    stream << nought;
 }
 }
 
@@ -53,7 +60,12 @@ void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::st
 }
 
 void set_identity(std::string& head, std::string digits) {
-    for (const size_t hyphen : {8, 13, 18, 23}) digits.insert(hyphen, "-");
-    head.replace(uuid_begin, uuid_bytes, digits);
+    head.replace(uuid_begin, uuid_bytes, uuid_of(std::move(digits)));
+}
+
+bool has_identity_of_content(std::string_view file) {
+    if (file.size() < uuid_begin + uuid_bytes) return false;
+    const std::string_view pieces[] = {file.substr(0, uuid_begin), nought, file.substr(uuid_begin + uuid_bytes)};
+    return file.substr(uuid_begin, uuid_bytes) == uuid_of(content_hash(pieces));
 }
 }

@@ -12,6 +12,10 @@ void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::st
 // Puts 32 hex digits in the place of the file's UUID.
 void set_identity(std::string& head, std::string digits);
 
+// Whether the UUID at the head of a whole file is the hash of all else in it, as in files that this program has
+// written.
+bool has_identity_of_content(std::string_view file);
+
 template<class T> void write_value(std::ostream& stream, T value) {
     stream.write(reinterpret_cast<const char*>(&value), sizeof value);
 }

@@ -5,12 +5,14 @@
 #include "base/text.h"
 #include "volume/vdb/codec.h"
 #include "volume/vdb/fog.h"
+#include "volume/vdb/head.h"
 #include "volume/vdb/prewalk.h"
 
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <limits>
 #include <new>
 
 namespace tyndall {
@@ -203,6 +205,10 @@ VdbInfo vdb_info(const std::filesystem::path& path) {
 VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     ByteCursor file(path);
     return read_directory(file).metadata;
+}
+
+bool is_as_written(const std::filesystem::path& path) {
+    return has_identity_of_content(read_file(path, std::numeric_limits<uint64_t>::max()));
 }
 
 VdbImage::VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where)

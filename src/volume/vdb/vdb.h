@@ -85,4 +85,7 @@ SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid
 
 // Metadata of the file without its voxels (optics and frame written by a bake).
 std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);
+
+// Whether every byte of a file is as this program wrote it. Throws Error (unreadable).
+bool is_as_written(const std::filesystem::path& file);
 }
