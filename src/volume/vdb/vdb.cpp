@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <fstream>
 #include <limits>
 #include <new>
@@ -59,26 +60,48 @@ const VdbGridEntry* grid_called(const VdbDirectory& directory, std::string_view 
     return index && *index < found.size() ? found[*index] : nullptr;
 }
 
-// The one that can be fog; of several "density", then the only one of class fog volume.
-const VdbGridEntry& only_fog(const VdbDirectory& directory, const std::string& where) {
+// Names by which programs write quantities other than a density.
+bool names_another_quantity(std::string_view name) {
+    constexpr std::string_view others[] = {"temperature", "temp",  "heat", "flame",    "flames",  "fire", "fuel",
+                                           "burn",        "color", "cd",   "emission", "shadow",  "vel",  "velocity",
+                                           "pressure",    "v",     "rest", "uvw",      "surface", "sdf"};
+    std::string lower(name);
+    for (char& letter : lower) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return std::ranges::count(others, std::string_view(lower).substr(0, lower.find('.'))) > 0;
+}
+
+// What is called a density; else the only one that can be fog and is not called something else, or is alone of class
+// fog volume.
+const VdbGridEntry& only_fog(const VdbDirectory& directory, const ByteCursor& file) {
+    const auto named = grids_named(directory, "density");
+    for (const VdbGridEntry* grid : named)
+        if (obstacle(*grid).empty()) return *grid;
+    const std::string another = "; \"grid\" takes another one of " + listing(directory);
+    if (!named.empty())
+        refuse(label(file, *named.front()), obstacle(*named.front()) + (directory.grids.size() > 1 ? another : ""));
+
     std::vector<const VdbGridEntry*> usable, fog;
+    bool unnamed = false;
     for (const VdbGridEntry& grid : directory.grids) {
         if (!obstacle(grid).empty()) continue;
+        if (names_another_quantity(grid.name)) {
+            unnamed = true;
+            continue;
+        }
         usable.push_back(&grid);
         if (grid.grid_class == "fog volume") fog.push_back(&grid);
     }
     if (usable.size() == 1) return *usable.front();
-    for (const VdbGridEntry* grid : usable)
-        if (grid->name == "density") return *grid;
     if (fog.size() == 1) return *fog.front();
-    if (!usable.empty()) refuse(where, "several grids could be the fog, name one of " + listing(directory));
-    if (directory.grids.size() > 1) refuse(where, "none of its grids can be fog: " + listing(directory));
-    const VdbGridEntry& grid = directory.grids.front();
-    refuse(where + ": grid \"" + printable(grid.name, 80) + "\"", obstacle(grid));
+    if (!usable.empty())
+        refuse(file.where, "several grids could be the fog, name one of " + listing(directory) + " as \"grid\"");
+    if (unnamed) refuse(file.where, "has no density" + another);
+    if (directory.grids.size() > 1) refuse(file.where, "none of its grids can be fog: " + listing(directory));
+    refuse(label(file, directory.grids.front()), obstacle(directory.grids.front()));
 }
 
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, const ByteCursor& file) {
-    if (wanted.empty()) return only_fog(directory, file.where);
+    if (wanted.empty()) return only_fog(directory, file);
     const VdbGridEntry* grid = grid_called(directory, wanted);
     if (!grid) refuse(file.where, "has no grid \"" + printable(wanted, 60) + "\", it holds " + listing(directory));
     if (const std::string why = obstacle(*grid); !why.empty()) refuse(label(file, *grid), why);

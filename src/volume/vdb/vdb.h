@@ -79,8 +79,9 @@ struct VdbReadReport {
     std::string summary() const;           // empty when there is nothing to say
 };
 
-// Reads one grid as fog. `grid`: a name, name[index] for the index-th of that name, or empty for the only usable one
-// ("density" when there are several). Throws Error: an unknown name lists what is there, a level set says what to do.
+// Reads one grid as fog. `grid`: a name, name[index] for the index-th of that name, or empty for "density", else for
+// the only one that can be fog and is not called as another quantity is. Throws Error: an unknown name lists what is
+// there, a level set says what to do.
 SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid = {}, VdbReadReport* report = nullptr);
 
 // Metadata of the file without its voxels (optics and frame written by a bake).

@@ -234,14 +234,26 @@ TEST(VdbRead, NameAndIndex) {
 
 TEST(VdbRead, WithoutAName) {
     const auto chosen = [&](const std::vector<AuthoredGrid>& grids) { return read(authored(grids)).report.grid; };
-    EXPECT_EQ(chosen({small("temperature")}), "temperature");
+    EXPECT_EQ(chosen({small("temperature"), small("Smoke")}), "Smoke");
     EXPECT_EQ(chosen({small("v", "vec3s"), small("mist")}), "mist");
     EXPECT_EQ(chosen({small("distance", "float", "level set"), small("mist")}), "mist");
     EXPECT_EQ(chosen({small("heat"), small("density")}), "density");
     EXPECT_EQ(chosen({small("heat"), small("mist", "float", "fog volume")}), "mist");
-    EXPECT_THAT(refusal(authored({small("heat"), small("flame")})).what(), HasSubstr("heat (float), flame (float)"));
+    EXPECT_THAT(refusal(authored({small("mist"), small("dust")})).what(), HasSubstr("mist (float), dust (float)"));
     EXPECT_THAT(refusal(authored({small("v", "vec3s"), small("i", "int32")})).what(),
                 HasSubstr("v (vec3s), i (int32)"));
+}
+
+// Heat is never lit as fog because the density beside it cannot be.
+TEST(VdbRead, AnotherQuantityIsTakenByNameOnly) {
+    for (const AuthoredGrid& density : {small("density", "float", "level set"), small("density", "vec3s")}) {
+        const std::string bytes = authored({density, small("temperature")});
+        EXPECT_THAT(refusal(bytes).what(), HasSubstr("grid \"density\": "));
+        EXPECT_THAT(refusal(bytes).what(), HasSubstr("temperature (float)"));
+        EXPECT_EQ(read(bytes, "temperature").report.grid, "temperature");
+    }
+    for (const char* name : {"temperature", "Heat", "flames", "vel.x"})
+        EXPECT_THAT(refusal(authored({small(name)})).what(), HasSubstr("has no density; \"grid\" takes"));
 }
 
 TEST(VdbRead, WhatIsNoDensityIsRefused) {
