@@ -66,10 +66,10 @@ struct Chooser {
         const auto saves_time = [&](const Measured& measured) {
             if (goal.seconds > 0 || measured.integrator.value >= goal.error * goal.error) return false;
             choice.measured = measured;
-            const double now = choice.seconds_to(goal.error);
+            const double now = choice.work_to(goal.error);
             choice.measured.integrator.bound = measured.integrator.value;
-            return now - choice.seconds_to(goal.error) >
-                   pilot.seconds / (measured.integrator.by_noise ? 1 : pilot.drawings);
+            return now - choice.work_to(goal.error) >
+                   pilot.cost.work / (measured.integrator.by_noise ? 1 : pilot.drawings);
         };
         choice.measured = measured(std::move(look), pilot, saves_time);
         choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
@@ -121,12 +121,18 @@ Allotment Choice::spread(const Enough& enough, int unit) const {
     return result;
 }
 
-double Choice::seconds_to(double error) const {
+double Choice::samples_to(double error) const {
     const double left = error * error - measured.integrator.bound;
     if (!(left > 0) || !scout) return infinity;
     const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
-    return measured.prepare_seconds + spread({left, infinity}, scout_samples).rays / pixels * measured.sample_seconds;
+    return spread({left, infinity}, scout_samples).rays / pixels;
 }
+
+double Choice::seconds_to(double error) const {
+    return measured.prepare_seconds + samples_to(error) * measured.sample_seconds;
+}
+
+double Choice::work_to(double error) const { return samples_to(error) * measured.sample_work; }
 
 double Choice::expected(double samples) const {
     if (samples < 2) return measured.integrator.value + measured.sample.value;
@@ -155,7 +161,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         if (!timed) {
             if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;
             const bool room = leaves_room(next, goal.error);
-            const bool better = !best || next.seconds_to(goal.error) <= best->seconds_to(goal.error);
+            const bool better = !best || next.work_to(goal.error) <= best->work_to(goal.error);
             if (better) best = std::move(next);
             if (room) break;
             continue;
@@ -179,10 +185,10 @@ double check_seconds(const Choice& choice) {
     if (!choice.has_integrator || choice.is_truth || !choice.pilot) return 0;
     const Pilot& pilot = *choice.pilot;
     const double own = choice.measured.sample_seconds * pilot.samples() / pilot.pixels();
-    return (pilot.seconds + own) / (pilot.drawings * pilot.passes);
+    return (pilot.cost.seconds + own) / (pilot.drawings * pilot.passes);
 }
 
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds, double until,
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double samples, double until,
                const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
                uint32_t salt, const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
@@ -204,13 +210,13 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
         return result;
 
     // More samples of this one, of which some are there, or a finer one from nothing.
-    double seconds = result.seconds_to(goal.error) - rendered_seconds;
+    double work = result.work_to(goal.error) - samples * result.measured.sample_work;
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
         Choice finer = chooser.choice(*next, pilot, &choice, choice.scout);
         const bool room = leaves_room(finer, goal.error);
-        const double its_seconds = finer.seconds_to(goal.error);
-        if (its_seconds < seconds || (seconds == infinity && room)) seconds = its_seconds, result = std::move(finer);
+        const double its_work = finer.work_to(goal.error);
+        if (its_work < work || (work == infinity && room)) work = its_work, result = std::move(finer);
         if (room) break;
     }
     return result;

@@ -19,8 +19,12 @@ struct Choice {
     // How samples are best spread for an error or a number of rays; by the scout, which there must be.
     Allotment spread(const Enough& enough, int unit) const;
 
-    // To prepare and render what gets to an error; infinite where that is out of reach.
+    // Samples per pixel that get to an error, on the average; infinite where that is out of reach.
+    double samples_to(double error) const;
+
+    // To prepare and render them, and the work of the latter.
     double seconds_to(double error) const;
+    double work_to(double error) const;
 
     // The squared error to expect of so many samples per pixel, on the average.
     double expected(double samples) const;
@@ -43,10 +47,10 @@ inline constexpr double integrator_share = 0.7;
 // Whether what samples do not remove leaves enough of the error wanted for noise.
 bool leaves_room(const Choice& choice, double error);
 
-// With an error asked for, the quickest candidate that is likely to get there, up to the first whose bound leaves
-// enough for noise; or the finest; what comes before the first that gains nothing, where set rows keep candidates from
-// getting finer. With seconds, the one whose picture will be best when they are over, `start` being when they began;
-// with both, the first that reaches the error in time. Seconds make the choice depend on the machine.
+// With an error asked for, the candidate that is likely to get there with least work, up to the first whose bound
+// leaves enough for noise; or the finest; what comes before the first that gains nothing, where set rows keep
+// candidates from getting finer. With seconds, the one whose picture will be best when they are over, `start` being
+// when they began; with both, the first that reaches the error in time. Seconds make the choice depend on the machine.
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
 
@@ -55,9 +59,9 @@ double check_seconds(const Choice& choice);
 
 // What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
 // candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
-// place: one that gets there sooner than more samples do, of which rendering took `rendered_seconds` so far.
+// place: one that takes less work than more samples do, of which the picture has `samples` per pixel so far.
 // By the goal's clock, few tiles are looked at after `until`, where the goal has seconds.
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double rendered_seconds, double until,
+Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double samples, double until,
                const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
                uint32_t salt, const FrameOptions& options);
 }

@@ -14,6 +14,7 @@
 
 namespace tyndall {
 namespace {
+constexpr double ray_work = 16;     // of a camera ray and what it hits, in evaluations of fog
 constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
@@ -85,11 +86,12 @@ size_t pixels_of(const Pilot& pilot, const DrawnTile& tile, std::span<ivec2> pix
 }
 
 // Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where none is
-// followed or a sample is not finite.
-void follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<const size_t> places,
-                 std::span<vec3> result) {
+// followed or a sample is not finite. What that took.
+double follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<const size_t> places,
+                   std::span<vec3> result) {
     std::ranges::fill(result, vec3(quiet_nan));
-    if (pixels.empty()) return;
+    if (pixels.empty()) return 0;
+    double work = 0;
     PixelSample samples[16];
     const int all = tracer.view.pixel_samples, half = std::max(all / 2, 1);
     for (int s = 0; s < all; ++s) {
@@ -100,12 +102,16 @@ void follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::
             const float share = 1 / static_cast<float>(half), kept = samples[i].finite() ? share : quiet_nan;
             mean[0] = (fresh ? vec3(0) : mean[0]) + kept * samples[i].color();
             mean[1] = (fresh ? vec3(0) : mean[1]) + kept * samples[i].inscatter;
+            work += ray_work + samples[i].steps;
         }
     }
+    return work;
 }
 
-// One pass over the tiles `begin` to `end`, with random numbers of its own, blended into what `before` passes gave.
-void follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size_t end, std::vector<vec3>& result) {
+// One pass over the tiles `begin` to `end`, with random numbers of its own, blended into what earlier passes gave.
+Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size_t end, std::vector<vec3>& result) {
+    const double start = steady_seconds();
+    std::atomic<int64_t> work = 0; // whole numbers: sums of them do not depend on their order
     View view = tracer.view;
     if (pass > 0) view.seed = hash(view.seed, static_cast<uint32_t>(pass));
     const FrameTracer own{
@@ -118,11 +124,12 @@ void follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
         size_t places[16];
         const size_t count = pixels_of(pilot, pilot.tiles[tile], pixels, places);
         std::array<vec3, pilot_values> values;
-        follow_tile(own, {pixels, count}, {places, count}, values);
+        work += static_cast<int64_t>(follow_tile(own, {pixels, count}, {places, count}, values));
         vec3* mean = result.data() + tile * pilot_values;
         for (size_t k = 0; k < pilot_values; ++k)
             mean[k] = pass ? mean[k] + (values[k] - mean[k]) / static_cast<float>(pass + 1) : values[k];
     });
+    return {steady_seconds() - start, static_cast<double>(work)};
 }
 
 // The first tiles, in an order of chance, stand for all.
@@ -133,10 +140,13 @@ void keep_first(size_t count, Pilot& pilot) {
 }
 
 // All passes over all tiles, of which `seen` tiles have had `passes`.
-void follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
-    for (int pass = passes; pass < pilot.passes && seen > 0; ++pass) follow(tracer, pilot, pass, 0, seen, result);
+Cost follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
+    Cost cost;
+    for (int pass = passes; pass < pilot.passes && seen > 0; ++pass)
+        cost += follow(tracer, pilot, pass, 0, seen, result);
     for (int pass = 0; pass < pilot.passes && seen < pilot.tiles.size(); ++pass)
-        follow(tracer, pilot, pass, seen, pilot.tiles.size(), result);
+        cost += follow(tracer, pilot, pass, seen, pilot.tiles.size(), result);
+    return cost;
 }
 
 std::span<const vec3> values_of(const std::vector<vec3>& all, size_t tile) {
@@ -225,17 +235,15 @@ void grow(Pilot& pilot, bool by_noise) {
         }
     }
     if (!pilot.truth_settings) return;
-    const double start = steady_seconds();
     const FrameTracer tracer =
         tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared);
     const size_t all = pilot.tiles.size();
     for (size_t done = 0; seen == 0 && pilot.stop && done < all; done += tiles_between_stops) {
-        follow(tracer, pilot, 0, done, std::min(done + tiles_between_stops, all), pilot.truth);
+        pilot.cost += follow(tracer, pilot, 0, done, std::min(done + tiles_between_stops, all), pilot.truth);
         if (pilot.stop() && done + tiles_between_stops < all) keep_first(done + tiles_between_stops, pilot), done = all;
     }
     const bool followed = seen == 0 && pilot.stop;
-    if (!followed) follow_rest(tracer, pilot, seen, passes, pilot.truth);
-    pilot.seconds += steady_seconds() - start;
+    if (!followed) pilot.cost += follow_rest(tracer, pilot, seen, passes, pilot.truth);
 }
 
 Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
@@ -246,16 +254,17 @@ Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
     }
     const double prepared = clock();
     const View view = view_for(look.mode, pilot);
-    follow_rest(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
-                look.values.size() / pilot_values, look.passes, look.values);
-    look.passes = pilot.passes, look.seconds += clock() - prepared;
+    const Cost cost = follow_rest(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
+                                  look.values.size() / pilot_values, look.passes, look.values);
+    look.passes = pilot.passes, look.cost += Cost{clock() - prepared, cost.work};
     const std::vector<vec3>& truth = pilot.truth.empty() ? look.values : pilot.truth;
     Measured result;
     result.integrator = error_of(pilot, truth, look.values, of_integrator);
     result.sample = error_of(pilot, truth, look.values, of_sample);
     result.sample.value *= pilot.passes, result.sample.bound *= pilot.passes; // of means of as many
     result.prepare_seconds = look.prepare_seconds, result.prepared = look.prepared;
-    result.sample_seconds = look.seconds / pilot.samples() * pilot.pixels();
+    const double scale = pilot.pixels() / pilot.samples();
+    result.sample_seconds = scale * look.cost.seconds, result.sample_work = scale * look.cost.work;
     return result;
 }
 

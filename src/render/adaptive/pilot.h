@@ -32,7 +32,16 @@ struct Measured {
     SquaredError integrator;                        // of the mean of endless samples
     SquaredError sample;                            // variance of one sample
     double prepare_seconds = 0, sample_seconds = 0; // per sample of all the picture's pixels
+    double sample_work = 0;                         // likewise; see Cost
     std::shared_ptr<const Prepared> prepared;       // to render with
+};
+
+// What following pixels cost: in seconds, and in evaluations, which are the same on every machine and for any number of
+// threads. Choices that no limit of time asks for go by the latter.
+struct Cost {
+    double seconds = 0, work = 0;
+
+    Cost& operator+=(const Cost& other) { return seconds += other.seconds, work += other.work, *this; }
 };
 
 // Tiles of a picture, and what is known of the truth there: in all pixels of a tile that was drawn for certain, in a
@@ -49,15 +58,15 @@ struct Pilot {
     int drawings = 0, passes = 1;               // passes: of two samples each
     std::shared_ptr<const Prepared> prepared{}; // for the truth
     std::vector<vec3> truth{};                  // pilot_values of each tile; empty = the candidate's
-    double seconds = 0;                         // following it took
+    Cost cost{};                                // of following it
     std::function<bool()> stop{};               // says when time is up; a few tiles are followed anyway
 
     double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the picture
     bool is_full() const { return drawings >= max_drawings || static_cast<double>(tiles.size()) >= all(); }
     bool can_grow(bool by_noise) const { return by_noise ? passes < max_passes : !is_full(); }
-    double samples() const;                                                 // of pixels, that all passes together took
-    double pixels() const;                                                  // of the picture
-    double truth_seconds() const { return seconds / samples() * pixels(); } // per sample of the picture
+    double samples() const; // of pixels, that all passes together took
+    double pixels() const;  // of the picture
+    double truth_seconds() const { return cost.seconds / samples() * pixels(); } // per sample of the picture
 };
 
 // With one drawing; those of another `salt` are independent of it. `prepared` for the truth, where it is already.
@@ -76,7 +85,8 @@ struct Look {
     const Snapshot* snapshot = nullptr; // null = the pilot's
     std::vector<vec3> values{};         // pilot_values of each tile seen
     int passes = 0;                     // their number
-    double prepare_seconds = 0, seconds = 0;
+    double prepare_seconds = 0;
+    Cost cost{};
 
     const Snapshot& of(const Pilot& pilot) const { return snapshot ? *snapshot : *pilot.snapshot; }
 };

@@ -67,7 +67,7 @@ struct Rounds {
     // The view of so much work, and the work it is. What is allotted may come in parts.
     View round_view(double& work, int round, const AllottedPart* part) const {
         View result = view;
-        result.seed = hash(view.seed, static_cast<uint32_t>(round));
+        if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));
         result.batches = part ? unit() : std::min(max_batches(), static_cast<int>(work));
         result.pixel_samples = part ? unit() : static_cast<int>(work) / result.batches * result.batches;
         if (part)
@@ -313,11 +313,12 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     Rendering rendering{mode, snapshot, options, settings, nullptr};
     stats = {};
     Layers result;
-    int round = 1; // the scout is the first: none may take its random numbers again
+    int round = 0;
     const bool measured = has_integrator(mode) || goal.seconds > 0;
     if (measured) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
+        if (rounds.choice->scout) round = 1; // none may take the random numbers of the first picture again
         if (goal.error > 0 && has_integrator(mode)) {
             const double more = rounds.choice->seconds_to(goal.error) - rounds.choice->measured.prepare_seconds;
             stats.forecast_seconds = stats.prepare_seconds + more + rounds.check_seconds;
@@ -326,15 +327,14 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         }
     }
     for (uint32_t check = 1; check <= max_checks; ++check) {
-        const double begun = goal.clock();
         const bool scouted = measured && rounds.choice->scout;
         render_rounds(rounds, rendering, scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds),
                       result, stats, round);
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
-        const Choice after = checked(*rounds.choice, result, *stats.noise, goal.clock() - begun, until, mode,
-                                     rounds.view, snapshot, settings, goal, check, options);
+        const Choice after = checked(*rounds.choice, result, *stats.noise, stats.samples, until, mode, rounds.view,
+                                     snapshot, settings, goal, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;
