@@ -56,13 +56,13 @@ class Data(ProgramTest):
         if result.returncode:
             self.check_refusal(result, result.returncode, path.name)
         grids = json.loads(result.stdout)["grids"] if result.returncode == 0 else []
-        boxes = [grid["bounds"] for grid in grids if grid["usable"] and grid["bounds"]]
+        boxes = [grid["bounds"] for grid in grids if grid["is_fog"] and grid["bounds"]]
         view, size = framing(**boxes[0]) if boxes else framing([-1, -1, -1], [1, 1, 1])
         media = [{"type": "vdb", "file": str(path), "extinction": 5 / size}]
         content = self.write(f"{number}.json", {"tyndall": 1, "media": media, **view})
         rendered = self.render(number, content)
-        self.assertEqual(rendered, any(grid["usable"] for grid in grids),
-                         "what info calls usable renders, and nothing else")
+        self.assertEqual(rendered, any(grid["is_fog"] for grid in grids),
+                         "what info calls fog renders, and nothing else")
         return rendered
 
     def test_volumes(self):

@@ -16,6 +16,7 @@ Json grid_json(const VdbGridInfo& grid) {
                         {"type", grid.type},
                         {"class", grid.grid_class},
                         {"usable", grid.usable},
+                        {"is_fog", grid.is_fog},
                         {"why_not", grid.why_not},
                         {"voxels", std::vector{across.x, across.y, across.z}},
                         {"voxel_size", grid.voxel_size},

@@ -23,7 +23,10 @@ Box world_bounds(const VdbGridInfo& grid) {
 
 std::string kind_text(const VdbGridInfo& grid) {
     return printable(grid.type, 80) + ", " + (grid.grid_class.empty() ? "no class" : printable(grid.grid_class, 40)) +
-           ", " + (grid.usable ? "usable as fog" : "not usable as fog: " + printable(grid.why_not));
+           ", " +
+           (grid.is_fog   ? "usable as fog"
+            : grid.usable ? "usable as fog where a scene names it as \"grid\""
+                          : "not usable as fog: " + printable(grid.why_not));
 }
 
 namespace {

@@ -70,38 +70,39 @@ bool names_another_quantity(std::string_view name) {
     return std::ranges::count(others, std::string_view(lower).substr(0, lower.find('.'))) > 0;
 }
 
-// What is called a density; else the only one that can be fog and is not called something else, or is alone of class
-// fog volume.
-const VdbGridEntry& only_fog(const VdbDirectory& directory, const ByteCursor& file) {
-    const auto named = grids_named(directory, "density");
-    for (const VdbGridEntry* grid : named)
-        if (obstacle(*grid).empty()) return *grid;
-    const std::string another = "; \"grid\" takes another one of " + listing(directory);
-    if (!named.empty())
-        refuse(label(file, *named.front()), obstacle(*named.front()) + (directory.grids.size() > 1 ? another : ""));
-
+// What is taken when no grid is named: the first density; else the only one that can be fog and is not called something
+// else, or is alone of class fog volume; null when there is none such.
+const VdbGridEntry* fog_of(const VdbDirectory& directory) {
     std::vector<const VdbGridEntry*> usable, fog;
-    bool unnamed = false;
     for (const VdbGridEntry& grid : directory.grids) {
         if (!obstacle(grid).empty()) continue;
-        if (names_another_quantity(grid.name)) {
-            unnamed = true;
-            continue;
-        }
+        if (grid.name == "density") return &grid;
+        if (names_another_quantity(grid.name)) continue;
         usable.push_back(&grid);
         if (grid.grid_class == "fog volume") fog.push_back(&grid);
     }
-    if (usable.size() == 1) return *usable.front();
-    if (fog.size() == 1) return *fog.front();
-    if (!usable.empty())
-        refuse(file.where, "several grids could be the fog, name one of " + listing(directory) + " as \"grid\"");
-    if (unnamed) refuse(file.where, "has no density" + another);
-    if (directory.grids.size() > 1) refuse(file.where, "none of its grids can be fog: " + listing(directory));
-    refuse(label(file, directory.grids.front()), obstacle(directory.grids.front()));
+    if (!grids_named(directory, "density").empty()) return nullptr;
+    if (usable.size() == 1) return usable.front();
+    return fog.size() == 1 ? fog.front() : nullptr;
+}
+
+[[noreturn]] void refuse_without_fog(const VdbDirectory& directory, const ByteCursor& file) {
+    const auto named = grids_named(directory, "density");
+    const bool one = directory.grids.size() == 1;
+    const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return obstacle(grid).empty(); });
+    const VdbGridEntry& first = named.empty() ? directory.grids.front() : *named.front();
+    if (any && one) refuse(label(file, first), "is not called a density; if it is the fog, name it as \"grid\"");
+    const std::string others = "; \"grid\" takes one of " + listing(directory);
+    if (one || !named.empty()) refuse(label(file, first), obstacle(first) + (any ? others : ""));
+    refuse(file.where, any ? "it is not clear which grid is the fog" + others
+                           : "none of its grids can be fog: " + listing(directory));
 }
 
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, const ByteCursor& file) {
-    if (wanted.empty()) return only_fog(directory, file);
+    if (wanted.empty()) {
+        if (const VdbGridEntry* fog = fog_of(directory)) return *fog;
+        refuse_without_fog(directory, file);
+    }
     const VdbGridEntry* grid = grid_called(directory, wanted);
     if (!grid) refuse(file.where, "has no grid \"" + printable(wanted, 60) + "\", it holds " + listing(directory));
     if (const std::string why = obstacle(*grid); !why.empty()) refuse(label(file, *grid), why);
@@ -164,7 +165,7 @@ template<class Body> auto within_memory(const std::filesystem::path& path, const
 VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid) {
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
-    info.why_not = obstacle(grid), info.usable = info.why_not.empty();
+    info.why_not = obstacle(grid), info.usable = info.why_not.empty(), info.is_fog = fog_of(directory) == &grid;
     info.index_to_world = grid.index_to_world;
     for (int axis = 0; axis < 3; ++axis)
         info.voxel_size[axis] = static_cast<float>(glm::length(dvec3(grid.index_to_world[axis])));

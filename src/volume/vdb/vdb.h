@@ -49,6 +49,7 @@ private:
 struct VdbGridInfo {
     std::string name, type, grid_class; // "density", "float", "fog volume"
     bool usable = false;                // can be rendered as fog
+    bool is_fog = false;                // is, where no grid is named
     std::string why_not;                // when it cannot
     dmat4 index_to_world{1};
     vec3 voxel_size{0};
