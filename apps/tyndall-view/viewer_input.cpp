@@ -33,6 +33,7 @@ void save(Viewer& viewer, const std::string& file) {
     job.camera = viewer.state.free ? "view" : viewer.state.camera;
     job.quality = viewer.state.quality, job.isa = viewer.options.isa;
     job.light_units = viewer.options.load.light_units, job.unsaved = unsaved_text(*viewer.state.session);
+    job.inputs = viewer.state.session->scene.inputs;
     viewer.thread.save(std::move(job));
     ++viewer.files_to_come;
 }

@@ -62,9 +62,9 @@ void check_outputs(const Options& texts, OutputPlaces& places) {
 // The scene's own files are not to be written over.
 void keep_inputs(const Options& texts, const Scene& scene) {
     for (const std::string& output : {texts.svg, texts.csv})
-        for (const std::filesystem::path& input : scene.inputs)
+        for (const InputFile& input : scene.inputs)
             if (!output.empty() &&
-                std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input))
+                std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input.path))
                 fail(ExitCode::usage, output, "this file belongs to the scene and would be written over");
 }
 

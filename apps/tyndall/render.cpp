@@ -40,7 +40,7 @@ Limitations limitations_of(const Scene& scene, const RenderRequest& request, con
 void say_limitations(const Scene& scene, const Limitations& limitations, const Globals& globals) {
     if (globals.quiet) return;
     if (globals.verbose)
-        for (const auto& input : scene.inputs) say("reads " + printable(input.string(), 460));
+        for (const auto& input : scene.inputs) say("reads " + printable(input.path.string(), 460));
     for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
     for (const LimitationGroup& group : groups_of(limitations))
         if (globals.verbose || group.worst.severity != Severity::info) say(line_of(group));

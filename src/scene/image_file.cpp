@@ -108,14 +108,12 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
     return image;
 }
 
-Image<vec3> read_picture(const std::filesystem::path& path, std::string_view where) {
-    const std::string bytes = read_file(path, uint64_t{1} << 30);
+Image<vec3> decode_picture(std::string_view bytes, std::string_view where) {
     if (image_format(bytes) == ImageFormat::radiance) {
         image_size(bytes, where);
         return decode_radiance(bytes, where);
     }
-    if (image_format(bytes) == ImageFormat::other)
-        refuse(where, "\"" + path.filename().string() + "\" is neither PNG, JPEG nor Radiance .hdr");
+    if (image_format(bytes) == ImageFormat::other) refuse(where, "the image is neither PNG, JPEG nor Radiance .hdr");
     const Image<vec4> texels = decode_texture(bytes, where);
     Image<vec3> image(texels.size);
     for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = vec3(texels.pixels[i]) * texels.pixels[i].w;

@@ -2,7 +2,6 @@
 #pragma once
 #include "base/image.h"
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -20,8 +19,8 @@ ivec2 image_size(std::string_view bytes, std::string_view where);
 // sRGB bytes to linear colour, alpha as it is. Throws Error (refused) naming `where`.
 Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 
-// A picture behind the scene: sRGB PNG or JPEG, or Radiance .hdr. Throws Error (refused, unreadable) naming `where`.
-Image<vec3> read_picture(const std::filesystem::path& path, std::string_view where);
+// A picture behind the scene: sRGB PNG or JPEG, or Radiance .hdr. Throws Error (refused) naming `where`.
+Image<vec3> decode_picture(std::string_view bytes, std::string_view where);
 
 // Half the size, each texel the mean of four (alpha-weighted colour); odd edges repeat their last texel.
 Image<vec4> halved(const Image<vec4>& image);

@@ -97,6 +97,12 @@ struct Billboard {
     float intensity = 1;
 };
 
+// A file that a scene was read from, as it was then.
+struct InputFile {
+    std::filesystem::path path;
+    std::string hash; // of its content
+};
+
 struct Scene {
     std::filesystem::path file;
     dvec3 origin{0}; // what all places count from, in the world: 0 unless the scene lies far out
@@ -116,8 +122,8 @@ struct Scene {
     std::vector<MediumSource> media;
     Background background;
     std::vector<Billboard> billboards;
-    std::vector<std::filesystem::path> inputs; // every file read, for hashes and reloading
-    std::vector<std::string> warnings;         // one line each, said once
+    std::vector<InputFile> inputs;     // every file read, for hashes and reloading
+    std::vector<std::string> warnings; // one line each, said once
 };
 
 // Reads a scene file, or a bare .gltf/.glb (framed by a default camera when it has none). Throws Error.

@@ -1,4 +1,5 @@
 #include "base/error.h"
+#include "base/io/file.h"
 #include "scene/image_file.h"
 #include "scene/images.h"
 #include "scene/mesh.h"
@@ -106,7 +107,7 @@ TEST(ImageFile, RadianceKeepsItsRange) {
     const Scratch folder;
     // RGBE: mantissa / 256 · 2^(exponent - 128).
     const auto file = folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
-    const Image<vec3> image = read_picture(file, "test");
+    const Image<vec3> image = decode_picture(read_file(file), "test");
     ASSERT_EQ(image.size, ivec2(2, 1));
     EXPECT_EQ(image.at(0, 0), vec3(8, 4, 0));
     EXPECT_EQ(image.at(1, 0), vec3(0));

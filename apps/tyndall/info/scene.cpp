@@ -73,7 +73,7 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
     const Totals totals = totals_of(scene);
     std::vector<std::string> cameras, inputs;
     for (const CameraSource& camera : scene.cameras) cameras.push_back(camera.name);
-    for (const auto& input : scene.inputs) inputs.push_back(input.string());
+    for (const auto& input : scene.inputs) inputs.push_back(input.path.string());
     return json_line({{"file", file.native()},
                       {"kind", kind},
                       {"frame_rate", scene.frame_rate},
@@ -145,7 +145,7 @@ std::string scene_report(const std::filesystem::path& file, bool json) {
         formatted("%s: scene, frames %d to %d at %g per second, %d x %d pixels\n", printable(file.string()).c_str(),
                   scene.first_frame, scene.last_frame, scene.frame_rate, scene.resolution.x, scene.resolution.y);
     text += content_text(scene);
-    for (const auto& input : scene.inputs) text += "  reads         " + printable(input.string()) + "\n";
+    for (const auto& input : scene.inputs) text += "  reads         " + printable(input.path.string()) + "\n";
     return text;
 }
 

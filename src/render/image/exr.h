@@ -53,6 +53,7 @@ struct ExrFile {
     std::vector<std::pair<std::string, Image<float>>> channels;
     std::map<std::string, std::string> attributes; // text attributes; others as text
     std::string compression;
+    bool is_unchanged = false; // every byte is as write_exr() wrote it; tyndall:check says what they were
     const Image<float>* channel(std::string_view name) const;
 };
 

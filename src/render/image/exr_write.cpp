@@ -120,6 +120,13 @@ std::vector<half> as_half(const Channel& channel, size_t count, uint64_t& clampe
     return result;
 }
 
+// Puts the file's hash where the header holds the place for it.
+void add_check(std::vector<std::byte>& file) {
+    const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
+    const std::string hash = content_hash(bytes);
+    std::memcpy(file.data() + bytes.find(before_check) + before_check.size(), hash.data(), hash.size());
+}
+
 std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,
                                const ExrOptions& options) {
     Image<float> depth = layers.depth;
@@ -153,6 +160,8 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
         header.insert("tyndall:lights", Imf::StringAttribute(names));
     }
 
+    header.insert(check_name, Imf::StringAttribute(std::string(no_check)));
+
     MemoryStream stream(file.c_str());
     {
         // Blocks of lines are packed at once; one thread means one.
@@ -162,6 +171,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
         output.setFrameBuffer(buffer);
         output.writePixels(layers.size.y);
     }
+    add_check(stream.data);
     return std::move(stream.data);
 }
 }

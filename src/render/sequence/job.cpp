@@ -45,7 +45,7 @@ void check_outputs(const Scene& scene, const RenderRequest& request) {
              "several frames need a place for the number, as in name.####.exr");
 
     std::set<std::filesystem::path> inputs, directories;
-    for (const std::filesystem::path& input : scene.inputs) inputs.insert(plain_path(input));
+    for (const InputFile& input : scene.inputs) inputs.insert(plain_path(input.path));
     for (const int frame : request.frames) {
         const std::string exr = frame_name(request.output, frame);
         std::vector<std::filesystem::path> outputs{exr};

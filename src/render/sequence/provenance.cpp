@@ -44,11 +44,10 @@ const std::string& file_hash(const std::filesystem::path& path, FileHashes& file
     return hash;
 }
 
-// The scene's own files; volumes count by frame.
-std::string scene_text(const Scene& scene, FileHashes& files) {
+// The scene's own files as they were when it was loaded; volumes count by frame.
+std::string scene_text(const Scene& scene) {
     std::string text;
-    for (const std::filesystem::path& input : scene.inputs)
-        if (input.extension() != ".vdb") text += "input=" + file_hash(input, files) + "\n";
+    for (const InputFile& input : scene.inputs) text += "input=" + input.hash + "\n";
     return text;
 }
 
@@ -137,6 +136,10 @@ std::string command_line(const RenderRequest& request) {
     return text;
 }
 
+void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
+    fog_text(scene, request, frame, files);
+}
+
 std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                        FileHashes& files) {
     const double seconds = moment_of(scene, view.frame).seconds;
@@ -144,7 +147,7 @@ std::string frame_hash(const Scene& scene, const RenderRequest& request, const R
         "version=" TYNDALL_VERSION "\n" + command_text(request, plan, view) + "\n" + settings_text(plan.settings);
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
     text += request.exr.full_float ? "float\n" : "half\n";
-    text += scene_text(scene, files) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
+    text += scene_text(scene) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
     if (!request.unsaved.empty()) text += "edits=" + request.unsaved + "\n";
     return content_hash(text);
 }

@@ -14,6 +14,9 @@ struct FileHashes {
     std::map<std::filesystem::path, std::string> known;
 };
 
+// Hashes the volumes of a frame's media. Throws Error (unreadable).
+void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files);
+
 // One hash over everything the pixels and header of a frame depend on: contents of the scene's files and of the frame's
 // fog, the lights as loaded, mode, settings, size, crop, camera, seed, layers, instruction set and program version.
 // Directories do not count. Throws Error (unreadable).

@@ -20,6 +20,7 @@ std::string difference(const ExrFile& exr, const WantedFrame& wanted) {
     if (exr.display != wanted.display || exr.low != wanted.low || exr.size != wanted.size) return "its size differs";
     if (names_of(exr) != wanted.channels) return "its layers differ";
     if (hash->second != wanted.hash) return "scene, fog or settings have changed";
+    if (!exr.is_unchanged) return "its bytes are not those that were written";
     return {};
 }
 }

@@ -45,11 +45,11 @@ struct Pipeline {
     Progress& progress;
     std::atomic<bool>& cancel;
     std::vector<std::string> channels; // of every file
-    FileHashes files;
-    LoadedFrame first; // of the sequence, until it is taken
-    size_t next = 0;   // index of the first frame not yet looked at
-    RenderReport report;
-    std::mutex reporting;         // held to change the report
+    LoadedFrame first;                 // of the sequence, until it is taken
+    FileHashes files = std::move(first.files);
+    size_t next = 0; // index of the first frame not yet looked at
+    RenderReport report{};
+    std::mutex reporting{};       // held to change the report
     std::atomic<int> settled = 0; // frames rendered or kept
     int rendered = 0;             // frames
 };
@@ -117,7 +117,7 @@ LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     if (!previous) previous = &first.snapshot;
     Snapshot snapshot =
         make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.request.missing);
-    return {std::move(snapshot), steady_seconds() - start};
+    return {std::move(snapshot), steady_seconds() - start, {}};
 }
 
 void report_frame(Pipeline& pipeline, const Work& work) {
@@ -312,8 +312,10 @@ uint64_t peak_memory() {
 LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous) {
     const double start = steady_seconds();
     flush_denormals();
+    FileHashes files;
+    hash_fog(scene, request, request.frames[0], files);
     Snapshot snapshot = make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing);
-    return {std::move(snapshot), steady_seconds() - start};
+    return {std::move(snapshot), steady_seconds() - start, std::move(files)};
 }
 
 RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
@@ -324,12 +326,13 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
 
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);
-    Pipeline pipeline{scene,  request,
-                      plan,   progress,
-                      cancel, channel_names(lights, request.exr),
-                      {},     first ? std::move(*first) : LoadedFrame{},
-                      0,      {},
-                      {}};
+    Pipeline pipeline{scene,
+                      request,
+                      plan,
+                      progress,
+                      cancel,
+                      channel_names(lights, request.exr),
+                      first ? std::move(*first) : LoadedFrame{}};
     run(pipeline);
 
     RenderReport& report = pipeline.report;

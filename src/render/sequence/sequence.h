@@ -4,6 +4,7 @@
 #include "modes/limitation.h"
 #include "render/frame/layers.h"
 #include "render/sequence/job.h"
+#include "render/sequence/provenance.h"
 #include "trace/snapshot.h"
 
 #include <atomic>
@@ -15,6 +16,7 @@ namespace tyndall {
 struct LoadedFrame {
     Snapshot snapshot;
     double seconds = 0; // it took
+    FileHashes files;   // of its fog, before that was read
 };
 
 // Loads the first frame asked for, to look at it before the others. What stands still is shared with `previous`, when

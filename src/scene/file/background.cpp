@@ -1,15 +1,19 @@
 // What is behind everything.
+#include "base/io/file.h"
 #include "scene/file/scene_file.h"
 #include "scene/image_file.h"
 
 namespace tyndall {
 namespace {
+constexpr uint64_t largest_file = uint64_t{1} << 30;
+
 void read_image(const Field& field, Background& background, Scene& scene) {
     const Field image = field.member("image");
     const std::filesystem::path path = named_file(image, scene);
     background.kind = BackgroundKind::image;
-    background.image = std::make_shared<Image<vec3>>(read_picture(path, image.place()));
-    add_input(scene, path);
+    const std::string bytes = read_file(path, largest_file);
+    add_input(scene, path, bytes);
+    background.image = std::make_shared<Image<vec3>>(decode_picture(bytes, image.place()));
     background.lat_long = field.json->string_or("projection", "plate") == "lat_long";
     if (const Field intensity = field.member("intensity")) background.intensity = keyed_number(intensity);
     if (const Field rotation = field.member("rotation")) background.rotation = read_degrees(rotation);

@@ -1,5 +1,6 @@
 // Fog of a scene file.
 #include "base/error.h"
+#include "base/io/file.h"
 #include "scene/file/scene_file.h"
 #include "volume/vdb/vdb.h"
 
@@ -62,8 +63,8 @@ void read_optics(const Field& field, MediumSource& medium) {
 void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
     const Field recipe = field.member("recipe");
     const std::filesystem::path path = named_file(recipe, scene);
+    add_input(scene, path, read_file(path)); // before it is read: a change in between cannot keep old frames
     medium.recipe = read_recipe(path);
-    add_input(scene, path);
     medium.extinction = medium.recipe->extinction;
     medium.albedo = medium.recipe->albedo;
     medium.g = medium.recipe->g;

@@ -104,8 +104,9 @@ void warn(Scene& scene, std::string_view text) {
         scene.warnings.push_back(line);
 }
 
-void add_input(Scene& scene, const std::filesystem::path& path) {
-    if (std::find(scene.inputs.begin(), scene.inputs.end(), path) == scene.inputs.end()) scene.inputs.push_back(path);
+void add_input(Scene& scene, const std::filesystem::path& path, std::string_view content) {
+    if (std::ranges::find(scene.inputs, path, &InputFile::path) == scene.inputs.end())
+        scene.inputs.push_back({path, content_hash(content)});
 }
 
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
@@ -121,12 +122,13 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
         scene.origin = far_origin({}, scene);
         add_missing_light_and_fog(scene);
     } else {
-        const Json document = parse_json(read_file(file), file.string());
+        const std::string text = read_file(file);
+        const Json document = parse_json(text, file.string());
         if (document.has("bounds") && document.has("voxel_size"))
             refuse(file.string(),
                    "is a fog recipe, not a scene; name it as \"recipe\" in the \"media\" of a scene file");
         check_schema(document, scene_schema, file.string());
-        add_input(scene, scene.file);
+        add_input(scene, scene.file, text);
         read_scene_document(document, scene, options);
     }
     add_missing_camera(scene);

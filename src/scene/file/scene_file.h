@@ -22,6 +22,6 @@ std::filesystem::path named_file(const Field& field, const Scene& scene);
 // Runs `read` on a file that `field` names; its errors then name the field as well.
 void with_place(const Field& field, const std::function<void()>& read);
 
-void warn(Scene& scene, std::string_view text); // one line, said once
-void add_input(Scene& scene, const std::filesystem::path& path);
+void warn(Scene& scene, std::string_view text);                                            // one line, said once
+void add_input(Scene& scene, const std::filesystem::path& path, std::string_view content); // each file once
 }

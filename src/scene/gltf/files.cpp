@@ -132,7 +132,7 @@ std::string gltf_uri_bytes(GltfDocument& document, const std::string& uri, const
     std::string bytes;
     const Field field{nullptr, document.file, pointer};
     with_place(field, [&] { bytes = read_file(path, most); });
-    add_input(*document.scene, path);
+    add_input(*document.scene, path, bytes);
     return bytes;
 }
 

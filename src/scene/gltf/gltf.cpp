@@ -23,10 +23,10 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
     document.path = file, document.file = file.string();
     document.directory = file.has_parent_path() ? file.parent_path() : ".";
     document.scene = &scene, document.options = options;
-    add_input(scene, file);
     {
         // The text and its tree are gone before the meshes are made.
         const GltfContainer container = read_gltf_container(file);
+        add_input(scene, file, container.bytes);
         for (const std::string& warning : container.warnings) document.warn("", warning);
         const Json json = parse_json(container.json, document.file);
         check_gltf_shape(json, document.file);

@@ -13,7 +13,8 @@ std::optional<InputTime> time_of(const std::filesystem::path& file) {
 }
 
 std::vector<InputTime> input_times(const Scene& scene) {
-    std::vector<std::filesystem::path> files = scene.inputs;
+    std::vector<std::filesystem::path> files;
+    for (const InputFile& input : scene.inputs) files.push_back(input.path);
     for (const MediumSource& medium : scene.media) {
         if (medium.kind != MediumKind::vdb) continue;
         if (medium.sequence.files.empty()) files.push_back(medium.sequence.pattern);

@@ -119,6 +119,8 @@ void add_to(std::vector<Edit>& edits, const Edit& edit) {
 }
 
 void note_saved(SceneSession& session, std::string text) {
+    for (InputFile& input : session.scene.inputs)
+        if (input.path == session.scene.file) input.hash = content_hash(text);
     session.on_disk = std::move(text);
     session.saved = session.kept = session.done;
     if (session.done > 0) session.steps[session.done - 1].drag = 0;
@@ -201,10 +203,10 @@ void save_as(SceneSession& session, const std::filesystem::path& file) {
     };
     std::string base = moved_text(session.text, folder(old), folder(file));
     std::string text = edited_text(base, session.scene, edits_in_force(session));
-    std::vector<std::filesystem::path> inputs = session.scene.inputs;
-    if (session.has_file) std::erase(inputs, old);
-    std::erase(inputs, file);
-    inputs.insert(inputs.begin(), file);
+    std::vector<InputFile> inputs = session.scene.inputs;
+    std::erase_if(
+        inputs, [&](const InputFile& input) { return input.path == file || (session.has_file && input.path == old); });
+    inputs.insert(inputs.begin(), {file, {}});
 
     write_file_atomically(file, std::string_view(text));
     session.scene.file = file, session.scene.inputs = std::move(inputs);

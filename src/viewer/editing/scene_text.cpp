@@ -185,7 +185,8 @@ std::string new_volume_text(const std::filesystem::path& vdb) {
     const VdbGridInfo* fog = nullptr;
     for (const VdbGridInfo& grid : info.grids)
         if (grid.is_fog) fog = &grid;
-    if (!fog) refuse(vdb.string(), "it is not clear which of its grids is the fog; name one as \"grid\" in a scene file");
+    if (!fog)
+        refuse(vdb.string(), "it is not clear which of its grids is the fog; name one as \"grid\" in a scene file");
 
     // Framed and lit as a box of its size would be.
     const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};

@@ -25,6 +25,7 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     render.png = kind == ".png";
     const RenderPlan plan = plan_as_asked(render);
     stage(request);
+    if (!job.inputs.empty()) request.scene->inputs = job.inputs;
     const View view = view_of(request);
     check_job(*request.scene, render, *plan.mode);
     render.camera = job.camera;

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/error.h"
 #include "scene/load_options.h"
+#include "scene/scene.h"
 #include "viewer/painting/request.h"
 
 #include <atomic>
@@ -19,7 +20,8 @@ struct SaveJob {
     Quality quality = Quality::preview;
     std::string isa;
     LightUnits light_units = LightUnits::spec;
-    std::string unsaved; // edits that the scene's files do not have; noted in the header
+    std::vector<InputFile> inputs; // the scene's files as they are now, which saving changes; empty = as it was loaded
+    std::string unsaved;           // edits that the scene's files do not have; noted in the header
 };
 
 struct Saved {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
 
 namespace tyndall::test {
@@ -112,7 +113,7 @@ TEST(ExrForeign, RefusesClaimsBeforeBelievingThem) {
     expect_refused(with([](auto& f) { f.data = box(0, 0, 3, 3) + "x"; }), "wrong size");
     expect_refused(with([](auto& f) { put_attribute(f.extra, "dataWindow", "box2i", box(0, 0, 1, 1)); }), "twice");
     expect_refused(with([](auto& f) { put_name(f.extra, "a"), put_name(f.extra, "string"), put(f.extra, INT32_MAX); }),
-                   "ends inside its header");
+                   "ends early");
     expect_refused(with([](auto& f) { put_name(f.extra, "a"), put_name(f.extra, "string"), put(f.extra, -1); }),
                    "negative size");
     expect_refused(with([](auto& f) { put_name(f.extra, std::string(300, 'a')); }), "name without an end");
@@ -120,6 +121,46 @@ TEST(ExrForeign, RefusesClaimsBeforeBelievingThem) {
                        for (int i = 0; i < 5000; ++i) put_attribute(f.extra, "a" + std::to_string(i), "string", "");
                    }),
                    "4096");
+}
+
+// The library would fill such gaps with what memory happens to hold.
+TEST(ExrForeign, RefusesBlocksThatAreNotWholeOrNotWhereTheyBelong) {
+    const std::string whole = HandMade{}.with_pixels();
+    const size_t table = HandMade{}.bytes().size(), blocks = table + 32;
+    const auto with = [&](size_t place, uint64_t value, size_t bytes) {
+        std::string file = whole;
+        std::memcpy(file.data() + place, &value, bytes);
+        return file;
+    };
+    for (size_t line = 0; line < 4; ++line) {
+        expect_refused(with(table + 8 * line, 0, 8), "damaged"); // reads the header as a block
+        expect_refused(with(table + 8 * line, UINT64_MAX, 8), "missing");
+        expect_refused(with(table + 8 * line, blocks + 16 * ((line + 1) % 4), 8), "damaged"); // another line
+        for (const uint64_t size : {0u, 7u, 9u, 0x7fffffffu, 0x80000000u})
+            expect_refused(with(blocks + 16 * line + 4, size, 4), "damaged");
+        expect_refused(with(blocks + 16 * line, line + 4, 4), "damaged");
+    }
+    expect_refused(whole.substr(0, whole.size() - 1), "damaged");
+}
+
+TEST(ExrForeign, RefusesPackedBlocksThatHoldTooLittle) {
+    const auto packed = [](int compression, const std::string& block) {
+        HandMade file;
+        file.data = file.display = box(0, 0, 7, 0), file.compression = std::string(1, static_cast<char>(compression));
+        std::string result = file.bytes();
+        const uint64_t offset = result.size() + 8;
+        result.append(reinterpret_cast<const char*>(&offset), 8);
+        put(result, 0), put(result, static_cast<int32_t>(block.size()));
+        return result + block;
+    };
+    const Scratch directory;
+    std::ofstream(directory.file("x.exr"), std::ios::binary) << packed(1, {15, 0}); // sixteen bytes
+    EXPECT_EQ(read_exr(directory.file("x.exr")).channel("R")->pixels.size(), 8u);
+    expect_refused(packed(1, {14, 0}), "damaged");
+    expect_refused(packed(1, {16, 0}), "damaged");
+    expect_refused(packed(1, {-7, 0, 0}), "damaged");
+    expect_refused(packed(2, "\x78\x9c"), "damaged");
+    expect_refused(packed(3, std::string("\x78\x9c\x03\0\0\0\0\x01", 8)), "damaged"); // of no bytes, or cut
 }
 
 TEST(ExrForeign, ReadsOrRefusesTheValidCollection) {

@@ -11,7 +11,7 @@ Scene moving_scene(const Scratch& directory) {
     Scene scene;
     scene.file = directory.file("scene.json");
     std::ofstream(scene.file) << "{}";
-    scene.inputs = {scene.file};
+    scene.inputs = {{scene.file, content_hash("{}")}};
     scene.resolution = {40, 30};
     CameraSource camera;
     camera.name = "main";

@@ -25,7 +25,7 @@ Scene small_scene(const Scratch& directory, Moves moves) {
     Scene scene;
     scene.file = directory.file("scene.json");
     std::ofstream(scene.file) << "{}";
-    scene.inputs = {scene.file};
+    scene.inputs = {{scene.file, content_hash("{}")}};
     scene.resolution = {24, 16};
     scene.frame_rate = 4;
     CameraSource camera;

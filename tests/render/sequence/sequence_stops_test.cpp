@@ -140,8 +140,8 @@ TEST(Sequence, NeverWritesOverItsOwnScene) {
     Scene scene = moving_scene(in);
     std::ofstream(in.file("sky.exr")) << "sky";
     std::ofstream(in.file("wall.png")) << "wall";
-    scene.inputs.push_back(in.path() / "." / "sky.exr");
-    scene.inputs.push_back(in.file("wall.png"));
+    scene.inputs.push_back({in.path() / "." / "sky.exr", "sky"});
+    scene.inputs.push_back({in.file("wall.png"), "wall"});
     error_text(ExitCode::usage, [&] { run(scene, job_for(scene, in.file("sky.exr"), {1})); });
     RenderRequest job = job_for(scene, in.file("wall.exr"), {1});
     job.png = true;

@@ -1,3 +1,4 @@
+#include "base/io/file.h"
 #include "scene/images.h"
 #include "support/gltf_builder.h"
 #include "support/load_answer.h"
@@ -27,7 +28,8 @@ TEST(SceneFile, TheLeastThatIsAScene) {
     EXPECT_TRUE(has_warning(scene, "no light"));
     EXPECT_FALSE(has_warning(loaded(folder, R"({"tyndall": 1, "ambient": 1})"), "no light"));
     ASSERT_EQ(scene.inputs.size(), 1u);
-    EXPECT_EQ(scene.inputs[0], folder / "scene.json");
+    EXPECT_EQ(scene.inputs[0].path, folder / "scene.json");
+    EXPECT_EQ(scene.inputs[0].hash, content_hash(R"({"tyndall": 1})"));
 }
 
 TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
@@ -39,7 +41,8 @@ TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
     EXPECT_THROW(load_scene_text(R"({"tyndall": 2})", folder / "no.json"), Error);
     const Scene scene = load_scene_text(text, folder / "no.json"), other = loaded(folder, text);
     EXPECT_EQ(scene.file, folder / "no.json");
-    EXPECT_EQ(scene.inputs, std::vector{folder / "fog/dust.json"});
+    ASSERT_EQ(scene.inputs.size(), 1u);
+    EXPECT_EQ(scene.inputs[0].path, folder / "fog/dust.json");
     EXPECT_EQ(scene.warnings.size(), other.warnings.size());
     EXPECT_EQ(scene.lights[0].entry, "/lights/0");
     EXPECT_EQ(scene.media[0].entry, "/media/0");

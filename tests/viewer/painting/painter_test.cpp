@@ -1,3 +1,4 @@
+#include "base/io/file.h"
 #include "base/io/progress.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
@@ -185,7 +186,7 @@ TEST(SavePicture, FilesAreThoseOfRender) {
     const std::filesystem::path file = directory.path() / "scene.json";
     std::ofstream(file) << "{}";
     Scene copy = *small_scene(file);
-    copy.inputs = {file};
+    copy.inputs = {{file, content_hash("{}")}};
     const auto scene = std::make_shared<Scene>(copy);
     for (const char* mode : {"march", "froxel", "path"}) {
         SaveJob save;
@@ -211,13 +212,13 @@ TEST(SavePicture, FilesAreThoseOfRender) {
 TEST(SavePicture, RefusesOtherKindsAndTheScenesOwnFiles) {
     Scratch directory;
     Scene copy = *small_scene();
-    copy.inputs = {directory.path() / "plate.png"};
-    std::ofstream(copy.inputs[0]) << "x";
+    copy.inputs = {{directory.path() / "plate.png", "x"}};
+    std::ofstream(copy.inputs[0].path) << "x";
     SaveJob save;
     save.request = request_for(std::make_shared<Scene>(copy));
     save.file = directory.path() / "a.jpg";
     error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
-    save.file = copy.inputs[0];
+    save.file = copy.inputs[0].path;
     error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
     save.file = "/proc/nowhere/a.exr";
     error_text(ExitCode::unwritable, [&] { save_picture(save, nullptr, never, {}); });

@@ -253,7 +253,8 @@ TEST(VdbRead, AnotherQuantityIsTakenByNameOnly) {
         EXPECT_EQ(read(bytes, "temperature").report.grid, "temperature");
     }
     for (const char* name : {"temperature", "Heat", "flames", "vel.x"})
-        EXPECT_THAT(refusal(authored({small(name)})).what(), HasSubstr("is not called a density; if it is the fog, name it as \"grid\""));
+        EXPECT_THAT(refusal(authored({small(name)})).what(),
+                    HasSubstr("is not called a density; if it is the fog, name it as \"grid\""));
 }
 
 TEST(VdbRead, WhatIsNoDensityIsRefused) {
