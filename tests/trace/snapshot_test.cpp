@@ -194,7 +194,8 @@ TEST(Snapshot, VolumesWithZUpStandUpright) {
     scene.media = {file_source(file)};
     scene.media[0].z_up = true;
     scene.media[0].scale = vec3(2), scene.media[0].translation = vec3(100, 0, 0);
-    const Medium& column = make_snapshot(scene, {}).media.at(0);
+    const Snapshot snapshot = make_snapshot(scene, {});
+    const Medium& column = snapshot.media.at(0);
     expect_near(column.world_bounds.low, vec3(98, -2, -32), 1e-3f);
     expect_near(column.world_bounds.high, vec3(132, 32, 2), 1e-3f);
     EXPECT_EQ(density_at(column, {115, 4, -24}), 1);
