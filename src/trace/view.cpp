@@ -29,8 +29,13 @@ int samples_of(const View& view, ivec2 pixel) {
     return view.pixel_samples * std::max(lamp_factor(view, tile), view.edges ? view.edges->at(tile) : 1);
 }
 
+int batches_of(const View& view, ivec2 pixel) {
+    const int factor = view.allotted ? view.allotted->at(pixel / tile_side) : 1;
+    return view.batches * (factor >= many_allotted && factor % more_batches == 0 ? more_batches : 1);
+}
+
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
-    const int size = samples_of(view, pixel) / view.batches, batch = sample / size;
+    const int size = samples_of(view, pixel) / batches_of(view, pixel), batch = sample / size;
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
     return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};

@@ -56,6 +56,10 @@ struct View {
 // of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
 
+// Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
+inline constexpr int many_allotted = 32, more_batches = 8; // from that factor on, if it is a multiple
+int batches_of(const View& view, ivec2 pixel);
+
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
 
 // Where a sample lies and how much its light counts: 1 on the average.

@@ -100,7 +100,9 @@ Allotment allot(const Layers& layers, double taken, const Enough& enough, double
 
 AllottedPart part_of(const Allotment& allotment, double from, double to, int unit) {
     const auto units = [&](double scale, float samples) {
-        return scale > 0 ? std::clamp(std::ceil(scale * samples / unit), 1.0, 1.0 * max_tile_samples - 1) : 0.0;
+        if (!(scale > 0)) return 0.0;
+        const double wanted = scale * samples / unit, step = wanted >= many_allotted ? more_batches : 1;
+        return std::clamp(std::ceil(wanted / step) * step, 1.0, 1.0 * max_tile_samples - more_batches);
     };
     auto factors = std::make_shared<TileFactors>();
     AllottedPart part{nullptr, {allotment.low, Image<float>(allotment.samples.size)}};

@@ -32,7 +32,7 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     path.seed = hash(index, view.frame, view.seed);
     path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
     path.place = sample_place(view, pixel, sample);
-    path.samples = static_cast<uint32_t>(samples_of(view, pixel) / view.batches);
+    path.samples = static_cast<uint32_t>(samples_of(view, pixel) / batches_of(view, pixel));
     if (const uint32_t batch = static_cast<uint32_t>(sample) / path.samples) {
         path.seed = hash(path.seed, batch);
         path.shift += hash(path.seed, use_jitter);

@@ -94,7 +94,7 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
     if (!wanted) return;
 
     const size_t part_count = task.parts.size();
-    const int sample_count = samples_of(view, corner), batch_size = sample_count / view.batches;
+    const int sample_count = samples_of(view, corner), batch_size = sample_count / batches_of(view, corner);
     if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
     PixelSum sums[16];
     PixelSample samples[16];
