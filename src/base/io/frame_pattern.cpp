@@ -1,8 +1,9 @@
-// Numbered file names: one token of the spellings of Blender, printf and Houdini.
+// Numbered file names: one token of the spellings of Blender, printf, Houdini, RV and husk.
 #include "base/io/frames.h"
 
 #include "base/error.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 
@@ -37,6 +38,23 @@ Token hash_token(std::string_view pattern, size_t start) {
     return {start, end - start, end - start == 1 ? 4 : end - start};
 }
 
+// @@@@ is as many digits as marks; a single @ is part of a name.
+std::optional<Token> at_token(std::string_view pattern, size_t start) {
+    const size_t end = std::min(pattern.find_first_not_of('@', start), pattern.size());
+    if (end - start == 1) return {};
+    return Token{start, end - start, end - start};
+}
+
+// <F> or <F4>; anything else in angle brackets is left as it stands.
+std::optional<Token> angle_token(std::string_view pattern, size_t start) {
+    if (pattern.substr(start, 2) != "<F") return {};
+    size_t at = start + 2;
+    const size_t first = at, digits = width(pattern, at);
+    if (at >= pattern.size() || pattern[at] != '>') return {};
+    if (at > first && digits == 0) complain(pattern, start, "<F> takes a width from 1 to 12");
+    return Token{start, at + 1 - start, at == first ? 1 : digits};
+}
+
 // %d or %04d; nothing else that printf might understand.
 Token percent_token(std::string_view pattern, size_t start) {
     size_t at = start + 1;
@@ -64,6 +82,8 @@ std::optional<Token> find_token(std::string_view pattern) {
         if (pattern[at] == '#') token = hash_token(pattern, at);
         if (pattern[at] == '%') token = percent_token(pattern, at);
         if (pattern[at] == '$') token = dollar_token(pattern, at);
+        if (pattern[at] == '@') token = at_token(pattern, at);
+        if (pattern[at] == '<') token = angle_token(pattern, at);
         at += token ? token->length : 1;
         if (!token) continue;
         if (token->digits > max_digits) complain(pattern, token->start, "a frame number takes at most 12 digits");

@@ -10,7 +10,7 @@ enum class SequenceMode { hold, loop, ping_pong, clip }; // before the first and
 enum class MissingFrame { error, hold, skip };           // a gap inside: stop · use the nearest earlier · no fog
 
 struct VdbSequence {
-    std::string pattern; // a file, or a name with a frame token (####, %04d, $F4)
+    std::string pattern; // a file, or a name with a frame token (####, %04d, $F4, @@@@, <F4>)
     std::string grid;    // empty = the usable one
     SequenceMode mode = SequenceMode::hold;
     int offset = 0;         // file frame = scene frame + offset

@@ -158,6 +158,10 @@ TEST(FramePattern, EverySpelling) {
     EXPECT_EQ(frame_name("a.$F4.exr", 12), "a.0012.exr");
     EXPECT_EQ(frame_name("$F4", 1), "0001");
     EXPECT_EQ(frame_name("##/a.exr", 3), "03/a.exr");
+    EXPECT_EQ(frame_name("a.@@@@.exr", 12), "a.0012.exr");
+    EXPECT_EQ(frame_name("me@home/a.@@.exr", 12), "me@home/a.12.exr");
+    EXPECT_EQ(frame_name("a.<F4>.exr", 12), "a.0012.exr");
+    EXPECT_EQ(frame_name("<F>.exr", 12), "12.exr");
 }
 
 TEST(FramePattern, SignsAndLongNumbersAreKept) {
@@ -169,7 +173,8 @@ TEST(FramePattern, SignsAndLongNumbersAreKept) {
 }
 
 TEST(FramePattern, WithoutAToken) {
-    for (const char* pattern : {"a.exr", "", "a@.exr", "$HOME/a.exr", "$FPS.exr", "$Fold.exr", "$"}) {
+    for (const char* pattern :
+         {"a.exr", "", "a@.exr", "$HOME/a.exr", "$FPS.exr", "$Fold.exr", "$", "<UDIM>", "<F4", "<Fx>", "a<"}) {
         EXPECT_FALSE(has_frame_token(pattern)) << pattern;
         EXPECT_EQ(frame_name(pattern, 5), pattern);
     }
@@ -182,13 +187,14 @@ TEST(FramePattern, AnythingThatPrintfMightTakeOtherwiseIsRefused) {
                                 "%04", "%1$d", "%*d", "50% fog.exr"})
         EXPECT_THAT(error_text(ExitCode::usage, [&] { has_frame_token(pattern); }), HasSubstr("only %d and %04d"))
             << pattern;
-    for (const char* pattern : {"####.##", "%04d.####", "$F.$F", "$F4_%d", "#/#"})
+    for (const char* pattern : {"####.##", "%04d.####", "$F.$F", "$F4_%d", "#/#", "@@.@@", "<F>#"})
         EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("a second place"))
             << pattern;
-    for (const char* pattern : {"#############", "%013d", "$F13", "%099999999999999999999d"})
+    for (const char* pattern : {"#############", "%013d", "$F13", "@@@@@@@@@@@@@", "<F13>", "%099999999999999999999d"})
         EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("at most 12 digits"))
             << pattern;
     EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("$F0", 1); }), HasSubstr("width from 1 to 12"));
+    EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("<F0>", 1); }), HasSubstr("width from 1 to 12"));
     EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("abc%s", 1); }), HasSubstr("column 4"));
 }
 }
