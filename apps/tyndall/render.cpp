@@ -80,6 +80,10 @@ void say_summary(const RenderReport& report, const RenderRequest& request) {
     if (rendered > 0) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
     if (kept > 0) line += formatted(", %d kept", kept);
     say(line + ", " + printable(request.output));
+}
+
+// Where the pictures are, or how to get some that any program shows.
+void say_look(const RenderRequest& request) {
     const std::string first = request.frames.empty() ? request.output : frame_name(request.output, request.frames[0]);
     if (request.png)
         say("look: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
@@ -233,6 +237,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
         stop_if_cancelled();
     }
     if (several) write_sheets(scene, all, texts, globals);
+    if (!several && !globals.quiet) say_look(all[0].request);
     if (globals.json) print_report((several ? "[" + reports + "]" : reports) + "\n");
     return outcome(all, requests[0].scene_file.string());
 }

@@ -5,6 +5,7 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace tyndall {
 namespace {
@@ -62,6 +63,13 @@ std::string where_of(const LimitationGroup& group) {
     return std::to_string(group.names.size()) + " " + plural_of(group.worst.subject) + " (" + joined(names, ", ") + ")";
 }
 
+// Two digits that count, without an exponent: 0.012, 3.4, 160.
+std::string amount_text(double amount) {
+    if (!(std::abs(amount) >= 99.5 && std::abs(amount) < 1e12)) return formatted("%.2g", amount);
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(amount))) - 1);
+    return formatted("%.0f", std::round(amount / unit) * unit);
+}
+
 std::string sentence_of(const Limitation& limitation) {
     std::string text;
     size_t used = 0;
@@ -70,7 +78,9 @@ std::string sentence_of(const Limitation& limitation) {
         text += rest.substr(0, open);
         rest.remove_prefix(open);
         if (rest.empty()) break;
-        text += formatted(rest.starts_with("{n}") ? "%.0f" : "%.2g", limitation.amounts.at(used++));
+        text += rest.starts_with("{n}") ? formatted("%.0f", limitation.amounts.at(used))
+                                        : amount_text(limitation.amounts.at(used));
+        ++used;
         rest.remove_prefix(rest.find('}') + 1);
     }
     return text;

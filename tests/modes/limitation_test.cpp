@@ -27,6 +27,19 @@ TEST(Limitations, AlikeAreOneGroupWithTheWorstNumbers) {
     EXPECT_EQ(line_of(groups[2]), "wrong: 2 media (dust, smoke): is dark");
 }
 
+TEST(Limitations, AmountsHaveTwoDigitsAndNoExponent) {
+    const auto said = [](double amount) {
+        Limitations one;
+        one.push_back({Severity::info, &blurred, Subject::light, "z", {amount, 1}});
+        return line_of(groups_of(one)[0]);
+    };
+    EXPECT_EQ(said(0.01234), "info: light z: blurred over 0.012 m in 1 places");
+    EXPECT_EQ(said(99.4), "info: light z: blurred over 99 m in 1 places");
+    EXPECT_EQ(said(99.6), "info: light z: blurred over 100 m in 1 places");
+    EXPECT_EQ(said(163), "info: light z: blurred over 160 m in 1 places");
+    EXPECT_EQ(said(-123456), "info: light z: blurred over -120000 m in 1 places");
+}
+
 TEST(Limitations, WhereIsWordAndName) {
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::medium, "medium 1"}), "medium 1");
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::medium, "mediumistic"}), "medium mediumistic");
