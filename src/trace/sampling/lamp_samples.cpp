@@ -95,7 +95,7 @@ std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
 }
 
 bool beside_lamp(const View& view, vec2 center) {
-    const float reach = 2 * view.filter_radius + 1;
+    const float reach = view.filter_radius;
     return std::ranges::any_of(view.lamps, [&](const View::Lamp& lamp) {
         return lamp.radius < reach && glm::distance(lamp.at, center) < reach + lamp.radius;
     });

@@ -9,7 +9,8 @@ struct Snapshot;
 // Local lights whose glow shows in the picture; none where it does not matter where in a pixel samples lie.
 std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot);
 
-// Whether the glow of a lamp changes much within the pixel around `center`.
+// Whether a lamp that is smaller than a pixel lies within the filter around `center`. Elsewhere the glow changes
+// little, and the even samples of the filter are better: the error at edges falls faster with them.
 bool beside_lamp(const View& view, vec2 center);
 
 // Sampled by the filter times the brightness of the glow, with the weight that keeps means: one of many candidates, of
