@@ -52,9 +52,12 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
     if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was
     progress.finish();
-    RenderPlan result{plan.chosen.mode, plan.settings, plan.certificate(),
+    RenderPlan result{plan.chosen.mode,
+                      plan.settings,
+                      plan.certificate(),
                       std::make_shared<const Choice>(plan.chosen.choice),
-                      std::make_shared<const Settings>(request.settings)};
+                      std::make_shared<const Settings>(request.settings),
+                      plan.chosen.mode == &main_mode() ? plan.orders : std::nullopt};
     if (globals.quiet) return result;
     say("plan: " + printable(result.certificate, 460));
     if (globals.verbose) say(plan_text(plan));

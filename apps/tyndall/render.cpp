@@ -8,6 +8,7 @@
 #include "common.h"
 #include "modes/limitation.h"
 #include "modes/mode.h"
+#include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/contact_sheet.h"
 #include "render/sequence/sequence.h"
@@ -34,6 +35,15 @@ Limitations limitations_of(const Scene& scene, const RenderRequest& request, con
     view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
     view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     return plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
+}
+
+// How far multiple scattering is off, where an image is not rendered to a goal, which counts it.
+void add_orders(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const Snapshot& snapshot,
+                Limitations& limitations) {
+    if (has_goal(request) || !takes_fluence(*plan.mode, plan.settings)) return;
+    const View view = view_of(scene, request, plan.settings, request.frames[0]);
+    const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
+    limitations.push_back(limitation_of(orders_error(*plan.mode, view, snapshot, plan.settings, 0, options)));
 }
 
 // What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
@@ -122,6 +132,8 @@ Rendered render_frames(const Scene& scene, const RenderRequest& request, const R
     shared = request.frames.size() == 1 ? first.snapshot : Snapshot{};
     shared.cache = nullptr; // the time that a mode takes must not depend on the one before it
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
+    if (!globals.quiet || globals.json || !json.empty())
+        add_orders(scene, request, result.plan, first.snapshot, limitations);
     say_before(scene, limitations, texts, result, globals);
 
     Progress progress(globals.progress, label, static_cast<double>(request.frames.size()), globals.json);

@@ -217,9 +217,6 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     if (!texts.history.empty() && has_goal(request))
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
-    if (has_goal(request) && mode.adds_fluence && request.settings.fluence.orders > 1 && texts.mode != automatic)
-        fail(ExitCode::usage, request.time_budget > 0 ? "--time-budget" : "--target-error",
-             request.mode + " measures its error for --orders 1 only; --mode path does for all");
     if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     request.camera = texts.camera;
     if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);

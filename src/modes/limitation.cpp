@@ -90,11 +90,17 @@ std::string line_of(const LimitationGroup& group) {
     return std::string(name_of(group.worst.severity)) + ": " + where_of(group) + ": " + sentence_of(group.worst);
 }
 
+std::span<const double> amounts_of(const Limitation& limitation) {
+    const auto named = std::ranges::count(limitation.kind->sentence, '{');
+    return std::span(limitation.amounts).first(static_cast<size_t>(named));
+}
+
 Json json_of(const Limitations& limitations) {
     return json_list(limitations, [](const Limitation& limitation) {
         return json_object({{"severity", name_of(limitation.severity)},
                             {"id", limitation.kind->id},
                             {"where", where_of(limitation)},
+                            {"amounts", json_list(amounts_of(limitation), [](double amount) { return Json(amount); })},
                             {"why", sentence_of(limitation)}});
     });
 }

@@ -24,6 +24,7 @@ public:
 
 private:
     friend std::string sentence_of(const Limitation&);
+    friend std::span<const double> amounts_of(const Limitation&);
     const std::string_view sentence;
 };
 
@@ -54,9 +55,10 @@ std::vector<LimitationGroup> groups_of(std::span<const Limitation> limitations);
 // --- for people and reports: printable
 // --------------------------------------------------------------------------------
 std::string_view name_of(Severity severity);
-std::string where_of(const Limitation& limitation);    // "light sun"
-std::string where_of(const LimitationGroup& group);    // "12 lights (key, fill, rim, ...)"
-std::string sentence_of(const Limitation& limitation); // without severity and where
-std::string line_of(const LimitationGroup& group);     // "degraded: light sun: ..."
-Json json_of(const Limitations& limitations);          // an array of {severity, id, where, why}
+std::string where_of(const Limitation& limitation);               // "light sun"
+std::string where_of(const LimitationGroup& group);               // "12 lights (key, fill, rim, ...)"
+std::string sentence_of(const Limitation& limitation);            // without severity and where
+std::span<const double> amounts_of(const Limitation& limitation); // those that the sentence names
+std::string line_of(const LimitationGroup& group);                // "degraded: light sun: ..."
+Json json_of(const Limitations& limitations);                     // an array of {severity, id, where, amounts, why}
 }

@@ -107,6 +107,53 @@ class Target(ProgramTest):
         self.assertEqual(json.loads(result.stdout)["missed"], 1)
 
 
+class Orders(ProgramTest):
+    """Multiple scattering from a grid says how far off path tracing it is, and that counts in an error asked for."""
+    def setUp(self):
+        super().setUp()
+        thick = {"type": "homogeneous", "extinction": 3, "bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]}}
+        # Ambient light is not shadowed by the fog: too much of it in its middle.
+        self.scene = self.write("scene.json", lit_scene(resolution=[32, 18], media=[thick], ambient=[1, 1, 1]))
+        self.output = self.path("out.exr")
+
+    def render(self, *more):
+        return run("render", self.scene, "-o", self.output, "--orders", "all", "--json", *more)
+
+    def test_a_limitation_has_the_amount(self):
+        for mode in ["march", "froxel"]:
+            result = self.render("--mode", mode, "--quality", "draft")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            found = [one for one in json.loads(result.stdout)["limitations"] if one["id"] == "approximate_orders"]
+            self.assertEqual(len(found), 1)
+            amount, mean = found[0]["amounts"]
+            self.assertGreater(amount, 0)
+            self.assertGreaterEqual(amount, abs(mean) - 0.5)
+            self.assertEqual(found[0]["severity"] != "info", "beside path tracing" in result.stderr)
+        result = self.render("--mode", "path", "--samples", "1")
+        self.assertNotIn("approximate_orders", result.stdout)
+
+    def test_it_counts_in_the_error(self):
+        result = self.render("--mode", "march", "--target-error", "2")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        frame, attributes = json.loads(result.stdout)["frames"][0], self.attributes(self.output)
+        parts = [frame[name] for name in ("noise_bound", "integrator_bound", "orders_bound")]
+        self.assertGreater(parts[2], 0)
+        self.assertAlmostEqual(frame["error_bound"], sum(part**2 for part in parts) ** 0.5, places=6)
+        self.assertAlmostEqual(float(attributes["tyndall:ordersBound"]), parts[2], places=6)
+        kept = json.loads(self.render("--mode", "march", "--target-error", "2", "--resume").stdout)["frames"][0]
+        self.assertTrue(kept["kept"])
+        self.assertAlmostEqual(kept["error_bound"], frame["error_bound"], places=6)
+
+    def test_a_grid_that_is_too_far_off_misses_and_auto_takes_path(self):
+        error = json.loads(self.render("--mode", "march", "--target-error", "0.3").stdout)["frames"][0]["orders_error"]
+        out_of_reach = f"{0.5 * error:.6f}"
+        result = self.render("--mode", "march", "--target-error", out_of_reach)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        result = self.render("--mode", "auto", "--target-error", out_of_reach)
+        self.assertEqual(json.loads(result.stdout)["mode"], "path", result.stderr)
+        self.assertEqual(result.returncode, 0, result.stderr)
+
+
 class MarchTarget(ProgramTest):
     """Goals of march: an error measured against exact single scattering, a time, or both."""
     def setUp(self):

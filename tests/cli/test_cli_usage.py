@@ -152,8 +152,6 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["--orders", "cone scatters light once", "march, froxel and path"],
                     *self.render("--orders", "2", "--mode", "cone"))
         for option in ["--target-error", "--time-budget"]:
-            self.refuse(2, [option, "--orders 1", "--mode path"], *self.render("--orders", "2", option, "0.1"))
-        for option in ["--target-error", "--time-budget"]:
             for mode in ["billboard", "radial-blur", "march,billboard"]:
                 self.refuse(2, [option, mode.split(",")[-1], "is artistic"],
                             *self.render(option, "0.1", "--mode", mode))

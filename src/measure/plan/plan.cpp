@@ -57,15 +57,19 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
 
 // The best that each mode has shown.
 std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& contest, const View& view,
-                                   const Snapshot& snapshot, const Goal& goal) {
+                                   const Snapshot& snapshot, const Goal& goal, bool many_orders) {
     std::vector<Standing> standings;
     const Contender& winner = contest.best();
     for (const Mode& mode : modes) {
         Standing standing{&mode, {}, "artistic: no error bound"};
         if (mode.accuracy == Accuracy::multiple_scattering)
-            standing.why = "takes no part: errors here are of light scattered once, it traces all (--mode path)";
+            standing.why = many_orders
+                               ? "takes no part: multiple scattering from a grid is near enough"
+                               : "takes no part: errors here are of light scattered once, it traces all (--mode path)";
         else if (mode.accuracy != Accuracy::artistic)
-            standing.why = "takes no part: it has no light scattered again, which is asked for";
+            standing.why = contest.best().mode->accuracy == Accuracy::multiple_scattering
+                               ? "takes no part: its multiple scattering is further off than is asked for"
+                               : "takes no part: it has no light scattered again, which is asked for";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;
@@ -80,6 +84,39 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
         return beats(*a.best, *b.best, goal);
     });
     return standings;
+}
+}
+
+namespace {
+// Modes that take light of several orders from a grid against each other and, where that is too far off, path tracing.
+Contest contest_of_orders(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, Plan& plan,
+                          const Goal& goal, double share, const FrameOptions& options) {
+    const double start = goal.clock();
+    std::function<bool()> stop;
+    if (goal.seconds > 0) stop = [&] { return goal.clock() - start > 0.15 * goal.seconds; };
+    plan.orders = orders_error(main_mode(), view, snapshot, plan.settings, goal.error, options, stop);
+    Settings traced = plan.settings;
+    traced.path.orders = plan.settings.fluence.orders;
+    const auto path = [&] { return measured_alone(mode_of_all_orders(), view, snapshot, traced, goal, options); };
+    Contest contest;
+    Goal beside = goal;
+    if (goal.error > 0) {
+        const std::optional<double> left = error_beside(*plan.orders, goal.error);
+        if (!left) contest.contenders.push_back(path());
+        beside.error = left.value_or(goal.error);
+    }
+    if (contest.contenders.empty())
+        contest = hold_contest(modes, view, snapshot, plan.settings, beside, share, options);
+    if (goal.error == 0) {
+        contest.contenders.push_back(path());
+        // What is not known of the grid speaks against it.
+        const double grid = std::max(plan.orders->tiles.error, 0.5 * plan.orders->tiles.bound);
+        if (contest.contenders.back().error < std::hypot(contest.best().error, grid))
+            contest.winner = contest.contenders.size() - 1;
+    }
+    contest.seconds = goal.clock() - start;
+    if (contest.best().mode == &mode_of_all_orders()) plan.settings = traced;
+    return contest;
 }
 }
 
@@ -102,19 +139,26 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
 
     const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};
     if (share == infinity) goal.wanted = std::make_shared<const Settings>(settings);
-    Contest contest = hold_contest(modes, view, snapshot, plan.settings, goal, share, options);
+    const bool many_orders = plan.settings.fluence.orders > 1;
+    Contest contest = many_orders ? contest_of_orders(modes, view, snapshot, plan, goal, share, options)
+                                  : hold_contest(modes, view, snapshot, plan.settings, goal, share, options);
     plan.chosen = contest.best(), plan.contest_seconds = contest.seconds;
-    plan.standings = standings_of(modes, contest, view, snapshot, goal);
+    plan.standings = standings_of(modes, contest, view, snapshot, goal, many_orders);
     if (share == infinity && !snapshot.media.empty())
         plan.terms.push_back(history_term(view, snapshot, plan.chosen, wanted, control));
     part(0.9, 1)(1);
     return plan;
 }
 
+double Plan::expected_error() const {
+    return orders && takes_fluence(*chosen.mode, settings) ? std::hypot(chosen.error, orders->tiles.error)
+                                                           : chosen.error;
+}
+
 std::string Plan::certificate() const {
     std::string text = std::string(chosen.mode->name);
     if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
-    text += ": error " + percent_text(chosen.error) + (chosen.gets_there() ? " expected" : " at best");
+    text += ": error " + percent_text(expected_error()) + (chosen.gets_there() ? " expected" : " at best");
     if (goal.error > 0) text += ", " + percent_text(goal.error) + " wanted";
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
@@ -123,8 +167,9 @@ std::string Plan::certificate() const {
             left_out += (left_out.empty() ? "" : ", ") + term.name + (term.where.empty() ? "" : " of " + term.where) +
                         " (" + term.simpler + ": at most " + percent_text(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
-    if (settings.fluence.orders > 1)
-        text += "; light scattered again comes from a grid whose own error is not measured";
+    if (orders)
+        text += "; multiple scattering from a grid is " + percent_text(orders->tiles.error) + " (at most " +
+                percent_text(orders->tiles.bound) + ") off path tracing";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
 }
 
@@ -141,7 +186,7 @@ std::string plan_text(const Plan& plan) {
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
             text += formatted("  %-14s %s: %s in %s", name.c_str(), best.gets_there() ? "chosen" : "comes closest",
-                              percent_text(best.error).c_str(), seconds_text(best.seconds).c_str());
+                              percent_text(plan.expected_error()).c_str(), seconds_text(best.seconds).c_str());
             if (best.gets_there())
                 text += formatted(", %.0f %s per pixel", best.samples, best.samples < 2 ? "sample" : "samples");
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";

@@ -24,7 +24,9 @@ struct Runner {
 double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
     const double left = error * error - contender.integrator().bound;
-    if (!(left > 0) || !choice.scout) return infinity;
+    if (!(left > 0)) return infinity;
+    if (!choice.has_integrator && !choice.scout) return std::ceil(choice.measured.sample.value / left);
+    if (!choice.scout) return infinity;
     const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
     const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
     return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
@@ -92,6 +94,13 @@ Contender measured_beside(const Choice& main, const Mode& mode, const Candidate&
 }
 }
 
+Contender measured_alone(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                         const Goal& goal, const FrameOptions& options) {
+    Contender alone{&mode, choose(mode, view, snapshot, settings, goal, goal.clock(), options)};
+    predict(alone, goal);
+    return alone;
+}
+
 bool beats(const Contender& a, const Contender& b, const Goal& goal) {
     if (a.gets_there() != b.gets_there()) return a.gets_there();
     return a.gets_there() && goal.error > 0 ? a.seconds < b.seconds : a.error < b.error;
@@ -102,9 +111,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     assert(goal.error > 0 || goal.seconds > 0);
     const double start = goal.clock();
     Contest contest;
-    Contender main{&main_mode(), choose(main_mode(), view, snapshot, settings, goal, start, options)};
+    Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
-    predict(main, goal);
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : main.seconds), begun = goal.clock();
     const bool noisy = share == infinity || !main.gets_there() || modes.size() == 1;
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);

@@ -24,6 +24,10 @@ struct Contest {
     const Contender& best() const { return contenders[winner]; }
 };
 
+// A mode's own choice, with nothing beside it.
+Contender measured_alone(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                         const Goal& goal, const FrameOptions& options);
+
 // Whether a is the better way to a goal: it gets there, sooner, or comes closer.
 bool beats(const Contender& a, const Contender& b, const Goal& goal);
 

@@ -39,6 +39,7 @@ struct Goal {
     // What pictures are held against, where terms were left out because another frame did not need them, and rendered
     // where that does not get to the error; null = the settings rendered.
     std::shared_ptr<const Settings> wanted{};
+    std::optional<OrdersError> orders{}; // measured for this very picture beforehand; none = it is not
 };
 
 // Share of the error wanted that the integrator may use up.

@@ -177,8 +177,10 @@ void FrameStats::add(const FrameStats& other) {
 }
 
 std::optional<Noise> FrameStats::error() const {
-    if (!noise || !integrator) return noise;
-    return Noise{std::hypot(noise->error, integrator->error.error), std::hypot(noise->bound, integrator->error.bound)};
+    if (!noise) return noise;
+    const Noise none, &systematic = integrator ? integrator->error : none, &grid = orders ? orders->tiles : none;
+    return Noise{std::hypot(noise->error, systematic.error, grid.error),
+                 std::hypot(noise->bound, systematic.bound, grid.bound)};
 }
 
 namespace {

@@ -46,6 +46,13 @@ struct Integrator {
     Settings settings;
 };
 
+// How far multiple scattering from a grid is from path tracing, as shares of path tracing's mean; of beauty or fog
+// light, whichever is further off.
+struct OrdersError {
+    double mean = 0; // of the image's mean: below 0 where it is darker than path tracing's
+    Noise tiles;     // root mean square over the means of tiles of 8×8 pixels
+};
+
 struct FrameStats {
     double prepare_seconds = 0, render_seconds = 0;
     double fog_seconds = 0; // of both, what the mode took: its preparation, and its share of every thread's time
@@ -55,10 +62,11 @@ struct FrameStats {
     int samples = 0;                      // per pixel
     std::optional<Noise> noise;           // for more than one batch
     std::optional<Integrator> integrator; // where it was measured
+    std::optional<OrdersError> orders;    // where light of several orders is part of a goal
     double goal_seconds = 0;              // of a goal: all that its time counts
     double forecast_seconds = 0;          // of it, made before most of it; 0 = none was made, infinite = out of reach
 
-    std::optional<Noise> error() const; // noise and integrator together
+    std::optional<Noise> error() const; // noise, integrator and orders together
 
     void add(const FrameStats& other); // counts and times
 };

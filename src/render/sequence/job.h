@@ -1,6 +1,7 @@
 // Frames to be rendered to files: what is asked for, and what is decided for it. What comes out is a RenderReport.
 #pragma once
 #include "modes/settings.h"
+#include "render/frame/layers.h"
 #include "render/image/exr.h"
 #include "scene/load_options.h"
 #include "volume/vdb/sequence.h"
@@ -50,6 +51,7 @@ struct RenderPlan {
     std::string certificate;                // why this mode, when it was chosen for the scene; for the header
     std::shared_ptr<const Choice> choice;   // of the first frame's candidate, when already made
     std::shared_ptr<const Settings> wanted; // by --mode auto: the settings with the terms its first frame does not need
+    std::optional<OrdersError> orders{};    // of the first frame's multiple scattering, when already measured
 };
 
 // The mode and the settings asked for. Throws Error (usage) for a mode that is not in the table.

@@ -181,6 +181,11 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
         attributes["tyndall:integratorError"] = number(stats.integrator->error.error);
         attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
     }
+    if (stats.orders) {
+        attributes["tyndall:ordersError"] = number(stats.orders->tiles.error);
+        attributes["tyndall:ordersBound"] = number(stats.orders->tiles.bound);
+        attributes["tyndall:ordersMean"] = number(stats.orders->mean);
+    }
     if (request.target_error > 0) attributes["tyndall:targetError"] = number(request.target_error);
     if (request.time_budget > 0) {
         attributes["tyndall:timeBudget"] = number(request.time_budget);
@@ -205,6 +210,9 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
     if (noise.error < 0 || noise.bound < 0) return;
     stats.noise = noise;
     if (parts) stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
+    const Noise orders{value("tyndall:ordersError"), value("tyndall:ordersBound")};
+    if (orders.error >= 0 && orders.bound >= 0 && attributes.contains("tyndall:ordersMean"))
+        stats.orders = OrdersError{value("tyndall:ordersMean"), orders};
     stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));
 }
 }

@@ -205,7 +205,8 @@ void render(Pipeline& pipeline, Work& work) {
                         request.quality,
                         {},
                         work.index == 0 ? plan.choice : nullptr,
-                        plan.wanted};
+                        plan.wanted,
+                        work.index == 0 ? plan.orders : std::nullopt};
         options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
         work.layers = has_goal(request)
                           ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
@@ -218,7 +219,7 @@ void render(Pipeline& pipeline, Work& work) {
 }
 
 // What is known of the error, its parts and what was asked for.
-std::string error_text(const FrameStats& stats, const RenderRequest& request, const RenderPlan& plan) {
+std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (!stats.noise) return {};
     std::string text = stats.integrator ? ", error " : ", noise ";
     text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
@@ -226,9 +227,8 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request, co
     if (stats.integrator)
         text += formatted(": noise %.3g, integrator %.3g (%s)", stats.noise->error, stats.integrator->error.error,
                           stats.integrator->candidate.c_str());
+    if (stats.orders) text += formatted(", multiple scattering %.3g", stats.orders->tiles.error);
     text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
-    if (stats.integrator && plan.settings.fluence.orders > 1)
-        text += ", of light scattered once: what the grid for the rest adds to it is not measured";
     if (request.time_budget > 0)
         text += formatted(", %.3g s of a budget of %.3g s", stats.goal_seconds, request.time_budget);
     return text;
@@ -251,8 +251,7 @@ void write(Pipeline& pipeline, Work& work) {
     report.write_seconds = steady_seconds() - start;
     report_frame(pipeline, work);
 
-    std::string text =
-        formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request, pipeline.plan);
+    std::string text = formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }

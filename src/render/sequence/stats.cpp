@@ -29,6 +29,11 @@ Json frame_json(const FrameReport& frame) {
         json.members.emplace_back("integrator_error", frame.stats.integrator->error.error);
         json.members.emplace_back("integrator_bound", frame.stats.integrator->error.bound);
     }
+    if (frame.stats.orders) {
+        json.members.emplace_back("orders_mean", frame.stats.orders->mean);
+        json.members.emplace_back("orders_error", frame.stats.orders->tiles.error);
+        json.members.emplace_back("orders_bound", frame.stats.orders->tiles.bound);
+    }
     if (frame.stats.goal_seconds > 0) json.members.emplace_back("goal_seconds", frame.stats.goal_seconds);
     if (frame.stats.forecast_seconds > 0 && frame.stats.forecast_seconds < infinity)
         json.members.emplace_back("forecast_seconds", frame.stats.forecast_seconds);

@@ -1,0 +1,134 @@
+// How far multiple scattering from a grid is from path tracing, with grids that are off by what is known.
+#include "base/random.h"
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "render/adaptive/orders.h"
+#include "render/adaptive/to_target.h"
+#include "scene/light.h"
+#include "scene/scene.h"
+#include "support/threads.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+View view_of(uint32_t seed) {
+    View view;
+    view.camera = look_at({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 0.9f);
+    view.size = {64, 36}, view.pixel_samples = 1, view.seed = seed;
+    return view;
+}
+
+// A lit box of fog that scatters most of its light again.
+Snapshot milk() { return snapshot_of({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})}, {sun_light({0, -1, -0.2f})}); }
+
+Settings all_orders_settings() {
+    Settings settings;
+    settings.fluence.orders = all_orders;
+    return settings;
+}
+
+// Path tracing that passes for a mode with a grid, brighter by a share.
+template<int percent> Mode off_by() {
+    Mode mode = mode_of_all_orders();
+    mode.adds_fluence = true, mode.accuracy = Accuracy::single_scattering;
+    mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+        const ScatterFunction right = mode_of_all_orders().prepare(view, snapshot, settings, history);
+        return ScatterFunction([right](const RayBatch& batch, std::span<Scatter> results) {
+            right(batch, results);
+            for (Scatter& result : results) result.radiance *= 1 + percent / 100.0f;
+        });
+    };
+    return mode;
+}
+
+OrdersError error_of(const Mode& mode, uint32_t seed, double wanted = 0.05) {
+    static const Snapshot snapshot = milk();
+    return orders_error(mode, view_of(seed), snapshot, all_orders_settings(), wanted, {});
+}
+}
+
+TEST(Orders, AGridThatIsRightIsFoundSo) {
+    // Through the same rays both have the same light: nothing is left to chance.
+    const OrdersError error = error_of(off_by<0>(), 1);
+    EXPECT_NEAR(error.tiles.error, 0, 1e-6);
+    EXPECT_NEAR(error.tiles.bound, 0, 1e-6);
+    EXPECT_NEAR(error.mean, 0, 1e-6);
+}
+
+TEST(Orders, AShareOfAllLightIsFound) {
+    // Light 20 % too bright everywhere: the mean is off by that, tiles by it times the rms of the light over its mean,
+    // which is at least 1.
+    const OrdersError error = error_of(off_by<20>(), 1);
+    EXPECT_NEAR(error.mean, 0.2, 1e-4);
+    EXPECT_GE(error.tiles.bound, 0.2);
+    EXPECT_GE(error.tiles.error, 0.17);
+    EXPECT_LE(error.tiles.bound, 0.6);
+}
+
+TEST(Orders, BoundsHold) {
+    // Of march's grid, against the mean of many measurements.
+    const Mode& march = main_mode();
+    constexpr uint32_t count = 20;
+    double truth = 0;
+    std::vector<OrdersError> all;
+    for (uint32_t seed = 0; seed < count; ++seed) {
+        all.push_back(error_of(march, seed));
+        truth += all.back().tiles.error * all.back().tiles.error / count;
+    }
+    int held = 0;
+    for (const OrdersError& one : all) held += one.tiles.bound >= std::sqrt(truth);
+    EXPECT_GE(held, 18) << std::sqrt(truth); // of 20 at 97.5 %: fewer in one of seventy
+}
+
+TEST(Orders, HaveTheSameBitsForAnyThreadCount) {
+    const auto made = [] { return error_of(main_mode(), 3); };
+    const OrdersError one = on_threads(1, made), two = on_threads(2, made);
+    EXPECT_EQ(one.mean, two.mean);
+    EXPECT_EQ(one.tiles.error, two.tiles.error);
+    EXPECT_EQ(one.tiles.bound, two.tiles.bound);
+}
+
+TEST(Orders, LeaveTheRestOfAnErrorToNoise) {
+    EXPECT_NEAR(*error_beside({0, {0.02, 0.03}}, 0.05), 0.04, 1e-12);
+    EXPECT_EQ(error_beside({0, {0.02, 0.06}}, 0.05), std::nullopt);
+    EXPECT_EQ(error_beside({0, {0.02, 0.0499}}, 0.05), std::nullopt) << "too little is left to reach";
+}
+
+TEST(Orders, CountInWhatATargetPromises) {
+    Settings settings = all_orders_settings();
+    FrameStats stats;
+    const View view = view_of(5);
+    const Snapshot snapshot = milk();
+    render_to_target(main_mode(), view, snapshot, settings, {0.3, 0, Quality::preview, {}}, {}, stats);
+    ASSERT_TRUE(stats.orders && stats.integrator);
+    EXPECT_GT(stats.orders->tiles.bound, 0);
+    EXPECT_NEAR(stats.error()->bound,
+                std::hypot(stats.noise->bound, stats.integrator->error.bound, stats.orders->tiles.bound), 1e-12);
+    EXPECT_LE(stats.error()->bound, 0.3);
+
+    settings.fluence.orders = 1;
+    render_to_target(main_mode(), view, snapshot, settings, {0.3, 0, Quality::preview, {}}, {}, stats);
+    EXPECT_FALSE(stats.orders);
+}
+
+TEST(Orders, MissATargetThatTheGridIsTooFarOffFor) {
+    // A dark room beside the lit fog: the grid lights no walls, path tracing does.
+    Scene scene;
+    scene.materials = {lambert(vec3(0.8f))};
+    add_mesh(scene, floor_of(-2, 4, 0));
+    add_mesh(scene, floor_of(2.5f, 4, 0));
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, {vec3(-3), vec3(3)})}, {point_light({0, 0, 0}, 10)});
+    add_surfaces(scene, snapshot);
+    FrameStats stats;
+    render_to_target(main_mode(), view_of(7), snapshot, all_orders_settings(), {0.1, 0, Quality::preview, {}}, {},
+                     stats);
+    ASSERT_TRUE(stats.orders);
+    EXPECT_LT(stats.orders->mean, -0.1);
+    EXPECT_GT(stats.error()->bound, 0.1);
+}
+}
