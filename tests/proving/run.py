@@ -90,6 +90,7 @@ def prove(seed, options):
                     "achieved": error_against(truth, run.layers) if run.layers else None,
                     "candidate": told.get("candidate"), "samples": told.get("samples"), "seconds": run.wall,
                     "processor": run.processor, "forecast": told.get("forecast_seconds"),
+                    "took": told.get("goal_seconds"),
                     "memory": run.stats.get("totals", {}).get("peak_memory_bytes"),
                     "plain": plain.get(target), "cheapest": cheapest})
         return rows
@@ -121,6 +122,20 @@ def table(rows):
     return "\n".join(lines)
 
 
+def auto_beside_march(runs):
+    """Wall seconds of auto over those of march for the same scene and target, where both get there and one takes long
+    enough to matter."""
+    march = {(row["seed"], row["asked"]): row for row in runs if row["mode"] == "march" and met(row)}
+    pairs = [(row, march[row["seed"], row["asked"]]) for row in runs
+             if row["mode"] == "auto" and met(row) and (row["seed"], row["asked"]) in march]
+    ratios = [auto["seconds"] / plain["seconds"] for auto, plain in pairs if max(auto["seconds"], plain["seconds"]) > 0.3]
+    if not ratios:
+        return None
+    return {"runs": len(ratios), "median": round(float(np.median(ratios)), 3),
+            "percentile_95": round(float(np.percentile(ratios, 95)), 3),
+            "much_quicker": round(float(np.mean(np.array(ratios) <= 1 / 1.3)), 3)}
+
+
 def summary(rows):
     """What is judged, as numbers."""
     runs = [row for row in rows if not row.get("refused")]
@@ -131,6 +146,7 @@ def summary(rows):
     false = [row for row in answered if row["bound"] is not None and not bound_holds(row)]
     worked = [row for row in answered if row["cheapest"] and row["plain"] and row["plain"] > 1.2 * row["cheapest"]]
     share = lambda part, whole: round(len(part) / max(len(whole), 1), 4)
+    told = [row for row in answered if row.get("forecast") and row.get("took")]
     ratio = lambda top, low, of: round(float(np.median([row[top] / row[low] for row in of])), 3) if of else None
     return {
         "scenes": len({row["seed"] for row in runs}), "without_truth": len(rows) - len(runs),
@@ -141,6 +157,8 @@ def summary(rows):
         "refused_by_family": {f: share([r for r in refusals if r["family"] == f], [r for r in runs if r["family"] == f])
                               for f in families if any(r["family"] == f for r in refusals)},
         "broken": share(broken, runs), "families_broken": sorted({row["family"] for row in broken + false}),
+        "auto_by_march": auto_beside_march(runs),
+        "forecast_within_2": share([row for row in told if 0.5 <= row["forecast"] / row["took"] <= 2], told) if told else None,
         "achieved_by_asked": ratio("achieved", "asked", worked), "processor_by_plain": ratio("processor", "plain", worked),
         "seconds": round(sum(row["seconds"] for row in runs), 1)}
 

@@ -1,0 +1,115 @@
+"""Deliberate faults in the code that promises errors and times, one after the other: a test or the proving ground must find
+each of them.
+
+    mutations.py -o FOLDER [--only NAME,...] [--seeds 4,18,27,42,55,69] [--truths DIR]
+
+Works on a copy of the committed files in FOLDER, which it builds. Prints who found each fault; ends with 1 where one was
+found by nobody, or where the copy fails without a fault."""
+import argparse
+import dataclasses
+import pathlib
+import subprocess
+import sys
+
+SOURCE = pathlib.Path(__file__).parents[2]
+TESTS = r"^render\.|^cli\.test_cli_noise|^measure\.plan"
+TARGETS = ["tyndall", "test_render", "test_measure"]
+
+
+@dataclasses.dataclass
+class Fault:
+    name: str
+    file: str
+    right: str
+    wrong: str
+
+
+ADAPTIVE = "src/render/adaptive/"
+FAULTS = [
+    Fault("noise-without-tail", "src/render/frame/layers.cpp", "return {std::sqrt(variance) / mean, std::sqrt(high) / mean};",
+          "return {std::sqrt(variance) / mean, std::sqrt(variance) / mean};"),
+    Fault("bound-halved", "src/render/frame/frame.cpp", "std::hypot(noise->bound, ", "0.5 * std::hypot(noise->bound, "),
+    Fault("integrator-without-tail", ADAPTIVE + "pilot.cpp",
+          "const double bound = std::max(value, 0.0) + confidence * (half + std::sqrt(variance + half * half));",
+          "const double bound = std::max(value, 0.0) + 0 * half;"),
+    Fault("pilot-skips-edges", ADAPTIVE + "tile_chances.cpp", "const auto square = [](vec3 value) { return channel_mean(value * value); };",
+          "const auto square = [](vec3 value) { return 1 / (1e-6 + channel_mean(value * value)); };"),
+    Fault("tiles-without-weights", ADAPTIVE + "tile_chances.cpp", "drawn.push_back({corner(i), chance, 1 / chance});",
+          "drawn.push_back({corner(i), chance, 1});"),
+    Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "even_chances(view), salt,", "even_chances(view), 0 * salt,"),
+    Fault("rounds-of-the-same-samples", ADAPTIVE + "to_target.cpp",
+          "if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));", ""),
+    Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),
+    Fault("orders-left-out", "src/render/frame/frame.cpp", "orders ? orders->tiles : none", "none"),
+    Fault("orders-of-one-product", ADAPTIVE + "orders.cpp", "channel_mean(sum * sum - own)", "channel_mean(sum * sum)"),
+    Fault("planning-not-counted", ADAPTIVE + "to_target.cpp", "stats.goal_seconds = goal.clock() - rounds.start;",
+          "stats.goal_seconds = stats.render_seconds;"),
+    Fault("loading-not-counted", "src/render/sequence/sequence.cpp",
+          "request.started + request.time_budget * (pipeline.rendered + 1)", "steady_seconds() + request.time_budget"),
+    Fault("misses-by-the-likely-error", "src/render/sequence/sequence.cpp",
+          "frame.stats.error()->bound > request.target_error", "frame.stats.error()->error > 2 * request.target_error"),
+    Fault("variances-of-single-samples-shared", "src/render/frame/layers.cpp", "const double best = variance", "const double best = 0 * variance"),
+]
+
+
+def run(command, folder, **more):
+    return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, **more)
+
+
+def build(folder):
+    done = run(["cmake", "--build", "build/release", "--target", *TARGETS], folder)
+    return done.returncode == 0, done.stdout[-2000:]
+
+
+def who_finds(folder, options):
+    """The tests that fail, or else the proving ground's word; nobody where all pass."""
+    ok, said = build(folder)
+    if not ok:
+        sys.exit(f"does not build:\n{said}")
+    tests = run(["ctest", "--test-dir", "build/release", "-R", TESTS, "-LE", "nightly", "-j2"], folder)
+    failed = sorted({line.split(" - ")[1].split()[0] for line in tests.stdout.splitlines() if line.endswith("(Failed)")
+                     or line.endswith("(Timeout)")})
+    if failed:
+        return ", ".join(failed)
+    truths = ["--truths", options.truths.resolve()] if options.truths else []
+    proven = run([sys.executable, "tests/proving/run.py", "--seeds", options.seeds, "--program", "build/release/tyndall",
+                  "-o", folder / "proving", *truths], folder)
+    return "" if proven.returncode == 0 else "proving ground"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    parser.add_argument("--only", type=lambda text: text.split(","), default=[])
+    parser.add_argument("--seeds", default="4,18,27,42,55,69")
+    parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
+    options = parser.parse_args()
+    folder = options.output.resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    files = subprocess.run(["git", "archive", "HEAD"], cwd=SOURCE, capture_output=True, check=True).stdout
+    subprocess.run(["tar", "-x", "-m", "--skip-old-files"], cwd=folder, input=files, check=True)
+    if not (folder / "build/release/build.ninja").exists():
+        run(["cmake", "--preset", "release", "-D", "TYNDALL_VIEW=OFF", "-D", "TYNDALL_BENCHMARKS=OFF"], folder, check=True)
+
+    missed = []
+    if not options.only and (found := who_finds(folder, options)):
+        sys.exit(f"without a fault: {found} fails")
+    for fault in FAULTS:
+        if options.only and fault.name not in options.only:
+            continue
+        place = folder / fault.file
+        text = place.read_text()
+        if text.count(fault.right) != 1:
+            sys.exit(f"{fault.name}: {fault.file} holds '{fault.right}' {text.count(fault.right)} times")
+        place.write_text(text.replace(fault.right, fault.wrong))
+        try:
+            found = who_finds(folder, options)
+        finally:
+            place.write_text(text)
+        print(f"{fault.name:36s} {found or 'FOUND BY NOBODY'}", flush=True)
+        missed += [] if found else [fault.name]
+    sys.exit(1 if missed else 0)
+
+
+if __name__ == "__main__":
+    main()
