@@ -3,6 +3,7 @@
 #include "base/text.h"
 #include "theme.h"
 #include "viewer/painting/reference_picture.h"
+#include "viewer/painting/tone.h"
 
 namespace tyndall {
 namespace {
@@ -36,5 +37,22 @@ float draw_error_legend(ImVec2 low, float width) {
                       ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
     }
     return height;
+}
+
+void draw_stops_legend(ImVec2 low, float width) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float type = ImGui::GetFontSize(), pad = 0.4f * type, bar = 0.7f * type;
+    list->AddRectFilled(low, {low.x + width, low.y + bar + type + 3 * pad}, IM_COL32(12, 12, 13, 215), 3);
+    const float left = low.x + 2 * pad, step = (width - 4 * pad) / (highest_stop - lowest_stop), top = low.y + pad;
+    for (int stop = lowest_stop; stop <= highest_stop; ++stop) {
+        const float x = left + step * static_cast<float>(stop - lowest_stop);
+        const Color8 color = color_of_stop(stop);
+        if (stop < highest_stop)
+            list->AddRectFilled({x, top}, {x + step, top + bar}, IM_COL32(color.x, color.y, color.z, 255));
+        if (stop % 2 != 0) continue;
+        const std::string text = stop == 0 ? "grey" : formatted("%+d", stop);
+        list->AddText({x - 0.5f * ImGui::CalcTextSize(text.c_str()).x, top + bar + pad},
+                      ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+    }
 }
 }

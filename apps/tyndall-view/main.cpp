@@ -14,7 +14,7 @@ namespace {
 struct Texts {
     std::string scene, mode = main_mode_name(), stand_in = interactive_mode_name(), quality = "preview", camera,
                        resolution, samples, script, window;
-    std::string rate, threads, seed, units = "spec", missing = "error", exposure;
+    std::string rate, threads, seed, units = "spec", missing = "error", exposure, view_transform;
     std::vector<std::string> settings;
     bool stats = false;
 };
@@ -33,7 +33,10 @@ void add_options(const CommandLine& program, Texts& texts) {
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
     option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
     option("--exposure", texts.exposure, "EV",
-           "brighten (+) or darken (-) the picture, in stops from the scene's exposure");
+           "how much brighter (+) or darker (-) than light the picture is shown, in\nstops, or auto: measured "
+           "(default: the scene's, auto where it states none)");
+    option("--view-transform", texts.view_transform, "NAME",
+           "how what is brighter than a screen is shown: filmic (AgX; default) or srgb");
     option("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
     option("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
     option("--light-units", texts.units, "UNITS",
@@ -66,8 +69,8 @@ ViewerOptions read_options(const Texts& texts) {
     state.camera = texts.camera;
     if (!texts.resolution.empty()) state.size = resolution_option("--res", texts.resolution);
     if (!texts.window.empty()) options.window = resolution_option("--window", texts.window);
-    if (!texts.exposure.empty())
-        state.shown.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
+    if (!texts.exposure.empty()) apply(state, {Verb::exposure, {texts.exposure}, {}, {}});
+    if (!texts.view_transform.empty()) apply(state, {Verb::view_transform, {texts.view_transform}, {}, {}});
     if (!texts.samples.empty())
         state.max_samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 1 << 20));
     if (!texts.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));

@@ -26,9 +26,47 @@ PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     return {low, {low.x + extent.x, low.y + extent.y}};
 }
 
+// Where the picture lies as it is zoomed, on whole pixels of the window.
+PicturePlace placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 size) {
+    if (state.zoom == 0) return fitted(corner, space, size);
+    const float scale = static_cast<float>(state.zoom);
+    const ImVec2 low{std::floor(corner.x + 0.5f * space.x - scale * state.zoom_at.x),
+                     std::floor(corner.y + 0.5f * space.y - scale * state.zoom_at.y)};
+    return {low, {low.x + scale * static_cast<float>(size.x), low.y + scale * static_cast<float>(size.y)}};
+}
+
+// What is seen of it.
+PicturePlace seen(const PicturePlace& place, ImVec2 corner, ImVec2 space) {
+    return {{std::max(place.low.x, corner.x), std::max(place.low.y, corner.y)},
+            {std::min(place.high.x, corner.x + space.x), std::min(place.high.y, corner.y + space.y)}};
+}
+
 // Of pictures side by side, the left one.
 PicturePlace left_of(const PicturePlace& place, int across) {
     return {place.low, {place.low.x + (place.high.x - place.low.x) / static_cast<float>(across), place.high.y}};
+}
+
+// The picture's pixel under the mouse, with its fraction.
+vec2 pointed(const PicturePlace& place, const ShownPicture& picture) {
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    return vec2(at.x - place.low.x, at.y - place.low.y) * (static_cast<float>(picture.wanted.y) / place.height());
+}
+
+// With ctrl, the mouse zooms into the picture by factors of two, about where it points, and shifts it.
+void zoom_picture(const ViewState& state, const PicturePlace& place, const ShownPicture& picture, const Act& act) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const float scale = place.height() / static_cast<float>(picture.wanted.y);
+    const vec2 middle = state.zoom > 0 ? state.zoom_at : 0.5f * vec2(picture.wanted);
+    const auto zoom = [&](double to, vec2 at) { act({Verb::zoom, {formatted("%.9g", to)}, {at.x, at.y}, {}}); };
+    if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+        const double step =
+            io.MouseWheel > 0 ? std::floor(std::log2(scale) + 1.01) : std::ceil(std::log2(scale) - 1.01);
+        const double to = std::exp2(std::clamp(step, -6.0, 6.0));
+        const vec2 point = pointed(place, picture);
+        zoom(to, point + (middle - point) * static_cast<float>(scale / to));
+    } else if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
+        zoom(state.zoom > 0 ? state.zoom : scale, middle - vec2(io.MouseDelta.x, io.MouseDelta.y) / scale);
+    }
 }
 
 // Mouse on the picture: turning, shifting, looking around, nearer and further.
@@ -49,12 +87,11 @@ void move_camera(const PicturePlace& place, const Act& act) {
 
 // Shift and a click without a drag ask about the pixel.
 void ask_about_pixel(const PicturePlace& place, const ShownPicture& picture, const Act& act) {
-    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0), at = ImGui::GetIO().MousePos;
+    const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool clicked = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
     if (!clicked || !ImGui::GetIO().KeyShift || std::abs(moved.x) + std::abs(moved.y) > still) return;
-    const float scale = place.height() / static_cast<float>(picture.wanted.y);
-    const int x = static_cast<int>((at.x - place.low.x) / scale), y = static_cast<int>((at.y - place.low.y) / scale);
-    act({Verb::explain, {}, {static_cast<double>(x % picture.wanted.x), static_cast<double>(y)}, {}});
+    const vec2 pixel = pointed(place, picture);
+    act({Verb::explain, {}, {std::fmod(pixel.x, static_cast<float>(picture.wanted.x)), pixel.y}, {}});
 }
 
 // The pixel whose ray is told about, in each of the pictures side by side.
@@ -97,6 +134,24 @@ float draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
         x += ImGui::CalcTextSize(one.text.c_str(), nullptr, false, width).x + gap;
     }
     return extent.y + pad;
+}
+
+// What the pixel under the mouse holds, in the upper right.
+void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const ViewState& state,
+                const ShownPicture& picture) {
+    const ivec2 at(glm::floor(pointed(place, picture)));
+    const ivec2 whole = picture.wanted;
+    if (!ImGui::IsItemHovered() || !picture.values || at.x < 0 || at.y < 0 || at.x >= picture.across * whole.x ||
+        at.y >= whole.y)
+        return;
+    const float share = static_cast<float>(at.x) / static_cast<float>(whole.x);
+    const bool right = picture.across > 1 ? share >= 1 : !picture.beside.empty() && share >= state.shown.wipe;
+    const PixelValues* values = right ? picture.values_beside.get() : picture.values.get();
+    if (!values) return;
+    const std::string text = pixel_text(*values, whole, {at.x % whole.x, at.y});
+    const float type = ImGui::GetFontSize(), width = ImGui::CalcTextSize(text.c_str()).x + 1.3f * type;
+    draw_band({std::max(frame.high.x - width, frame.low.x), frame.low.y + 0.5f * type},
+              {{text, ImGui::GetStyle().Colors[ImGuiCol_Text]}}, 2 * width);
 }
 
 // The line between two techniques, which the mouse can take along, and their names.
@@ -209,7 +264,8 @@ void draw_picture(ViewState& state, const PanelResources& resources, EditMemory&
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
         const ivec2 wanted = resources.picture->wanted;
-        const PicturePlace place = fitted(corner, space, {resources.picture->across * wanted.x, wanted.y});
+        const PicturePlace place = placed(state, corner, space, {resources.picture->across * wanted.x, wanted.y});
+        const PicturePlace frame = seen(place, corner, space);
         ImGui::GetWindowDrawList()->AddImage(resources.texture, place.low, place.high);
         if (resources.picture->across > 1)
             draw_names(place, state, *resources.picture);
@@ -219,20 +275,27 @@ void draw_picture(ViewState& state, const PanelResources& resources, EditMemory&
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
-        if (!draw_handles(state, wanted, left_of(place, resources.picture->across), edits, act))
-            move_camera(place, act);
+        draw_pixel(place, frame, state, *resources.picture);
+        if (!draw_handles(state, wanted, left_of(place, resources.picture->across), edits, act)) {
+            if (ImGui::GetIO().KeyCtrl)
+                zoom_picture(state, place, *resources.picture, act);
+            else
+                move_camera(place, act);
+        }
         ask_about_pixel(place, *resources.picture, act);
         mark_pixel(place, state, *resources.picture);
 
         // Always on the picture: what it is, how good it is, what is wrong with it.
-        const float line = 1.5f * type, width = place.high.x - place.low.x - 2 * type;
+        const float line = 1.5f * type, width = frame.high.x - frame.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *resources.picture), text_color}};
         if (resources.picture->mode == state.mode)
             words.push_back({wrongs(resources.limitations), severity_color(resources.limitations)});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
-        const float bottom = held_against ? std::min(place.high.y + 12 * type, corner.y + space.y) : place.high.y;
-        draw_band({place.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
-        draw_errors(place, bottom - line - 0.5f * type, state, *resources.picture);
+        const float bottom = held_against ? std::min(frame.high.y + 12 * type, corner.y + space.y) : frame.high.y;
+        draw_band({frame.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
+        if (state.shown.layer == ShownLayer::stops)
+            draw_stops_legend({frame.low.x + 0.5f * type, bottom - line - 3.9f * type}, std::min(26 * type, width));
+        draw_errors(frame, bottom - line - 0.5f * type, state, *resources.picture);
     }
     draw_messages(state, resources, {corner.x + 0.5f * type, corner.y + 0.5f * type}, space.x - 2 * type);
 }

@@ -60,6 +60,24 @@ void draw_modes(const ViewState& state, const Act& act) {
     }
 }
 
+// Stops to drag or to type, and a button for what they are without a hand.
+void draw_exposure(const ViewState& state, const Act& act) {
+    labelled("exposure");
+    if (!state.scene) return ImGui::NewLine();
+    float exposure = static_cast<float>(exposure_now(state).value_or(0.0));
+    const bool measured = !state.shown.exposure && !shows_scene_exposure(state);
+    const float button = 4 * ImGui::GetFontSize();
+    ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemSpacing.x);
+    if (ImGui::DragFloat("##exposure", &exposure, 0.02f, -100, 100, "%+.1f EV"))
+        act({Verb::exposure, {formatted("%.9g", exposure)}, {}, {}});
+    tooltip("Stops by which the picture is brightened: drag, or ctrl + click to type. [ and ] are half a stop.");
+    ImGui::SameLine();
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(measured ? ImGuiCol_Header : ImGuiCol_Button));
+    if (ImGui::Button("auto", {button, 0})) act({Verb::exposure, {"auto"}, {}, {}});
+    ImGui::PopStyleColor();
+    tooltip("Measure the exposure on the first, middle and last frame, as tyndall render does.");
+}
+
 void draw_shown(const ViewState& state, const Act& act) {
     heading("Picture");
     labelled("show");
@@ -70,13 +88,16 @@ void draw_shown(const ViewState& state, const Act& act) {
                 act({Verb::show, {name}, {}, {}});
         ImGui::EndCombo();
     }
-    labelled("exposure");
-    float exposure = state.shown.exposure;
-    const bool changed = ImGui::SliderFloat("##exposure", &exposure, -6, 6, "%+.2f stops");
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0))
-        act({Verb::exposure, {}, {0}, {}});
-    else if (changed && !ImGui::IsMouseDoubleClicked(0))
-        act({Verb::exposure, {}, {exposure}, {}});
+    draw_exposure(state, act);
+    labelled("view transform");
+    if (ImGui::BeginCombo("##view transform", name_of(state.shown.transform).c_str())) {
+        for (const std::string& name : view_transform_names())
+            if (ImGui::Selectable(name.c_str(), name == name_of(state.shown.transform)))
+                act({Verb::view_transform, {name}, {}, {}});
+        ImGui::EndCombo();
+    }
+    tooltip("How what is brighter than a screen is shown: filmic (AgX) rolls it off, srgb cuts it off. Files in EXR "
+            "hold light as it is.");
 }
 
 void draw_looking_into(const ViewState& state, const Act& act) {

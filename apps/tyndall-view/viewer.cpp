@@ -68,6 +68,8 @@ void take_pictures(Viewer& viewer) {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = steady_seconds() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode)
                 viewer.resources.limitations = picture->limitations;
+            if (picture->measured && picture->measures == viewer.state.measures)
+                viewer.state.measured = picture->measured;
             if (picture->ray) viewer.resources.ray = picture->ray;
             if (picture->volume && picture->volume != viewer.resources.volume)
                 viewer.resources.volume = picture->volume, viewer.new_volume = !picture->volume->codes.empty();
@@ -162,6 +164,7 @@ void run_frame(Viewer& viewer) {
     if (viewer.new_picture) viewer.window.set_picture(viewer.resources.picture->codes);
     if (viewer.new_volume) viewer.window.set_picture(viewer.resources.volume->codes, 1);
     viewer.new_picture = viewer.new_volume = false;
+    viewer.window.show_pixels(viewer.state.zoom >= 1);
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
     const double done = steady_seconds();
     viewer.times.interface.push_back(drawn - start);

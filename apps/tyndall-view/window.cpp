@@ -172,6 +172,11 @@ void Window::set_picture(const Image<glm::u8vec4>& codes, size_t which) {
     texture_sizes_[which] = size, stale_ = true;
 }
 
+void Window::show_pixels(bool each) {
+    glBindTexture(GL_TEXTURE_2D, textures_[0]);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, each ? GL_NEAREST : GL_LINEAR);
+}
+
 void* Window::picture(size_t which) const { return reinterpret_cast<void*>(static_cast<intptr_t>(textures_[which])); }
 
 Image<glm::u8vec3> Window::pixels() const {

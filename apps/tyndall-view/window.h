@@ -39,6 +39,7 @@ public:
 
     // There are two: the picture itself and another one. Call between end_frame() and draw().
     void set_picture(const Image<glm::u8vec4>& codes, size_t which = 0);
+    void show_pixels(bool each);           // of the picture, enlarged, as squares; else smoothly
     void* picture(size_t which = 0) const; // texture for ImGui::Image
     Image<glm::u8vec3> pixels() const;     // of what was drawn
 

@@ -5,12 +5,14 @@
 #include "base/io/file.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
+#include "base/text.h"
 #include "common.h"
 #include "modes/limitation.h"
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/contact_sheet.h"
+#include "render/sequence/auto_exposure.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"
 #include "scene/light.h"
@@ -19,6 +21,7 @@
 #include "trace/snapshot.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace tyndall {
@@ -116,11 +119,34 @@ void say_before(const Scene& scene, const Limitations& limitations, const Render
     say_limitations(scene, limitations, globals);
 }
 
-// Renders the frames asked for and reports on them; json is the statistics file's name, empty for none. The first frame
-// of a request before shares its fog and surfaces, and is replaced by this one's when that is all there is to render.
-Rendered render_frames(const Scene& scene, const RenderRequest& request, const RenderOptions& texts,
-                       const std::string& json, const std::string& label, Snapshot& shared, const Globals& globals) {
-    LoadedFrame first = load_first_frame(scene, request, &shared);
+std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
+    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
+}
+
+// What requests for several modes have in common.
+struct Common {
+    Snapshot first;                 // the first frame, whose fog and surfaces are shared, when it is the only one
+    std::optional<double> exposure; // of PNGs, where it is measured
+};
+
+// Measures the exposure of PNGs for all modes alike: for the one that lets light scatter the most.
+void measure_exposure(const Scene& scene, std::span<const RenderRequest> requests, const Snapshot& first,
+                      Common& common, const Globals& globals) {
+    const RenderRequest& request = requests[0];
+    const bool pngs = request.png || requests.size() > 1;
+    if (common.exposure || !pngs || !measures_exposure(scene, request)) return;
+    int orders = 1;
+    for (const RenderRequest& one : requests) orders = std::max(orders, orders_of(find_mode(one.mode), one.settings));
+    common.exposure = automatic_exposure(scene, request, orders, &first);
+    if (!globals.quiet)
+        say(formatted("PNGs: automatic exposure, %+.1f EV (--exposure sets another)", *common.exposure));
+}
+
+// Renders the frames of one of the requests and reports on them; json is the statistics file's name, empty for none.
+Rendered render_frames(const Scene& scene, std::span<const RenderRequest> requests, const RenderRequest& request,
+                       const RenderOptions& texts, Common& common, const Globals& globals) {
+    const bool several = requests.size() > 1;
+    LoadedFrame first = load_first_frame(scene, request, &common.first);
     Rendered result{request,
                     texts.mode == automatic ? chosen_plan(scene, request, first.snapshot, globals)
                                             : plan_as_asked(request),
@@ -129,20 +155,24 @@ Rendered render_frames(const Scene& scene, const RenderRequest& request, const R
     if (!globals.quiet && !absent.empty())
         say("note: no layer " + joined(absent, ", ") + ": there is no such light in the scene's fog");
     settle_noise(request, result.plan, globals);
-    shared = request.frames.size() == 1 ? first.snapshot : Snapshot{};
-    shared.cache = nullptr; // the time that a mode takes must not depend on the one before it
+    measure_exposure(scene, requests, first.snapshot, common, globals);
+    result.plan.exposure = common.exposure;
+    common.first = request.frames.size() == 1 ? first.snapshot : Snapshot{};
+    common.first.cache = nullptr; // the time that a mode takes must not depend on the one before it
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
-    if (!globals.quiet || globals.json || !json.empty())
+    if (!globals.quiet || globals.json || !texts.stats.empty())
         add_orders(scene, request, result.plan, first.snapshot, limitations);
     say_before(scene, limitations, texts, result, globals);
 
-    Progress progress(globals.progress, label, static_cast<double>(request.frames.size()), globals.json);
+    Progress progress(globals.progress, several ? request.mode : "render", static_cast<double>(request.frames.size()),
+                      globals.json);
     RenderReport& report = result.report;
     report = render_sequence(scene, result.request, result.plan, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
     // For the statistics only: a frame's header must not depend on which frame was the first.
     report.limitations = std::move(limitations);
-    if (!json.empty()) write_file_atomically(json, stats_json(report, result.request, result.plan));
+    if (const std::string file = stats_name(texts, request, several); !file.empty())
+        write_file_atomically(file, stats_json(report, result.request, result.plan));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
         say_summary(report, request);
@@ -190,8 +220,8 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
                          seconds_text(stats.fog_seconds);
             pictures.push_back({color_of(read_exr(found->file)), std::string(one.plan.mode->name), remark});
         }
-        const float exposure = all[0].request.exposure + scene.exposure.at(moment_of(scene, frame).seconds);
-        write_contact_sheet(sheet_name(texts, frame), pictures, exposure);
+        const Display display = display_of(scene, all[0].request, all[0].plan, frame);
+        write_contact_sheet(sheet_name(texts, frame), pictures, display);
     }
     if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].request.frames[0])));
 }
@@ -207,10 +237,6 @@ std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
         if (asked.size() > 1) requests.back().output = with_word(texts.output, mode->name);
     }
     return requests;
-}
-
-std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
-    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
 }
 
 int run_render(const RenderOptions& texts, const Globals& globals) {
@@ -240,11 +266,10 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
 
     std::vector<Rendered> all;
     std::string reports;
-    Snapshot shared;
+    Common common;
     for (RenderRequest& request : requests) {
         request.started = all.empty() ? program_start() : steady_seconds();
-        all.push_back(render_frames(scene, request, texts, stats_name(texts, request, several),
-                                    several ? request.mode : "render", shared, globals));
+        all.push_back(render_frames(scene, requests, request, texts, common, globals));
         reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().request, all.back().plan);
         stop_if_cancelled();
     }

@@ -150,8 +150,17 @@ void add_results(const Command& command, RenderOptions& texts) {
     command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
     command.flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)").group(group);
     command
-        .option("--exposure", texts.exposure, "brighten (+) or darken (-) the PNGs, in stops from the scene's exposure",
+        .option("--exposure", texts.exposure,
+                "how much brighter (+) or darker (-) than the EXRs the PNGs are, in stops,\n"
+                "or auto: measured on the first, middle and last frame of the scene, one for\n"
+                "all frames (default: the scene's exposure, auto where it states none)",
                 "EV")
+        .group(group);
+    command
+        .option("--view-transform", texts.view_transform,
+                "how PNGs show what is brighter than a screen: filmic (AgX; default) rolls\n"
+                "it off, srgb cuts it off at 1",
+                "NAME")
         .group(group);
     command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
     command
@@ -187,6 +196,21 @@ std::vector<const Mode*> asked_modes(std::string_view option, const std::string&
         result.push_back(&mode);
     }
     return result;
+}
+
+namespace {
+void read_look(const RenderOptions& texts, RenderRequest& request) {
+    for (const auto& [name, text] :
+         {std::pair{"--exposure", &texts.exposure}, {"--view-transform", &texts.view_transform}})
+        if (!text->empty() && !texts.png)
+            fail(ExitCode::usage, name, "is for PNGs only, EXR files hold light as it is: add --png");
+    request.automatic_exposure = texts.exposure == automatic;
+    if (!texts.exposure.empty() && !request.automatic_exposure)
+        request.exposure = number_option("--exposure", texts.exposure, -100, 100);
+    if (!texts.view_transform.empty())
+        request.view_transform =
+            static_cast<ViewTransform>(choice_among("--view-transform", texts.view_transform, view_transform_names()));
+}
 }
 
 RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
@@ -225,10 +249,7 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     if (!texts.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
     request.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
-    if (!texts.exposure.empty() && !texts.png)
-        fail(ExitCode::usage, "--exposure", "brightens PNGs only, EXR files hold light as it is: add --png");
-    if (!texts.exposure.empty())
-        request.exposure = static_cast<float>(number_option("--exposure", texts.exposure, -100, 100));
+    read_look(texts, request);
     if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
     request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
     if (!request.background && wants_layer(request, "background"))

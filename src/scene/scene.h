@@ -109,7 +109,8 @@ struct Scene {
     double frame_rate = 24;
     int first_frame = 1, last_frame = 1; // what --frames means when it is not given
     ivec2 resolution{640, 360};
-    Keyed<float> exposure{0.0f}; // EV for PNGs
+    Keyed<float> exposure{0.0f}; // stops, of PNGs, ...
+    bool own_exposure = false;   // ... where the scene states one
     std::vector<Node> nodes;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;

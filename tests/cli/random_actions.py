@@ -153,12 +153,19 @@ class Actions:
         return [self.random.choice([1, 1, 2, 3])]
 
     def show(self):
-        return [self.random.choice(["picture", "fog", "transmittance", "depth", "validity", "error"])]
+        return [self.random.choice(["picture", "fog", "transmittance", "depth", "validity", "stops", "error"])]
 
     def exposure(self):
+        return [self.random.choice(["auto", "scene", self.number(-4, 4), self.number(-4, 4)])]
+
+    def brighten(self):
         return [self.number(-4, 4)]
 
-    brighten = exposure
+    def view_transform(self):
+        return [self.random.choice(["filmic", "srgb"])]
+
+    def zoom(self):
+        return [self.random.choice(["fit", 0.5, 1, 3])]
 
     def orbit(self):
         return self.pair(-40, 40)

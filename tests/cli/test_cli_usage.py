@@ -9,7 +9,7 @@ COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "ex
 OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
-               "--exposure", "--light-units", "--missing", "--aov", "--background", "--png", "--resume", "--seed", "--isa",
+               "--exposure", "--view-transform", "--light-units", "--missing", "--aov", "--background", "--png", "--resume", "--seed", "--isa",
                "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
@@ -114,7 +114,8 @@ class CommandLine(ProgramTest):
             "--mode": ["rasterize", ""],
             "--set": ["march.step_depth", "march.step_depth=", "march.step_depth=nan", "march.step_depth=1e30",
                       "pixel.samples=1.5", "pixel.jitter=red", "=1"],
-            "--exposure": ["bright", "nan", "1000"],
+            "--exposure": ["bright", "nan", "1000", "automatic"],
+            "--view-transform": ["", "agx", "FILMIC"],
             "--light-units": ["watts"],
             "--missing": ["ignore"],
             "--aov": ["depth", "Z,,inscatter", "Variance", "half_a"],
@@ -142,6 +143,7 @@ class CommandLine(ProgramTest):
 
     def test_options_without_effect_are_refused(self):
         self.refuse(2, ["--exposure", "--png"], *self.render("--exposure", "1"))
+        self.refuse(2, ["--view-transform", "--png"], *self.render("--view-transform", "srgb"))
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
         self.refuse(2, ["--time-samples"], *self.render("--time-samples", "1"))

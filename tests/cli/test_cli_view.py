@@ -55,7 +55,7 @@ class Pictures(ViewerTest):
         self.assertTrue(any(self.same("c.exr", "--frames", frame) for frame in range(2, 9)))
 
     def test_sliders_change_settings(self):
-        drags = [f"drag 1173,{y} 1215,{y}" for y in range(530, 780, 30)]
+        drags = [f"drag 1173,{y} 1215,{y}" for y in range(560, 780, 30)]
         self.view(self.film, ["wait idle", *drags, f"snapshot {self.path('a.exr')}", "reset all",
                               f"snapshot {self.path('b.exr')}"], "--samples", 1)
         self.assertIn(" --set ", str(self.attributes("a.exr")))

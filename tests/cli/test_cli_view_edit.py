@@ -9,7 +9,7 @@ from viewer import ViewerTest
 
 FILM = """{
   // lit by hand
-  "tyndall": 1, "gltf": "triangle.gltf", "frames": "1-8", "resolution": [64, 36],
+  "tyndall": 1, "gltf": "triangle.gltf", "frames": "1-8", "resolution": [64, 36], "exposure": 0,
   "camera": { "position": [0, 0.6, 3], "target": [0, 0.4, 0] },
   "lights": [
     { "name": "sun", "type": "sun", "direction": [-0.6, -0.7, -0.3], "intensity": 10.50 }, /* low */

@@ -60,7 +60,7 @@ Request request_for(std::shared_ptr<Scene> scene, const char* mode) {
     request.camera = camera_at(*request.scene, 0, 0);
     request.mode = mode;
     request.settings = settings_for(Quality::preview);
-    request.max_samples = 12;
+    request.max_samples = 12, request.shown.exposure = 0;
     return request;
 }
 }

@@ -9,6 +9,7 @@
 #include "measure/chart/chart.h"
 #include "measure/chart/point.h"
 #include "modes/mode.h"
+#include "render/sequence/auto_exposure.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
@@ -231,7 +232,10 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
     render_references(stage, references, chart, files, plan, first);
     plan.finish(first);
 
-    const float exposure = job.render.exposure + scene.exposure.at(stage.snapshot.seconds);
+    RenderPlan shown;
+    if (measures_exposure(scene, job.render))
+        shown.exposure = automatic_exposure(scene, job.render, 1, &stage.snapshot);
+    const Display display = display_of(scene, job.render, shown, job.frame);
     for (const Task& task : tasks) {
         if (control.cancel && *control.cancel) fail(ExitCode::internal, "chart", "cancelled");
         const double seconds = seconds_of(task, job);
@@ -240,7 +244,7 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
         } else {
             const MeasuredPoint measured =
                 measure_point(stage, task.rung, [&](double done) { plan.show(done, seconds); });
-            keep_point(job.directory, measured, task.hash, exposure);
+            keep_point(job.directory, measured, task.hash, display);
             chart.points.push_back(measured.point);
             if (control.remark) control.remark(line_on(measured.point));
         }

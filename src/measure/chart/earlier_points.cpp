@@ -79,13 +79,13 @@ std::optional<ChartPoint> cached_point(const std::filesystem::path& directory, c
 }
 
 void keep_point(const std::filesystem::path& directory, const MeasuredPoint& measured, const std::string& hash,
-                float exposure) {
+                const Display& display) {
     const PointFiles files = files_of(measured.point);
     const ivec2 small = small_size(measured.picture.size);
     const Image<vec3> picture = shrunk(measured.picture, small, [](vec3 color) { return color; });
-    write_png(directory / files.picture, measured.picture, exposure);
+    write_png(directory / files.picture, measured.picture, display);
     write_png(directory / files.errors, heat_map(measured.errors, error_scale));
-    write_jpeg(directory / files.small_picture, display_codes(picture, exposure), jpeg_quality);
+    write_jpeg(directory / files.small_picture, display_codes(picture, display), jpeg_quality);
     write_jpeg(directory / files.small_errors, heat_map(shrunk(measured.errors, small), error_scale), jpeg_quality);
 
     Json json = json_of_point(measured.point);

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/io/json.h"
 #include "measure/chart/point.h"
+#include "render/image/view_transform.h"
 
 #include <optional>
 
@@ -19,5 +20,5 @@ std::optional<ChartPoint> cached_point(const std::filesystem::path& directory, c
 
 // Writes a point's pictures, then its numbers. Throws Error (unwritable).
 void keep_point(const std::filesystem::path& directory, const MeasuredPoint& measured, const std::string& hash,
-                float exposure);
+                const Display& display);
 }

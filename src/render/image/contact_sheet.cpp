@@ -14,7 +14,7 @@ void put(const Image<glm::u8vec3>& tile, ivec2 corner, Image<glm::u8vec3>& sheet
 }
 }
 
-Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, float exposure) {
+Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, const Display& display) {
     if (pictures.empty()) return {};
     const ivec2 whole = pictures[0].color.size;
     const int width = std::min(whole.x, widest_tile);
@@ -28,7 +28,7 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, floa
     for (int i = 0; i < count; ++i) {
         const ivec2 corner = ivec2(i % columns, i / columns) * (tile + ivec2(gap, strip + gap)) + gap;
         const auto same = [](vec3 color) { return color; };
-        put(display_codes(shrunk(pictures[i].color, tile, same), exposure), corner, sheet);
+        put(display_codes(shrunk(pictures[i].color, tile, same), display), corner, sheet);
         draw_text(sheet, corner + ivec2(2 * scale, tile.y + 2 * scale), scale, pictures[i].title, glm::u8vec3(235));
         draw_text(sheet, corner + ivec2(2 * scale, tile.y + (2 + letter_height) * scale), scale, pictures[i].remark,
                   glm::u8vec3(150));
@@ -36,7 +36,8 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, floa
     return sheet;
 }
 
-void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures, float exposure) {
-    write_png(file, contact_sheet(pictures, exposure));
+void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures,
+                         const Display& display) {
+    write_png(file, contact_sheet(pictures, display), text_of(display));
 }
 }

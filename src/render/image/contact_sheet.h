@@ -1,6 +1,6 @@
 // Several pictures of one view side by side, with two lines of text under each.
 #pragma once
-#include "base/image.h"
+#include "render/image/view_transform.h"
 
 #include <filesystem>
 #include <string>
@@ -13,6 +13,7 @@ struct SheetPicture {
 };
 
 // Tiles of at most 640 pixels across, in about as many rows as columns.
-Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, float exposure);
-void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures, float exposure);
+Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, const Display& display);
+void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures,
+                         const Display& display);
 }

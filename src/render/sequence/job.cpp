@@ -74,7 +74,7 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
 }
 
 RenderPlan plan_as_asked(const RenderRequest& request) {
-    return {&find_mode(request.mode), request.settings, {}, {}, {}};
+    return {&find_mode(request.mode), request.settings, {}, {}, {}, {}};
 }
 
 bool has_goal(const RenderRequest& request) { return request.target_error > 0 || request.time_budget > 0; }

@@ -3,11 +3,13 @@
 #include "modes/settings.h"
 #include "render/frame/layers.h"
 #include "render/image/exr.h"
+#include "render/image/view_transform.h"
 #include "scene/load_options.h"
 #include "volume/vdb/sequence.h"
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,7 +35,9 @@ struct RenderRequest {
     std::string isa;
     MissingFrame missing = MissingFrame::error;
     LightUnits light_units = LightUnits::spec; // how the scene was loaded; for the header
-    float exposure = 0;                        // added to the scene's, for PNGs
+    std::optional<double> exposure{};          // stops, of PNGs; none = the scene's, or measured where it states none
+    bool automatic_exposure = false;           // measured, whatever the scene states
+    ViewTransform view_transform = ViewTransform::filmic; // of PNGs
     ExrOptions exr;
     double target_error = 0; // render until the error is below this share of the picture's mean; 0 = none is asked for
     double time_budget = 0;  // seconds for each frame, all that is done for it counted; 0 = as many as it takes
@@ -52,6 +56,7 @@ struct RenderPlan {
     std::shared_ptr<const Choice> choice;   // of the first frame's candidate, when already made
     std::shared_ptr<const Settings> wanted; // by --mode auto: the settings with the terms its first frame does not need
     std::optional<OrdersError> orders{};    // of the first frame's multiple scattering, when already measured
+    std::optional<double> exposure{};       // of PNGs, where it is measured
 };
 
 // The mode and the settings asked for. Throws Error (usage) for a mode that is not in the table.

@@ -132,7 +132,10 @@ std::string command_line(const RenderRequest& request) {
     if (request.resolution.x > 0) text += " --res " + pair_text(request.resolution, "x");
     text += option_text(request, request.settings);
     if (request.png) text += " --png";
-    if (request.png && request.exposure != 0) text += " --exposure " + number(request.exposure);
+    if (request.png && request.automatic_exposure) text += " --exposure auto";
+    if (request.png && request.exposure) text += " --exposure " + number(*request.exposure);
+    if (request.png && request.view_transform != ViewTransform::filmic)
+        text += " --view-transform " + name_of(request.view_transform);
     return text;
 }
 

@@ -10,6 +10,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/png.h"
+#include "render/sequence/auto_exposure.h"
 #include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/resume.h"
@@ -69,8 +70,11 @@ double seconds_left(const Pipeline& pipeline, const View& view) {
     return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
 }
 
-float png_exposure(const Pipeline& pipeline, int frame) {
-    return pipeline.request.exposure + pipeline.scene.exposure.at(moment_of(pipeline.scene, frame).seconds);
+// The PNG beside a frame's EXR.
+void write_picture(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report) {
+    const Display display = display_of(pipeline.scene, pipeline.request, pipeline.plan, report.frame);
+    write_png(png_name(report.file), color, display);
+    report.exposure = display.exposure;
 }
 
 // The error again, with its frame before its place and the reason kept whole.
@@ -101,8 +105,7 @@ bool keep(Pipeline& pipeline, Work& work) {
         if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
         return false;
     }
-    if (pipeline.request.png)
-        write_png(png_name(work.report.file), color_of(*exr), png_exposure(pipeline, work.report.frame));
+    if (pipeline.request.png) write_picture(pipeline, color_of(*exr), work.report);
     work.report.kept = true;
     read_noise(exr->attributes, work.report.stats);
     say(pipeline, work, "kept " + work.report.file);
@@ -242,9 +245,7 @@ void write(Pipeline& pipeline, Work& work) {
         const Provenance provenance =
             provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, report.stats);
         write_exr(report.file, work.layers, provenance, request.exr);
-        if (request.png)
-            write_png(png_name(report.file), stored_color(work.layers, request.exr),
-                      png_exposure(pipeline, report.frame));
+        if (request.png) write_picture(pipeline, stored_color(work.layers, request.exr), report);
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);
     }
@@ -317,11 +318,15 @@ LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, c
     return {std::move(snapshot), steady_seconds() - start, std::move(files)};
 }
 
-RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
+RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& asked,
                              Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first) {
     const double start = steady_seconds();
-    check_job(scene, request, *plan.mode);
+    check_job(scene, request, *asked.mode);
     flush_denormals();
+    RenderPlan plan = asked;
+    if (request.png && !plan.exposure && measures_exposure(scene, request))
+        plan.exposure = automatic_exposure(scene, request, orders_of(*asked.mode, request.settings),
+                                           first ? &first->snapshot : nullptr);
 
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);

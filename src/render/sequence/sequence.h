@@ -28,6 +28,7 @@ struct FrameReport {
     std::string file;
     bool kept = false; // by resume; nothing was rendered, noise and samples are those of the file
     double load_seconds = 0, seconds = 0, write_seconds = 0;
+    std::optional<double> exposure{}; // stops, of its PNG
     FrameStats stats;
 };
 
@@ -47,7 +48,7 @@ struct RenderReport {
 // leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
 // beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
 // channels and size, and its `tyndall:hash` equals the one wanted. Throws Error; one of a frame names it, and frames
-// finished before it are written.
+// finished before it are written. An exposure of PNGs that has to be measured and is not in the plan is measured first.
 RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                              Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first = nullptr);
 

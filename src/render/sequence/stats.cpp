@@ -17,6 +17,7 @@ Json frame_json(const FrameReport& frame) {
                              {"camera_rays", frame.stats.camera_rays},
                              {"steps", frame.stats.steps},
                              {"non_finite", frame.stats.non_finite}});
+    if (frame.exposure) json.members.emplace_back("exposure", *frame.exposure);
     if (frame.stats.noise) {
         json.members.emplace_back("samples", frame.stats.samples);
         json.members.emplace_back("achieved_error", frame.stats.error()->error);
@@ -90,6 +91,10 @@ std::string stats_json(const RenderReport& report, const RenderRequest& request,
         json.members.emplace_back("missed", report.missed);
     }
     if (request.time_budget > 0) json.members.emplace_back("time_budget", request.time_budget);
+    if (request.png) {
+        json.members.emplace_back("view_transform", name_of(request.view_transform));
+        json.members.emplace_back("automatic_exposure", plan.exposure.has_value());
+    }
     return format_json(json);
 }
 }

@@ -38,7 +38,8 @@ void read_general(const Field& root, Scene& scene) {
     if (const Field resolution = root.member("resolution"))
         scene.resolution = {static_cast<int>(resolution.json->items[0].number),
                             static_cast<int>(resolution.json->items[1].number)};
-    if (const Field exposure = root.member("exposure")) scene.exposure = keyed_number(exposure);
+    if (const Field exposure = root.member("exposure"))
+        scene.exposure = keyed_number(exposure), scene.own_exposure = true;
     if (const Field ambient = root.member("ambient")) scene.ambient = keyed_color(ambient);
 }
 

@@ -7,19 +7,6 @@
 #include <glm/gtc/quaternion.hpp>
 
 namespace tyndall {
-namespace {
-// The brightest a white surface anywhere inside the bounds would be lit, by every light together, in lux.
-float brightest_illuminance(const Scene& scene, const Box& bounds) {
-    const float radius = std::max(0.5f * glm::length(bounds.size()), 1e-3f);
-    float sum = 0;
-    for (const LightSource& light : scene.lights) {
-        const float intensity = light.intensity.at(0) * max_component(light.color.at(0));
-        sum += is_distant(light) ? intensity : intensity / (radius * radius);
-    }
-    return sum;
-}
-}
-
 void add_missing_camera(Scene& scene) {
     if (!scene.cameras.empty()) return;
     CameraSource camera;
@@ -51,11 +38,6 @@ void add_missing_light_and_fog(Scene& scene) {
         scene.lights.push_back(sun);
         scene.ambient = vec3(0.1f);
         warn(scene, file + ": there is no light; a sun of 3 lux and some ambient light are used");
-    } else if (const float lux = brightest_illuminance(scene, bounds); lux > 30 || (lux > 0 && lux < 0.3f)) {
-        const float stops = std::round(-std::log2(lux / 3));
-        scene.exposure = std::clamp(stops, -64.0f, 64.0f);
-        warn(scene, file + ": the lights give about " + formatted("%.3g", lux) + " lux; PNGs are exposed by " +
-                        formatted("%+.0f", stops) + " EV");
     }
 
     // Half of the light gets through the fog's longest way.

@@ -6,6 +6,6 @@ namespace tyndall {
 // Adds a camera that frames the scene when it has none, with a warning.
 void add_missing_camera(Scene& scene);
 
-// For a bare glTF: a sun when it has no light, thin fog, and an exposure for its lights, each with a warning.
+// For a bare glTF: a sun when it has no light, and thin fog, each with a warning.
 void add_missing_light_and_fog(Scene& scene);
 }

@@ -8,6 +8,7 @@ struct EditableParts {
     std::vector<MediumSource> media;
     std::vector<CameraSource> cameras;
     Keyed<float> exposure;
+    bool own_exposure = false;
     Keyed<vec3> ambient;
     Background background;
 };

@@ -101,7 +101,8 @@ const Property table[] = {
      of_camera<&CameraSource::vertical_fov>, has_view_angle},
 
     // the scene itself
-    {Part::scene, "exposure", number, "EV", -64, 64, -8, 8, "Stops by which PNGs are brightened",
+    {Part::scene, "exposure", number, "EV", -64, 64, -8, 8,
+     "Stops by which PNGs are brightened; automatic until it is set",
      [](Scene& s, size_t) -> Slot { return &s.exposure; }, always},
     {Part::scene, "ambient", color, "nits", 0, bright, 0, 1, "Radiance from everywhere, not shadowed",
      [](Scene& s, size_t) -> Slot { return &s.ambient; }, always},

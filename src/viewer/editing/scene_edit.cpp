@@ -97,6 +97,7 @@ void change(Scene& scene, const Property& property, const Edit& edit) {
     if (edit.part == Part::medium && edit.property == "rotate")
         scene.media[edit.index].rotation = rotation_of(scene.media[edit.index].rotate);
     if (edit.part == Part::scene) follow(scene.background, edit);
+    if (edit.part == Part::scene && edit.property == "exposure") scene.own_exposure = true;
 }
 
 void apply_single(Scene& scene, const Edit& edit) {

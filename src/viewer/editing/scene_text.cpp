@@ -148,8 +148,6 @@ std::string edited_text(std::string text, const Scene& scene, std::span<const Ed
 
 std::string new_scene_text(Scene& scene) {
     std::string text = "{\n  \"tyndall\": 1,\n  \"gltf\": " + quote_json(scene.file.filename().string());
-    const float exposure = scene.exposure.at(0);
-    if (exposure != 0) text += ",\n  \"exposure\": " + json_number(exposure);
     for (CameraSource& camera : scene.cameras) {
         if (camera.node >= 0) continue;
         text += ",\n  \"camera\": " + camera_text(camera);

@@ -10,8 +10,8 @@ namespace tyndall {
 // is checked against the schema. Throws Error (refused).
 std::string edited_text(std::string text, const Scene& scene, std::span<const Edit> edits);
 
-// The text of a scene file that lies beside a bare glTF and says all that was made up for it: camera, light, fog,
-// exposure. Notes in the scene where each of them stands.
+// The text of a scene file that lies beside a bare glTF and says all that was made up for it: camera, light, fog.
+// Notes in the scene where each of them stands.
 std::string new_scene_text(Scene& scene);
 
 // The text of a scene file beside a bare volume: the volume, a sun, a camera that frames it.

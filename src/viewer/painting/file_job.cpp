@@ -76,8 +76,10 @@ RenderRequest sequence_request(const ViewState& state, const std::string& output
     request.mode = state.mode, request.quality = state.quality, request.settings = state.settings,
     request.camera = state.camera;
     request.resolution = state.size, request.seed = state.seed, request.missing = state.missing;
-    request.exposure = state.shown.exposure, request.light_units = state.session->options.light_units,
-    request.isa = isa;
+    if (!shows_scene_exposure(state)) request.exposure = exposure_now(state);
+    request.automatic_exposure = !request.exposure && !shows_scene_exposure(state);
+    request.view_transform = state.shown.transform;
+    request.light_units = state.session->options.light_units, request.isa = isa;
     request.png = png, request.resume = true;
     request.unsaved = unsaved_text(*state.session);
     return request;

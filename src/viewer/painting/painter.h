@@ -23,6 +23,9 @@ struct Painter {
     FrameStore store; // of this scene's frames
     History history;  // of quick pictures
     std::map<std::string, Pace> paces;
+    std::optional<double> exposure; // measured,
+    int measures = -1;              // for this number of the request, and of `measured`
+    std::weak_ptr<const Scene> measured;
     int ticks = 0; // quick pictures and stand-ins so far
     bool begun = false;
     Request request; // of the newest picture

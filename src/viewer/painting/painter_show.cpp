@@ -3,6 +3,8 @@
 #include "base/clock.h"
 #include "modes/history.h"
 #include "modes/mode.h"
+#include "render/sequence/auto_exposure.h"
+#include "render/sequence/job.h"
 
 #include <algorithm>
 
@@ -63,9 +65,30 @@ bool is_finished(const Painter& painter, const Request& request) {
            (is_reference_of(painter.reference, request) && is_finished(painter.reference, request));
 }
 
-ShownPicture shown(Painter& painter, const Request& request) {
+std::shared_ptr<const PixelValues> values_of(const Layers& layers) {
+    return std::make_shared<const PixelValues>(PixelValues{layers.color, layers.depth});
+}
+
+// The request with an exposure: the one that was measured, or is now.
+Request exposed(Painter& painter, Request request) {
+    if (request.shown.exposure) return request;
+    if (painter.measures != request.measures || painter.measured.lock() != request.scene) {
+        const int orders = orders_of(find_mode(request.mode), request.settings);
+        painter.exposure =
+            automatic_exposure(*request.scene, render_request(request), orders, &painter.snapshot, &request.camera);
+        painter.measures = request.measures, painter.measured = request.scene;
+    }
+    request.shown.exposure = painter.exposure;
+    return request;
+}
+
+ShownPicture shown(Painter& painter, const Request& asked) {
     const double start = steady_seconds();
+    const Request request = exposed(painter, asked);
     ShownPicture picture = painter.picture;
+    picture.exposure = *request.shown.exposure, picture.measures = request.measures;
+    picture.measured.reset();
+    if (!asked.shown.exposure) picture.measured = picture.exposure;
     if (request.explain) picture.ray = painter.ray;
     if (request.volume && asks_for_volume(painter, request) &&
         !(picture.quick && request.volume->look != VolumeLook::slice))
@@ -74,13 +97,15 @@ ShownPicture shown(Painter& painter, const Request& request) {
     const ReferencePicture* reference = picture.quick ? nullptr : shown_reference(painter, request);
     if (reference) picture.reference = facts_of(painter.reference, request);
     picture.codes = codes_of(painter.rounds[0], reference, request, picture.errors);
+    picture.values = values_of(painter.rounds[0].layers);
     if (!request.beside.empty()) {
         Image<glm::u8vec4> right;
         if (!picture.quick && !mode_beside(request) && reference)
-            right = toned(layers_of(*reference), request.shown), picture.beside = reference_name;
+            right = toned(layers_of(*reference), request.shown), picture.beside = reference_name,
+            picture.values_beside = values_of(layers_of(*reference));
         else if (!picture.quick && painter.rounds[1].rounds > 0)
             right = codes_of(painter.rounds[1], reference, request, picture.errors_beside),
-            picture.beside = request.beside;
+            picture.beside = request.beside, picture.values_beside = values_of(painter.rounds[1].layers);
         put_beside(right, request.shown, picture.codes);
         picture.across = request.shown.side_by_side ? 2 : 1;
     }

@@ -42,6 +42,7 @@ struct Request {
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     Shown shown;
+    int measures = 0;             // another number: an exposure that was measured is measured anew
     std::optional<ivec2> explain; // a pixel whose ray is asked about
     std::optional<VolumeQuestion> volume;
     int max_samples = 64;             // per pixel, after which a picture is finished

@@ -5,6 +5,7 @@
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
 #include "render/image/png.h"
+#include "render/sequence/auto_exposure.h"
 #include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
 #include "scene/light.h"
@@ -36,7 +37,13 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     FrameOptions options;
     options.cancel = &cancel, options.progress = progress;
     const Layers layers = render_frame(*plan.mode, view, snapshot, plan.settings, options, stats);
-    if (kind == ".png") return write_png(job.file, stored_color(layers, render.exr), request.shown.exposure);
+    if (kind == ".png") {
+        Display display = request.shown.display();
+        if (!request.shown.exposure)
+            display.exposure = automatic_exposure(*request.scene, render, orders_of(*plan.mode, plan.settings),
+                                                  &snapshot, &request.camera);
+        return write_png(job.file, stored_color(layers, render.exr), display);
+    }
     FileHashes files;
     const std::string hash = frame_hash(*request.scene, render, plan, view, files);
     const Provenance provenance = provenance_of(*request.scene, render, plan, view, hash, stats);

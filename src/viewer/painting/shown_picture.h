@@ -39,19 +39,33 @@ struct ErrorFigures {
     double noise = -1;                      // of worst, as a root mean square; negative: not known yet
 };
 
+// What its pixels are, to be read off: linear Rec.709, and metres along the view.
+struct PixelValues {
+    Image<vec3> color;
+    Image<float> depth;
+};
+
+// "250, 200  R 0.12 G 0.11 B 0.08  -0.9 stops  4.52 m" of a pixel of the whole picture, which may be larger; stops
+// count from middle grey.
+std::string pixel_text(const PixelValues& values, ivec2 whole, ivec2 pixel);
+
 struct ShownPicture {
     uint64_t revision = 0;
     int frame = 1;
-    Image<glm::u8vec4> codes; // may be smaller than wanted; empty: the picture before stays
-    int across = 1;           // pictures side by side in them
-    ivec2 wanted{0};          // size of the whole picture
-    std::string mode;         // that made it, perhaps a stand-in
-    std::string beside;       // that made its right part; empty = it is all of one mode
-    bool quick = false;       // made while things moved
-    bool finished = false;    // will not get better
-    int samples = 0;          // per pixel so far; of two modes, the fewer
-    StageTimes times;         // of its last round of samples
+    Image<glm::u8vec4> codes;       // may be smaller than wanted; empty: the picture before stays
+    int across = 1;                 // pictures side by side in them
+    ivec2 wanted{0};                // size of the whole picture
+    std::string mode;               // that made it, perhaps a stand-in
+    std::string beside;             // that made its right part; empty = it is all of one mode
+    double exposure = 0;            // stops, of picture and fog
+    int measures = 0;               // the request's,
+    std::optional<double> measured; // and the exposure, where it was measured for it
+    bool quick = false;             // made while things moved
+    bool finished = false;          // will not get better
+    int samples = 0;                // per pixel so far; of two modes, the fewer
+    StageTimes times;               // of its last round of samples
     uint64_t non_finite = 0;
+    std::shared_ptr<const PixelValues> values, values_beside; // of the mode, and of what is beside it
     std::optional<ReferenceFacts> reference;
     std::optional<ErrorFigures> errors, errors_beside; // of both techniques, where the errors are shown
     std::shared_ptr<const RayAnswer> ray;              // as far as it is known

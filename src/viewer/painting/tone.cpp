@@ -1,46 +1,13 @@
 #include "viewer/painting/tone.h"
 
 #include "base/parallel.h"
-#include "base/random.h"
+#include "measure/metrics/heatmap.h"
 #include "render/frame/layers.h"
 
-#include <array>
-#include <bit>
+#include <algorithm>
 
 namespace tyndall {
 namespace {
-// The display curve of write_png: a shoulder above 0.8, then sRGB (IEC 61966-2-1), times 255.
-double display_value(double x) {
-    constexpr double shoulder = 0.8;
-    if (x > shoulder) x = 1 - (1 - shoulder) * std::exp((shoulder - x) / (1 - shoulder));
-    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
-}
-
-// That curve at 128 places of each power of two from 2^-20 to 2^6; straight in between.
-struct Curve {
-    static constexpr int lowest = 127 - 20, powers = 26, shift = 16;
-    std::array<float, powers * 128 + 2> values;
-
-    Curve() {
-        for (size_t i = 0; i < values.size(); ++i)
-            values[i] = static_cast<float>(
-                display_value(std::bit_cast<float>((uint32_t{lowest} << 23) + (static_cast<uint32_t>(i) << shift))));
-    }
-
-    float at(float x) const {
-        if (!(x > 0x1p-20f)) return x > 0 ? 255 * 12.92f * x : 0;
-        const uint32_t bits = std::bit_cast<uint32_t>(std::min(x, 63.9f)) - (uint32_t{lowest} << 23);
-        const uint32_t place = bits >> shift;
-        const float part = static_cast<float>(bits & 0xffffu) * 0x1p-16f;
-        return values[place] + part * (values[place + 1] - values[place]);
-    }
-};
-
-uint8_t code(const Curve& curve, float linear, int x, int y, uint32_t channel) {
-    const float dither = random_unit(static_cast<uint32_t>(x), static_cast<uint32_t>(y), channel, 0);
-    return static_cast<uint8_t>(std::min(curve.at(linear) + dither, 255.0f));
-}
-
 float median_depth(const Image<float>& depth) {
     std::vector<float> known;
     for (size_t i = 0; i < depth.pixels.size(); i += 17)
@@ -50,47 +17,62 @@ float median_depth(const Image<float>& depth) {
     return std::max(known[known.size() / 2], 1e-6f);
 }
 
-// What a pixel shows, linear.
-template<class Pixel> Image<glm::u8vec4> coded(const Layers& layers, const Pixel& pixel) {
-    static const Curve curve;
+// What `code` makes of every pixel.
+template<class Code> Image<glm::u8vec4> coded(const Layers& layers, const Code& code) {
     Image<glm::u8vec4> codes(layers.size);
     parallel_ranges(layers.size.y, 16, [&](int64_t begin, int64_t end) {
         for (int y = static_cast<int>(begin); y < end; ++y)
-            for (int x = 0; x < layers.size.x; ++x) {
-                const vec3 light = pixel(x, y);
-                codes.at(x, y) = {code(curve, light.x, x, y, 0), code(curve, light.y, x, y, 1),
-                                  code(curve, light.z, x, y, 2), 255};
-            }
+            for (int x = 0; x < layers.size.x; ++x) codes.at(x, y) = {code(x, y), 255};
     });
     return codes;
+}
+
+// A number from 0 to 1, or a colour of such numbers, as it is.
+glm::u8vec3 plain_code(vec3 value, int x, int y) { return display_code(value, {0, ViewTransform::srgb}, x, y); }
+
+glm::u8vec3 false_color(vec3 color, float gain) {
+    constexpr float middle_grey = 0.18f;
+    const float light = gain * luminance(color) / middle_grey;
+    if (!(light > 0)) return glm::u8vec3(0);
+    return color_of_stop(static_cast<int>(std::floor(std::clamp(std::log2(light), -1e3f, 1e3f))));
 }
 }
 
 const std::vector<std::string>& shown_layer_names() {
-    static const std::vector<std::string> names{"picture", "fog", "transmittance", "depth", "validity", "error"};
+    static const std::vector<std::string> names{"picture",  "fog",   "transmittance", "depth",
+                                                "validity", "stops", "error"};
     return names;
 }
 
+glm::u8vec3 color_of_stop(int stop) {
+    constexpr double stops = highest_stop - lowest_stop;
+    return heat_color((std::clamp(stop, lowest_stop, highest_stop - 1) - lowest_stop + 0.5) / stops);
+}
+
 Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown) {
-    const float gain = std::exp2(shown.exposure);
+    const Display display = shown.display();
+    const float gain = static_cast<float>(std::exp2(display.exposure));
     switch (shown.layer) {
     case ShownLayer::picture:
     case ShownLayer::error:
         break;
     case ShownLayer::fog:
-        return coded(layers, [&](int x, int y) { return gain * layers.inscatter.at(x, y); });
+        return coded(layers, [&](int x, int y) { return display_code(layers.inscatter.at(x, y), display, x, y); });
     case ShownLayer::transmittance:
-        return coded(layers, [&](int x, int y) { return vec3(0.8f * layers.transmittance.at(x, y)); });
+        return coded(layers, [&](int x, int y) { return plain_code(vec3(layers.transmittance.at(x, y)), x, y); });
     case ShownLayer::depth: {
         const float middle = median_depth(layers.depth);
-        return coded(layers, [&](int x, int y) { return vec3(0.8f * middle / (middle + layers.depth.at(x, y))); });
+        return coded(layers,
+                     [&](int x, int y) { return plain_code(vec3(middle / (middle + layers.depth.at(x, y))), x, y); });
     }
     case ShownLayer::validity:
         return coded(layers, [&](int x, int y) {
             const float grey = 0.05f + 0.4f * std::min(gain * luminance(layers.color.at(x, y)), 1.0f);
-            return glm::mix(vec3(0.8f, 0.05f, 0.03f), vec3(grey), layers.validity.at(x, y));
+            return plain_code(glm::mix(vec3(0.8f, 0.05f, 0.03f), vec3(grey), layers.validity.at(x, y)), x, y);
         });
+    case ShownLayer::stops:
+        return coded(layers, [&](int x, int y) { return false_color(layers.color.at(x, y), gain); });
     }
-    return coded(layers, [&](int x, int y) { return gain * layers.color.at(x, y); });
+    return coded(layers, [&](int x, int y) { return display_code(layers.color.at(x, y), display, x, y); });
 }
 }

@@ -27,9 +27,15 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::project, "project", "x|y|z maximum|mean", "its largest or mean density along an axis"},
         {Verb::quality, "quality", "NAME", "all settings as draft, preview, final or reference have them"},
         {Verb::orders, "orders", "NAME", "how many times light scatters: a number, or all"},
-        {Verb::show, "show", "NAME", "picture, fog, transmittance, depth, validity or error: against the reference"},
-        {Verb::exposure, "exposure", "ev", "brightness of the picture, in stops from the scene's"},
+        {Verb::show, "show", "NAME",
+         "picture, fog, transmittance, depth, validity, stops (false colours) or error: against the "
+         "reference"},
+        {Verb::exposure, "exposure", "EV",
+         "how much brighter the picture is shown than light is, in stops; auto: measured; scene: as the scene states"},
         {Verb::brighten, "brighten", "ev", "that many stops more"},
+        {Verb::view_transform, "view-transform", "filmic|srgb", "how what is brighter than a screen is shown"},
+        {Verb::zoom, "zoom", "NAME [x] [y]",
+         "fit: the whole picture; 1, 2 ...: so many pixels of the window for one of it, that of x y in the middle"},
         {Verb::camera, "camera", "[NAME]", "a camera of the scene, back where it stands; without a name: the scene's"},
         {Verb::orbit, "orbit", "x y", "turn the scene around the point looked at, degrees"},
         {Verb::turn, "turn", "x y", "turn the camera where it stands, degrees"},
@@ -170,6 +176,7 @@ Action parse_action(std::string_view text, const std::string& place) {
     if (next != words.size()) refuse(place, "'" + printable(words[next], 40) + "' is one too many; expected " + usage);
     if (action.verb == Verb::wait) check_wait(action);
     if (action.verb == Verb::explain && action.numbers.size() == 1) refuse(place, "expected explain x y, or explain");
+    if (action.verb == Verb::zoom && action.numbers.size() == 1) refuse(place, "expected zoom NAME x y, or zoom NAME");
     return action;
 }
 

@@ -27,6 +27,8 @@ enum class Verb {
     show,
     exposure,
     brighten,
+    view_transform,
+    zoom,
     camera,
     orbit,
     turn,

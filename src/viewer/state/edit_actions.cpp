@@ -61,7 +61,7 @@ void edit_scene(ViewState& state, std::string_view path, std::string_view value,
     const Edit change = parse_edit(session.scene, path, value, seconds_of(state));
     edit(session, change, drag > 0 ? static_cast<uint64_t>(drag) : 0);
     if (change.part == Part::scene && change.property == "exposure")
-        ++state.shown_revision;
+        state.shown.exposure.reset(), state.automatic = false, ++state.shown_revision;
     else
         show_edits(state), ++state.motions;
 }

@@ -31,6 +31,7 @@ std::optional<Action> action_of_key(const ViewState& state, std::string_view key
     if (key == "right") return number(Verb::step, 1);
     if (key == "[") return number(Verb::brighten, -0.5);
     if (key == "]") return number(Verb::brighten, 0.5);
+    if (key == "z" && state.scene) return Action{Verb::zoom, {state.zoom > 0 ? "fit" : "1"}, {}, {}};
     if (key == "home" && state.scene) return Action{Verb::camera, {state.camera}, {}, {}};
     if (key == "ctrl+z") return Action{Verb::undo, {}, {}, {}};
     if (key == "ctrl+shift+z" || key == "ctrl+y") return Action{Verb::redo, {}, {}, {}};
@@ -59,10 +60,12 @@ const std::vector<KeyInfo>& key_list() {
         {"shift + drag, middle", "shift"},
         {"right button", "look around; with W A S D Q E: fly"},
         {"wheel", "nearer, further"},
+        {"ctrl + wheel, drag", "zoom into the picture, shift it"},
+        {"Z", "pixel for pixel, or the whole picture"},
         {"shift + click", "explain a pixel: what happens on its ray"},
         {"home", "back to the scene's camera"},
         {"1 ... 8", "technique"},
-        {"V", "picture, fog, transmittance, depth, validity, error"},
+        {"V", "picture, fog, transmittance, depth, validity, stops, error"},
         {"[  ]", "darker, brighter by half a stop"},
         {"space", "play, stop"},
         {"left, right", "one frame"},

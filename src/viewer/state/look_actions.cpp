@@ -25,11 +25,46 @@ void set_shown(ViewState& state, const Action& action) {
 }
 
 void expose(ViewState& state, double stops) {
-    state.shown.exposure = static_cast<float>(std::clamp(stops, -100.0, 100.0));
+    state.shown.exposure = std::clamp(stops, -100.0, 100.0);
     ++state.shown_revision;
 }
-void set_exposure(ViewState& state, const Action& action) { expose(state, action.numbers[0]); }
-void brighten(ViewState& state, const Action& action) { expose(state, state.shown.exposure + action.numbers[0]); }
+
+void set_exposure(ViewState& state, const Action& action) {
+    const std::string& word = action.words[0];
+    if (word != "auto" && word != "scene") {
+        const std::optional<double> stops = parsed<double>(word);
+        if (!stops || !(std::abs(*stops) <= 100))
+            fail(ExitCode::usage, "exposure",
+                 "expected stops from -100 to 100, auto or scene; got '" + printable(word, 40) + "'");
+        return expose(state, *stops);
+    }
+    state.shown.exposure.reset();
+    state.automatic = word == "auto";
+    if (state.automatic) state.measured.reset(), ++state.measures;
+    ++state.shown_revision;
+}
+
+void brighten(ViewState& state, const Action& action) {
+    const std::optional<double> now = state.scene ? exposure_now(state) : state.shown.exposure;
+    expose(state, now.value_or(0.0) + action.numbers[0]);
+}
+
+void set_view_transform(ViewState& state, const Action& action) {
+    state.shown.transform =
+        static_cast<ViewTransform>(choice_among("view-transform", action.words[0], view_transform_names()));
+    ++state.shown_revision;
+}
+
+void zoom_picture(ViewState& state, const Action& action) {
+    const std::string& word = action.words[0];
+    const std::optional<double> zoom = word == "fit" ? 0 : parsed<double>(word);
+    if (!zoom || !(*zoom == 0 || (*zoom >= 1.0 / 64 && *zoom <= 64)))
+        fail(ExitCode::usage, "zoom", "expected fit, or a number from 1/64 to 64; got '" + printable(word, 40) + "'");
+    const ivec2 size = state.size.x > 0 ? state.size : loaded_scene(state).resolution;
+    state.zoom = *zoom;
+    state.zoom_at = action.numbers.empty() ? 0.5f * vec2(size) : vec2(action.numbers[0], action.numbers[1]);
+    state.zoom_at = glm::clamp(state.zoom_at, vec2(0), vec2(size));
+}
 
 void explain_pixel(ViewState& state, const Action& action) {
     std::optional<ivec2> asked;
@@ -85,6 +120,8 @@ constexpr VerbAction table[] = {
     {Verb::show, set_shown},
     {Verb::exposure, set_exposure},
     {Verb::brighten, brighten},
+    {Verb::view_transform, set_view_transform},
+    {Verb::zoom, zoom_picture},
     {Verb::explain, explain_pixel},
     {Verb::volume, show_volume},
     {Verb::medium, set_medium},

@@ -66,6 +66,7 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     select_by_name(state, selected);
     if (same_file) return;
     state.free = false, state.playing = false;
+    state.measured.reset(), ++state.measures;
     state.explain.reset();
     state.volume.medium.clear();
     state.frame = state.scene->first_frame;
@@ -119,6 +120,15 @@ std::optional<int> next_frame(const ViewState& state) {
     return {};
 }
 
+bool shows_scene_exposure(const ViewState& state) {
+    return !state.shown.exposure && !state.automatic && state.scene->own_exposure;
+}
+
+std::optional<double> exposure_now(const ViewState& state) {
+    if (shows_scene_exposure(state)) return state.scene->exposure.at(seconds_of(state));
+    return state.shown.exposure ? state.shown.exposure : state.measured;
+}
+
 Request request_of(const ViewState& state, bool moving) {
     Request request;
     request.scene = state.stage, request.edited = state.parts;
@@ -134,7 +144,7 @@ Request request_of(const ViewState& state, bool moving) {
     const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
     if (state.explain && inside(*state.explain)) request.explain = state.explain;
     if (state.volume_shown) request.volume = state.volume;
-    request.shown.exposure += state.scene->exposure.at(seconds_of(state));
+    request.shown.exposure = exposure_now(state), request.measures = state.measures;
     request.max_samples = state.max_samples;
     request.wanted_seconds = 1 / state.wanted_rate;
     return request;

@@ -40,8 +40,14 @@ struct ViewState {
     MissingFrame missing = MissingFrame::error;
     ivec2 size{0}; // 0 = the scene's
     int max_samples = 64;
-    double wanted_rate = 30; // quick pictures per second
-    Shown shown;             // exposure on top of the scene's
+    double wanted_rate = 30;        // quick pictures per second
+    Shown shown;                    // with the exposure set by hand, if one is
+    bool automatic = false;         // the exposure is measured, whatever the scene states
+    std::optional<double> measured; // exposure, once it is known
+    int measures = 0;               // times that was asked for
+
+    double zoom = 0; // pixels of the window for one of the picture; 0 = as large as it fits
+    vec2 zoom_at{0}; // the picture's pixel in the middle then
 
     std::optional<ivec2> explain; // a pixel whose ray is asked about
     bool volume_shown = false;    // and a medium:
@@ -96,6 +102,12 @@ void advance(ViewState& state, double now, uint64_t shown_revision);
 
 // The frame that playing shows after this one; nothing when it ends here.
 std::optional<int> next_frame(const ViewState& state);
+
+// Whether the exposure is the scene's: one is stated, and nobody has set another.
+bool shows_scene_exposure(const ViewState& state);
+
+// In stops; nothing while it is not measured yet. Needs a scene.
+std::optional<double> exposure_now(const ViewState& state);
 
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);

@@ -18,9 +18,11 @@ struct Decoded {
     std::vector<uint8_t> codes;
 };
 
-Decoded written(const Image<vec3>& image, float exposure = 0) {
+constexpr Display plain{0, ViewTransform::srgb};
+
+Decoded written(const Image<vec3>& image, const Display& display = plain) {
     const Scratch directory;
-    write_png(directory.file("a.png"), image, exposure);
+    write_png(directory.file("a.png"), image, display);
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
     const std::string bytes = read_file(directory.file("a.png"));
     Decoded result;
@@ -41,11 +43,11 @@ double mean(const std::vector<uint8_t>& codes) {
 }
 
 TEST(Png, HoldsSrgb) {
-    // Linear values of sRGB codes: below the shoulder the picture is exactly those codes, within the dither.
-    const int codes[] = {0, 1, 5, 10, 11, 64, 128, 188, 200, 230};
-    const double linear[] = {0,         0.000303527, 0.00151763, 0.00303527, 0.00334654,
-                             0.0512695, 0.2158605,   0.5028865,  0.5775804,  0.7912979};
-    for (int i = 0; i < 10; ++i) {
+    // Linear values of sRGB codes: the picture is exactly those codes, within the dither, and cut off at 1.
+    const int codes[] = {0, 1, 5, 10, 11, 64, 128, 188, 200, 230, 255, 255};
+    const double linear[] = {0,         0.000303527, 0.00151763, 0.00303527, 0.00334654, 0.0512695,
+                             0.2158605, 0.5028865,   0.5775804,  0.7912979,  1,          7};
+    for (int i = 0; i < 12; ++i) {
         const Decoded png = written(Image<vec3>({64, 64}, vec3(static_cast<float>(linear[i]))));
         EXPECT_EQ(png.size, ivec2(64, 64));
         EXPECT_EQ(png.channels, 3);
@@ -62,35 +64,43 @@ TEST(Png, DithersBetweenCodes) {
 }
 
 TEST(Png, ExposesInStops) {
-    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f / 4)), 2).codes), 64, 0.02);
-    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f * 8)), -3).codes), 64, 0.02);
-}
-
-TEST(Png, BendsHighlightsWithoutClipping) {
-    Image<vec3> ramp({256, 1});
-    for (int x = 0; x < 256; ++x) ramp.at(x, 0) = vec3(0.01f * static_cast<float>(x));
-    const Decoded png = written(ramp);
-    for (int x = 3; x < 256; ++x) EXPECT_GE(png.codes[3 * x], png.codes[3 * (x - 3)] - 1) << x;
-    EXPECT_LT(png.codes[3 * 100], 250);
-    EXPECT_GE(png.codes[3 * 255], 254);
-    // Smooth where the shoulder begins: the slope of the mapping is 1 on both sides of 0.8.
-    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.801f))).codes) -
-                    mean(written(Image<vec3>({64, 64}, vec3(0.799f))).codes),
-                0.254, 0.05);
+    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f / 4)), {2, ViewTransform::srgb}).codes), 64, 0.02);
+    EXPECT_NEAR(mean(written(Image<vec3>({64, 64}, vec3(0.0512695f * 8)), {-3, ViewTransform::srgb}).codes), 64, 0.02);
+    for (const float value : {0.01f, 0.4f, 5.0f})
+        EXPECT_EQ(written(Image<vec3>({16, 16}, vec3(value)), {3}).codes,
+                  written(Image<vec3>({16, 16}, vec3(8 * value)), {0}).codes);
 }
 
 TEST(Png, ShowsWhatIsNoColourAsBlackOrWhite) {
     Image<vec3> image({3, 1});
     image.at(0, 0) = vec3(-5, NAN, -infinity);
     image.at(1, 0) = vec3(infinity, 1e30f, 65504);
-    const Decoded png = written(image);
-    EXPECT_EQ(png.codes, (std::vector<uint8_t>{0, 0, 0, 255, 255, 255, 0, 0, 0}));
+    const std::vector<uint8_t> expected{0, 0, 0, 255, 255, 255, 0, 0, 0};
+    EXPECT_EQ(written(image).codes, expected);
+    for (const double exposure : {0, 100}) {
+        const std::vector<uint8_t> codes = written(image, {exposure}).codes;
+        for (size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(codes[i], expected[i], 1) << i;
+    }
+}
+
+TEST(Png, SaysHowItWasShown) {
+    const Scratch directory;
+    write_png(directory.file("a.png"), Image<vec3>({4, 4}), {-11.3, ViewTransform::filmic});
+    const std::string bytes = read_file(directory.file("a.png"));
+    // Length, name, keyword, text and the CRC that zlib gives for it.
+    EXPECT_NE(bytes.find(std::string("\0\0\0\x16"
+                                     "tEXttyndall:exposure\0"
+                                     "-11.3"
+                                     "\x39\xb6\x6a\x04",
+                                     34)),
+              bytes.npos);
+    EXPECT_NE(bytes.find(std::string("tyndall:viewTransform\0filmic", 28)), bytes.npos);
 }
 
 TEST(Png, LeavesNothingWhereItCannotWrite) {
     const Scratch directory;
     std::filesystem::create_directory(directory.path() / "a.png");
-    error_text(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), 0); });
+    error_text(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), plain); });
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
 }
 }

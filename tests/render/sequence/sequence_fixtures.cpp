@@ -49,7 +49,7 @@ RenderReport run(const Scene& scene, const RenderRequest& job) { return run(scen
 RenderReport run(const Scene& scene, const RenderRequest& job, const Mode& mode) {
     Progress progress(ProgressStyle::none, "render", static_cast<double>(job.frames.size()));
     std::atomic<bool> cancel = false;
-    return render_sequence(scene, job, {&mode, job.settings, {}, {}, {}}, progress, cancel);
+    return render_sequence(scene, job, {&mode, job.settings, {}, {}, {}, {}}, progress, cancel);
 }
 
 }

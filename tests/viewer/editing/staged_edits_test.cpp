@@ -18,7 +18,7 @@ std::atomic<bool> never_cancelled = false;
 ViewState small_state() {
     ViewState state;
     take_scene(state, small_scene());
-    state.max_samples = 4;
+    state.max_samples = 4, state.shown.exposure = 0;
     return state;
 }
 

@@ -53,7 +53,7 @@ Action any_action(Chance& chance) {
     case 3:
         return {Verb::show, {chance.of(shown_layer_names())}, {}, {}};
     case 4:
-        return {Verb::exposure, {}, {chance.between(-3, 3)}, {}};
+        return {Verb::exposure, {std::to_string(chance.between(-3, 3))}, {}, {}};
     case 5:
         return {Verb::wipe, {}, {chance.share()}, {}};
     case 6:

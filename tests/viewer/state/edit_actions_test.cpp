@@ -56,9 +56,9 @@ TEST(EditActions, ExposureIsHowAPictureIsShown) {
     edited("edit exposure 2.5");
     EXPECT_EQ(edited.state.revision, revision);
     EXPECT_GT(edited.state.shown_revision, shown);
-    EXPECT_EQ(request_of(edited.state, false).shown.exposure, 2.5f);
+    EXPECT_EQ(request_of(edited.state, false).shown.exposure, 2.5);
     edited("undo");
-    EXPECT_EQ(request_of(edited.state, false).shown.exposure, 0.5f);
+    EXPECT_EQ(request_of(edited.state, false).shown.exposure, 0.5);
 }
 
 TEST(EditActions, ValuesWithKeysGetThemAtTheFrameShown) {

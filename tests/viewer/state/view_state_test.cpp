@@ -28,21 +28,24 @@ TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {
         EXPECT_GT(state.revision, before) << line;
         EXPECT_EQ(state.shown_revision, shown) << line;
     }
-    for (const char* line : {"exposure 1", "brighten 0.5", "arrange side", "show error", "show fog", "wipe 0.3"}) {
+    for (const char* line : {"exposure auto", "exposure 1", "brighten 0.5", "view-transform srgb", "arrange side",
+                             "show error", "show fog", "wipe 0.3"}) {
         const uint64_t before = state.revision, shown = state.shown_revision;
         act(state, line);
         EXPECT_EQ(state.revision, before) << line;
         EXPECT_GT(state.shown_revision, shown) << line;
     }
-    EXPECT_EQ(state.shown.exposure, 1.5f);
+    EXPECT_EQ(state.shown.exposure, 1.5);
+    EXPECT_EQ(state.shown.transform, ViewTransform::srgb);
     EXPECT_EQ(state.shown.layer, ShownLayer::fog);
 }
 
 TEST(ViewState, MistakesChangeNothing) {
     ViewState state = state_with_scene();
-    for (const char* line : {"mode marsh", "beside marsh", "set march.nodes 99", "set march.nods 4", "reset nodes",
-                             "quality best", "show fogs", "camera back", "dolly 0", "size 0 10", "orders 0", "tab fog",
-                             "select fog", "select lights/moon"}) {
+    for (const char* line :
+         {"mode marsh", "beside marsh", "exposure bright", "exposure 101", "zoom 100", "zoom big", "set march.nodes 99",
+          "set march.nods 4", "reset nodes", "quality best", "show fogs", "camera back", "dolly 0", "size 0 10",
+          "orders 0", "tab fog", "select fog", "select lights/moon"}) {
         const uint64_t before = state.revision;
         error_text(ExitCode::usage, [&] { act(state, line); });
         EXPECT_EQ(state.revision, before) << line;
