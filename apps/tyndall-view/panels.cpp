@@ -10,6 +10,8 @@ namespace {
 constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
+constexpr float narrow_window = 62; // in heights of type
+
 void draw_help(const Act& act) {
     bool open = true;
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
@@ -29,12 +31,17 @@ void draw_help(const Act& act) {
 
 void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
+    // Tab shows and hides the panels: it goes from field to field only where somebody types already.
+    ImGui::PushAllowKeyboardFocus(ImGui::GetIO().WantTextInput);
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
     const float side = state.panels ? std::min(23 * type, 0.5f * whole.x) : 0;
     const float row = ImGui::GetFrameHeight(), rows = state.job ? 2 * row + ImGui::GetStyle().ItemSpacing.y : row;
     const float bar = state.panels ? rows + 2 * ImGui::GetStyle().WindowPadding.y : 0;
     const float strip = state.panels ? inspector_height(state, whole.y) : 0;
+    // In a narrow window what lies below the picture is as wide as the window, and the side as high as the picture.
+    const bool narrow = whole.x < narrow_window * type;
+    const float low_width = narrow ? whole.x : whole.x - side, side_height = narrow ? whole.y - bar - strip : whole.y;
 
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({whole.x - side, whole.y - bar - strip});
@@ -48,20 +55,20 @@ void draw_interface(ViewState& state, const PanelResources& resources, PanelMemo
 
     if (strip > 0) {
         ImGui::SetNextWindowPos({0, whole.y - bar - strip});
-        ImGui::SetNextWindowSize({whole.x - side, strip});
+        ImGui::SetNextWindowSize({low_width, strip});
         ImGui::Begin("looked into", nullptr, fixed);
         draw_inspector(state, resources, act);
         ImGui::End();
     }
     if (state.panels) {
         ImGui::SetNextWindowPos({0, whole.y - bar});
-        ImGui::SetNextWindowSize({whole.x - side, bar});
+        ImGui::SetNextWindowSize({low_width, bar});
         ImGui::Begin("time", nullptr, fixed);
         if (state.job) draw_job(*state.job, act);
         draw_time(state, act);
         ImGui::End();
         ImGui::SetNextWindowPos({whole.x - side, 0});
-        ImGui::SetNextWindowSize({side, whole.y});
+        ImGui::SetNextWindowSize({side, side_height});
         ImGui::Begin("side", nullptr, (fixed & ~ImGuiWindowFlags_NoScrollbar));
         draw_tabs(state, act);
         if (state.lights_tab)
@@ -72,5 +79,6 @@ void draw_interface(ViewState& state, const PanelResources& resources, PanelMemo
     }
     if (state.help) draw_help(act);
     draw_question(state, resources, memory.edits, act);
+    ImGui::PopAllowKeyboardFocus();
 }
 }

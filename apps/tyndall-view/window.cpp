@@ -8,6 +8,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <string_view>
@@ -33,6 +34,38 @@ size_t hash_of(const ImDrawData& data) {
         for (const ImDrawCmd& command : list.CmdBuffer) add(&command.ClipRect, sizeof command.ClipRect);
     }
     return sum;
+}
+
+// Mouse and keys of this frame, instead of those that the backend of ImGui finds at its end.
+void show_input(const InputQueue& input) {
+    ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = {input.mouse.x, input.mouse.y};
+    for (int button = 0; button < ImGuiMouseButton_COUNT; ++button)
+        io.MouseDown[button] = input.buttons.contains(button);
+    std::ranges::fill(io.KeysDown, false);
+    for (const int key : input.keys) io.KeysDown[key] = true;
+    const auto either = [&](int left, int right) { return input.keys.contains(left) || input.keys.contains(right); };
+    io.KeyCtrl = either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL);
+    io.KeyShift = either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
+    io.KeyAlt = either(GLFW_KEY_LEFT_ALT, GLFW_KEY_RIGHT_ALT);
+}
+
+InputQueue& queue(GLFWwindow* window) { return static_cast<Window*>(glfwGetWindowUserPointer(window))->input(); }
+
+// From now on, what hands do goes into the queue.
+void note_input(GLFWwindow* window) {
+    double x = 0, y = 0;
+    glfwGetCursorPos(window, &x, &y);
+    queue(window).mouse = vec2(x, y);
+    glfwSetCursorPosCallback(window, [](GLFWwindow* one, double to_x, double to_y) {
+        queue(one).add({InputEvent::Kind::move, vec2(to_x, to_y)});
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* one, int button, int action, int) {
+        queue(one).add({InputEvent::Kind::button, {}, button, action == GLFW_PRESS});
+    });
+    glfwSetKeyCallback(window, [](GLFWwindow* one, int key, int, int action, int) {
+        if (key >= 0 && action != GLFW_REPEAT) queue(one).add({InputEvent::Kind::key, {}, key, action == GLFW_PRESS});
+    });
 }
 
 [[noreturn]] void fail_display() {
@@ -78,6 +111,7 @@ Window::Window(const std::string& title, ivec2 size) {
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
         if (count > 0) static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_ = files[0];
     });
+    note_input(window_); // before ImGui, which goes on to call what is there
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
 
@@ -87,6 +121,11 @@ Window::Window(const std::string& title, ivec2 size) {
     float scale = 1, ignored = 1;
     glfwGetWindowContentScale(window_, &scale, &ignored);
     apply_theme(scale);
+    // Panels need that much, on screens that have it.
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* screen = monitor ? glfwGetVideoMode(monitor) : nullptr;
+    const ivec2 least = glm::min(ivec2(scale * vec2(680, 480)), screen ? ivec2(screen->width, screen->height) : size);
+    glfwSetWindowSizeLimits(window_, least.x, least.y, GLFW_DONT_CARE, GLFW_DONT_CARE);
     ImGui_ImplGlfw_InitForOpenGL(window_, true);
     ImGui_ImplOpenGL3_Init("#version 130");
 
@@ -120,7 +159,7 @@ void Window::hide() { glfwHideWindow(window_); }
 std::string Window::take_dropped() { return std::exchange(dropped_, {}); }
 
 void Window::wait(double seconds) {
-    if (seconds > 0)
+    if (seconds > 0 && input_.waiting.empty())
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
@@ -131,6 +170,8 @@ void Window::wake() { glfwPostEmptyEvent(); }
 void Window::begin_frame(const ScriptedInput& input) {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    input_.next_frame();
+    show_input(input_);
     if (input.active) {
         ImGuiIO& io = ImGui::GetIO();
         io.MousePos = {input.mouse.x, input.mouse.y};

@@ -1,6 +1,7 @@
 // A window with Dear ImGui in it, and textures for pictures.
 #pragma once
 #include "base/image.h"
+#include "viewer/state/input_queue.h"
 
 #include <map>
 #include <string>
@@ -26,7 +27,7 @@ public:
 
     bool take_close();          // its closing was asked for, said once
     std::string take_dropped(); // a file dropped on it, said once; empty = none
-    // Sleeps until there is something to do, or for so long.
+    // Sleeps until there is something to do, or for so long; not while hands have done more than a frame has seen.
     void wait(double seconds);
     void hide();
     static void wake(); // from any thread: ends wait()
@@ -35,6 +36,7 @@ public:
     // By GL; does nothing and says so when all of it is on the screen already, unless it is to be drawn anyway.
     bool draw(bool anyway);
     void swap();
+    InputQueue& input() { return input_; }
     void set_title(const std::string& title);
 
     // There are two: the picture itself and another one. Call between end_frame() and draw().
@@ -46,6 +48,7 @@ public:
 private:
     GLFWwindow* window_ = nullptr;
     unsigned textures_[2]{};
+    InputQueue input_;
     std::string dropped_;
     size_t drawn_ = 0;  // hash of what was drawn last
     bool stale_ = true; // the picture is another one, or the window was uncovered
