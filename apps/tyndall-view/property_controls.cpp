@@ -10,7 +10,7 @@
 namespace tyndall {
 namespace {
 constexpr float label_share = 0.4f;
-constexpr float highest_sun = 89.9f; // degrees: beyond it the bearing would be lost
+constexpr float highest_sun = 89.9f; // degrees: beyond it the azimuth would be lost
 constexpr double slow = 0.002;       // of a vector's usual range, for a pixel of dragging
 
 bool is_degrees(const Property& property) { return std::string_view(property.unit) == "degrees"; }
@@ -176,7 +176,7 @@ void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memo
             act(action_of(*state.scene, {Part::light, light, "direction", direction_from(place), seconds},
                           drag_now(memory)));
     };
-    slider("height", "Of the sun above the horizon", place.height, -10, highest_sun);
-    slider("bearing", "The side the sun stands on: 0 is +z, 90 is +x", place.bearing, 0, 360);
+    slider("elevation", "Of the sun above the horizon", place.height, -10, highest_sun);
+    slider("azimuth", "The side the sun stands on: 0 is +z, 90 is +x", place.bearing, 0, 360);
 }
 }

@@ -27,7 +27,7 @@ TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
 
 TEST(PropertyWords, MessagesSpeakOfLabels) {
     EXPECT_EQ(in_words(Part::light, "outer_cone must not be less than inner_cone, at any moment"),
-              "beam edge must not be less than full beam, at any moment");
+              "outer cone must not be less than inner cone, at any moment");
     EXPECT_EQ(in_words(Part::medium, "outer_cone"), "outer_cone");
 }
 
