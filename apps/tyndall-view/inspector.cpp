@@ -3,9 +3,12 @@
 
 #include <imgui.h>
 
+#include <algorithm>
+
 namespace tyndall {
 float inspector_height(const ViewState& state, float whole) {
-    return state.explain || state.volume_shown ? 0.45f * whole : 0;
+    const float most = 0.6f * whole, least = std::min(18 * ImGui::GetFontSize(), most);
+    return state.explain || state.volume_shown ? std::max(0.45f * whole, least) : 0;
 }
 
 void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act) {

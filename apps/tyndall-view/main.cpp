@@ -24,12 +24,17 @@ void add_options(const CommandLine& program, Texts& texts) {
         return program.option(name, text, help, type);
     };
     option("SCENE", texts.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself").required();
-    option("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
-    option("--stand-in", texts.stand_in, "NAME",
-           "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
-    option("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
-    program.options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
-                    "NAME=VALUE");
+    const auto quality = [&](const char* name, std::string& text, const char* type, const char* help) {
+        program.option(name, text, help, type).group("Quality");
+    };
+    quality("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
+    quality("--stand-in", texts.stand_in, "NAME",
+            "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
+    quality("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
+    program
+        .options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
+                 "NAME=VALUE")
+        .group("Quality");
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
     option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
     option("--exposure", texts.exposure, "EV",
@@ -37,8 +42,8 @@ void add_options(const CommandLine& program, Texts& texts) {
            "(default: the scene's, auto where it states none)");
     option("--view-transform", texts.view_transform, "NAME",
            "how what is brighter than a screen is shown: filmic (AgX; default) or srgb");
-    option("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
-    option("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
+    quality("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
+    quality("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
     option("--light-units", texts.units, "UNITS",
            "what a glTF's light intensities mean: spec (default), unitless, raw");
     option("--missing", texts.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
@@ -51,11 +56,15 @@ void add_options(const CommandLine& program, Texts& texts) {
 }
 
 std::string footer() {
-    std::string text = "Actions of a script:\n";
-    for (const VerbInfo& info : verbs())
-        text += formatted("  %-24s %.*s\n", (std::string(info.name) + " " + std::string(info.parameters)).c_str(),
-                          static_cast<int>(info.doc.size()), info.doc.data());
-    return text + "\nExit codes: those of tyndall (tyndall --help), 69 when there is no display.";
+    std::string text = "Example: light a scene with quick pictures; P writes one as tyndall render does\n"
+                       "  tyndall view scenes/window.json --mode froxel\n"
+                       "Without a display: xvfb-run -a tyndall view SCENE --script FILE\n"
+                       "Actions of a script:\n";
+    for (const VerbInfo& info : verbs()) {
+        const std::string name = std::string(info.name) + " " + std::string(info.parameters);
+        text += formatted("  %-26s %s\n", name.c_str(), wrapped(info.doc, 76, 29).c_str());
+    }
+    return text + "Exit codes: those of tyndall (tyndall --help), 69 when there is no display.";
 }
 
 ViewerOptions read_options(const Texts& texts) {

@@ -136,6 +136,28 @@ float draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
     return extent.y + pad;
 }
 
+// Words on one band that ends at `low`, or on bands of their own where they do not fit side by side. Returns where that
+// begins.
+float draw_upwards(ImVec2 low, const std::vector<Words>& words, float width) {
+    const float pad = 0.4f * ImGui::GetFontSize();
+    const auto extent = [&](const std::string& text, float wrap) {
+        return ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+    };
+    float sum = 0;
+    for (const Words& one : words) sum += extent(one.text, 0).x + 2.5f * pad;
+    if (sum <= width) {
+        low.y -= extent("", 0).y + pad;
+        draw_band(low, words, width);
+        return low.y;
+    }
+    for (size_t i = words.size(); i-- > 0;) {
+        low.y -= extent(words[i].text, width).y + pad;
+        draw_band(low, {words[i]}, width);
+        if (i > 0) low.y -= 0.5f * pad;
+    }
+    return low.y;
+}
+
 // What the pixel under the mouse holds, in the upper right.
 void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const ViewState& state,
                 const ShownPicture& picture) {
@@ -286,16 +308,16 @@ void draw_picture(ViewState& state, const PanelResources& resources, EditMemory&
         mark_pixel(place, state, *resources.picture);
 
         // Always on the picture: what it is, how good it is, what is wrong with it.
-        const float line = 1.5f * type, width = frame.high.x - frame.low.x - 2 * type;
+        const float width = frame.high.x - frame.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *resources.picture), text_color}};
         if (resources.picture->mode == state.mode)
             words.push_back({wrongs(resources.limitations), severity_color(resources.limitations)});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(frame.high.y + 12 * type, corner.y + space.y) : frame.high.y;
-        draw_band({frame.low.x + 0.5f * type, bottom - line - 0.5f * type}, words, width);
+        const float top = draw_upwards({frame.low.x + 0.5f * type, bottom - 0.5f * type}, words, width);
         if (state.shown.layer == ShownLayer::stops)
-            draw_stops_legend({frame.low.x + 0.5f * type, bottom - line - 3.9f * type}, std::min(26 * type, width));
-        draw_errors(frame, bottom - line - 0.5f * type, state, *resources.picture);
+            draw_stops_legend({frame.low.x + 0.5f * type, top - 3.4f * type}, std::min(26 * type, width));
+        draw_errors(frame, top, state, *resources.picture);
     }
     draw_messages(state, resources, {corner.x + 0.5f * type, corner.y + 0.5f * type}, space.x - 2 * type);
 }

@@ -34,8 +34,8 @@ void draw_words(ImVec2 at, const ImVec4& color, const std::string& text) {
 void draw_grid(const Plot& plot, bool percents) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float type = ImGui::GetFontSize();
-    const double tick =
-        percents ? 0.5 : tick_of(plot.y_end, std::max((plot.high.y - plot.low.y) / (1.6f * type), 1.0f));
+    const double tick = percents ? (plot.high.y - plot.low.y > 2.4f * type ? 0.5 : 1)
+                                 : tick_of(plot.y_end, std::max((plot.high.y - plot.low.y) / (1.6f * type), 1.0f));
     for (double value = 0; value <= 1.0001 * plot.y_end; value += tick) {
         const float y = plot.y(value);
         list->AddLine({plot.low.x, y}, {plot.high.x, y}, grid_color);

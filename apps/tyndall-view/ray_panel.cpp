@@ -160,7 +160,9 @@ void draw_curves(const RayStory& story, ImVec2 low, ImVec2 high) {
     const Interval<double> range = axis_of(story);
     float y = low.y;
     const auto next = [&](const char* title) {
+        ImGui::PushClipRect({left, y}, {high.x, high.y}, true);
         draw_words({left, y}, quiet, title);
+        ImGui::PopClipRect();
         y += 1.3f * type;
         const Plot plot{{left, y}, {high.x, y + unit - 0.3f * type}, range, 1};
         y += unit;
@@ -246,7 +248,8 @@ void draw_ray(const ViewState& state, const RayAnswer* answer, const Act& act) {
     }
     ImGui::TextUnformatted(headline(*answer).c_str());
     const ImVec2 low = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
-    const float split = 0.58f * space.x;
+    const float table = 23 * ImGui::GetFontSize();
+    const float split = std::min(0.58f * space.x, std::max(space.x - table, 0.4f * space.x));
     draw_curves(answer->story, low, {low.x + split, low.y + space.y});
     ImGui::SetCursorScreenPos({low.x + split + 1.5f * ImGui::GetFontSize(), low.y});
     ImGui::BeginChild("answers", {0, 0});

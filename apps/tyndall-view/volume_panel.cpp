@@ -49,10 +49,12 @@ float draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddImage(texture, low, end);
     list->AddRect(low, end, IM_COL32(70, 70, 74, 255));
+    ImGui::PushClipRect(low, high, true);
     draw_words({low.x, end.y + 0.2f * type}, quiet,
-               formatted("%s %.3g to %.3g m to the right, %s %.3g to %.3g m upwards", axis_names[shown.right],
+               formatted("%s %.3g to %.3g m, %s %.3g to %.3g m upwards", axis_names[shown.right],
                          double(shown.box.low[shown.right]), double(shown.box.high[shown.right]), axis_names[shown.up],
                          double(shown.box.low[shown.up]), double(shown.box.high[shown.up])));
+    ImGui::PopClipRect();
     return end.x;
 }
 
