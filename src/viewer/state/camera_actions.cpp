@@ -35,7 +35,8 @@ void fly(ViewState& state, const Action& action) {
 
 void set_camera(ViewState& state, const Action& action) {
     const std::string name = action.words.empty() ? "" : action.words[0];
-    find_camera(loaded_scene(state), name);
+    const Scene& scene = loaded_scene(state);
+    if (find_camera(scene, name) != find_camera(scene, state.camera)) measure_again(state);
     state.camera = name, state.free = false;
     ++state.revision;
 }

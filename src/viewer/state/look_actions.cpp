@@ -40,7 +40,7 @@ void set_exposure(ViewState& state, const Action& action) {
     }
     state.shown.exposure.reset();
     state.automatic = word == "auto";
-    if (state.automatic) state.measured.reset(), ++state.measures;
+    if (state.automatic) measure_again(state);
     ++state.shown_revision;
 }
 

@@ -66,7 +66,7 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     select_by_name(state, selected);
     if (same_file) return;
     state.free = false, state.playing = false;
-    state.measured.reset(), ++state.measures;
+    measure_again(state);
     state.explain.reset();
     state.volume.medium.clear();
     state.frame = state.scene->first_frame;

@@ -109,6 +109,9 @@ bool shows_scene_exposure(const ViewState& state);
 // In stops; nothing while it is not measured yet. Needs a scene.
 std::optional<double> exposure_now(const ViewState& state);
 
+// An exposure that is measured is another one from now on.
+inline void measure_again(ViewState& state) { state.measured.reset(), ++state.measures; }
+
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);
 

@@ -40,6 +40,32 @@ TEST(ViewState, PicturesChangeWithWhatTheyAreMadeOfAndNotWithHowTheyAreShown) {
     EXPECT_EQ(state.shown.layer, ShownLayer::fog);
 }
 
+TEST(ViewState, AMeasuredExposureIsKeptUntilThePictureIsAnother) {
+    ViewState state = state_with_scene();
+    EXPECT_FALSE(request_of(state, false).shown.exposure);
+    state.measured = -3;
+    for (const char* line : {"orbit 1 2", "camera", "frame 3", "edit lights/0/intensity 9", "mode cone"}) {
+        act(state, line);
+        EXPECT_EQ(request_of(state, false).shown.exposure, -3) << line;
+    }
+    act(state, "brighten 0.5");
+    EXPECT_EQ(state.shown.exposure, -2.5);
+    act(state, "exposure scene");
+    EXPECT_EQ(request_of(state, false).shown.exposure, -3);
+    for (const char* line : {"camera side", "exposure auto"}) {
+        const int before = request_of(state, false).measures;
+        act(state, line);
+        EXPECT_FALSE(request_of(state, false).shown.exposure) << line;
+        EXPECT_GT(request_of(state, false).measures, before) << line;
+        state.measured = -3;
+    }
+    act(state, "edit exposure 2");
+    EXPECT_TRUE(shows_scene_exposure(state));
+    EXPECT_EQ(request_of(state, false).shown.exposure, 2);
+    act(state, "undo");
+    EXPECT_FALSE(shows_scene_exposure(state));
+}
+
 TEST(ViewState, MistakesChangeNothing) {
     ViewState state = state_with_scene();
     for (const char* line :
