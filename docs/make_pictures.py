@@ -17,6 +17,7 @@ import tempfile
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+WIDEST = 800  # pixels of a picture on a page; windows are left as they are
 PICTURE = re.compile(r"^    (tyndall .*?)\s+# docs/images/(\S+)$", re.M)
 
 
@@ -36,7 +37,10 @@ def make(tyndall, picture, words, directory):
     made = [directory / f"out/{stem}.{extension}", directory / f"out/{stem}.modes.{extension}"]
     written, kept = next(path for path in made if path.exists()), ROOT / "docs/images" / picture
     if extension == "png":
-        image = Image.open(written).convert("RGB")  # in 256 colours, dithered so that beams show no bands
+        image = Image.open(written).convert("RGB")
+        if not shown and image.width > WIDEST:
+            image = image.resize((WIDEST, image.height * WIDEST // image.width), Image.LANCZOS)
+        # In 256 colours, dithered so that beams show no bands.
         image.quantize(palette=image.quantize(256), dither=Image.FLOYDSTEINBERG).save(kept, optimize=True)
     else:
         shutil.copyfile(written, kept)
