@@ -58,9 +58,11 @@ def make(tyndall, name, out, resolution, modes):
     out.mkdir(parents=True, exist_ok=True)
     scene, options = ROOT / f"scenes/{name}.json", ["--frames", "1", "--res", resolution, "--quiet"]
     run(tyndall, "render", scene, "-o", out / "reference.exr", "--quality", "reference", *CENTRES, *options, "--png")
+    exposure = Image.open(out / "reference.png").text["tyndall:exposure"]  # of all
     pictures, cells = [], {}
     for mode in modes:
-        run(tyndall, "render", scene, "-o", out / f"look.{mode}.exr", "--mode", mode, *options, "--png")
+        run(tyndall, "render", scene, "-o", out / f"look.{mode}.exr", "--mode", mode, *options, "--png", "--exposure",
+            exposure)
         words = f"{mode}   all orders"
         if mode != "path":
             seconds, error, flip = measured(tyndall, scene, mode, out, options)
