@@ -40,7 +40,7 @@ double pixel_count(const View& view) {
 struct Rounds {
     const Mode& mode;
     View view; // as asked for; what spreads most is measured, not guessed from lamps and edges
-    const Goal& goal;
+    Goal& goal;
     double start = 0;             // of the goal's time
     std::optional<Choice> choice; // where anything was measured beforehand
     std::optional<Allotment> allotment{};
@@ -80,7 +80,7 @@ struct Rounds {
     }
 };
 
-Rounds rounds_of(const Mode& mode, const View& view, const Goal& goal) {
+Rounds rounds_of(const Mode& mode, const View& view, Goal& goal) {
     Rounds rounds{mode, view, goal, goal.clock(), {}};
     rounds.view.lamp_samples = rounds.view.edge_samples = 1;
     return rounds;
@@ -267,6 +267,14 @@ void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStat
     note_integrator(choice, stats);
 }
 
+// Tells what the goal is likely to take when `more` seconds come on top of those that have passed. What is far gets
+// a limit.
+void make_forecast(double more, Rounds& rounds, const FrameOptions& options, FrameStats& stats) {
+    stats.forecast_seconds = rounds.goal.clock() - rounds.start + more;
+    if (rounds.goal.seconds == 0 && stats.forecast_seconds > longest_seconds) rounds.goal.seconds = longest_seconds;
+    if (options.forecast) options.forecast(stats.forecast_seconds);
+}
+
 // Renders rounds until noise is as small as the goal asks for, or time is up. `round` counts those of all tries.
 void render_rounds(Rounds& rounds, const Rendering& rendering, double work, Layers& result, FrameStats& stats,
                    int& round) {
@@ -303,6 +311,9 @@ void render_rounds(Rounds& rounds, const Rendering& rendering, double work, Laye
         if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
+        if (work == 0 || rounds.goal.error == 0 || stats.forecast_seconds > 0) continue;
+        make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
+        work = next_round(rounds, stats); // by the limit, where there is one now
     }
 }
 }
@@ -340,10 +351,8 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (rounds.choice->scout) round = 1; // none may take the random numbers of the first picture again
         if (goal.error > 0 && has_integrator(mode)) {
-            const double more = rounds.choice->seconds_to(goal.error) - rounds.choice->measured.prepare_seconds;
-            stats.forecast_seconds = stats.prepare_seconds + more + rounds.check_seconds;
-            if (goal.seconds == 0 && stats.forecast_seconds > longest_seconds) goal.seconds = longest_seconds;
-            if (options.forecast) options.forecast(stats.forecast_seconds);
+            const double render = rounds.choice->seconds_to(goal.error) - rounds.choice->measured.prepare_seconds;
+            make_forecast(render + rounds.check_seconds, rounds, options, stats);
         }
     }
     for (uint32_t check = 1; check <= max_checks; ++check) {

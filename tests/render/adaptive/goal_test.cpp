@@ -172,23 +172,23 @@ TEST(Goal, PicturesOfATargetHaveTheSameBitsForAnyThreadCount) {
 }
 
 namespace {
-// A microsecond for each ray, a thousand to prepare.
-std::atomic<int64_t> microseconds = 0;
+// A microsecond for each ray, unless a test sets more; a thousand to prepare.
+std::atomic<int64_t> microseconds = 0, ray_microseconds = 1;
 double counted_seconds() { return 1e-6 * static_cast<double>(microseconds); }
 
 ScatterFunction prepare_counted(const View&, const Snapshot&, const Settings&, History*) {
     microseconds += 1000;
     return [](const RayBatch& batch, std::span<Scatter> results) {
-        microseconds += static_cast<int64_t>(batch.rays.size());
+        microseconds += ray_microseconds * static_cast<int64_t>(batch.rays.size());
         for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(to_unit(batch.ids[i])), 1, 1, 1};
     };
 }
 
-FrameStats counted(double error, double seconds) {
+FrameStats counted(double error, double seconds, const FrameOptions& options = {}) {
     static const Scene scene;
     FrameStats stats;
     const Goal goal{error, seconds, Quality::preview, counted_seconds};
-    render_to_target(own_mode(prepare_counted), plain_view({16, 16}, 4), snapshot_of(scene), {}, goal, {}, stats);
+    render_to_target(own_mode(prepare_counted), plain_view({16, 16}, 4), snapshot_of(scene), {}, goal, options, stats);
     return stats;
 }
 constexpr double sample_seconds = 256e-6;
@@ -219,6 +219,27 @@ TEST(Goal, WhatComesFirstEndsIt) {
     const FrameStats stopped = counted(0.005, 0.05);
     EXPECT_GT(stopped.noise->bound, 0.005);
     EXPECT_LE(stopped.goal_seconds, 0.05);
+}
+
+TEST(Goal, NoiseAloneIsForecastAfterTheFirstRound) {
+    std::vector<double> forecasts;
+    FrameOptions options;
+    options.forecast = [&](double seconds) { forecasts.push_back(seconds); };
+    const FrameStats stats = counted(0.01, 0, options); // 3333 samples and more
+    EXPECT_LE(stats.noise->bound, 0.01);
+    ASSERT_EQ(forecasts.size(), 1u);
+    EXPECT_EQ(stats.forecast_seconds, forecasts[0]);
+    EXPECT_NEAR(stats.goal_seconds / forecasts[0], 1, 0.3);
+}
+
+TEST(Goal, WhatIsFarIsStoppedAfterTenMinutes) {
+    ray_microseconds = 1000;
+    const FrameStats stats = counted(0.01, 0);
+    ray_microseconds = 1;
+    EXPECT_GT(stats.forecast_seconds, 700);
+    EXPECT_GT(stats.noise->bound, 0.01);
+    EXPECT_LE(stats.goal_seconds, 600);
+    EXPECT_GT(stats.goal_seconds, 400);
 }
 
 // A clock that ticks whenever it is looked at: there is no time for more than one sample.
