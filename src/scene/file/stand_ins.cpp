@@ -40,15 +40,15 @@ void add_missing_light_and_fog(Scene& scene) {
         warn(scene, file + ": there is no light; a sun of 3 lux and some ambient light are used");
     }
 
-    // Half of the light gets through the fog's longest way.
+    // Haze without an edge that anybody sees. Half of the light gets across its contents and as far again.
     const float diagonal = std::max(glm::length(bounds.size()), 1e-3f);
     MediumSource fog;
-    fog.name = "default fog";
-    fog.extinction = 0.7f / (1.5f * diagonal);
+    fog.name = "default fog", fog.kind = MediumKind::height;
+    fog.extinction = 0.7f / (2 * diagonal);
     fog.g = 0.3f;
-    fog.bounds = {bounds.low - 0.25f * diagonal, bounds.high + 0.25f * diagonal};
+    fog.height_base = bounds.low.y, fog.height_falloff = 0.5f * diagonal;
     scene.media.push_back(fog);
     warn(scene, file + ": a glTF has no fog; thin fog of " + formatted("%.3g", fog.extinction.values[0]) +
-                    " per metre around its contents is used");
+                    " per metre that thins out upwards is used");
 }
 }

@@ -169,10 +169,10 @@ std::string new_scene_text(Scene& scene) {
     if (scene.ambient.at(0) != vec3(0)) text += ",\n  \"ambient\": " + list_text(scene.ambient.at(0));
     for (MediumSource& fog : scene.media) {
         fog.entry = "/media/" + std::to_string(media.size());
-        media.push_back("{ \"name\": " + quote_json(fog.name) + ", \"type\": \"homogeneous\", \"extinction\": " +
-                        json_number(fog.extinction.at(0)) + ", \"g\": " + json_number(fog.g.at(0)) +
-                        ", \"bounds\": { \"low\": " + list_text(fog.bounds.low) +
-                        ", \"high\": " + list_text(fog.bounds.high) + " } }");
+        media.push_back("{ \"name\": " + quote_json(fog.name) +
+                        ", \"type\": \"height\", \"extinction\": " + json_number(fog.extinction.at(0)) +
+                        ", \"g\": " + json_number(fog.g.at(0)) + ", \"base\": " + json_number(fog.height_base.at(0)) +
+                        ", \"falloff\": " + json_number(fog.height_falloff.at(0)) + " }");
     }
     add("media", media);
     return text + "\n}\n";
