@@ -7,7 +7,6 @@ already is not measured again.
 """
 import json
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -20,17 +19,15 @@ CHOICES = [("error", 0.2), ("error", 0.1), ("error", 0.05), ("error", 0.02), ("e
            ("seconds", 1 / 30), ("seconds", 0.1), ("seconds", 1)]
 
 
-def picture(page, png):
-    """The two charts of a single frame side by side: the whole picture, and its fog light."""
-    text = page.read_text()
-    style = re.search(r"<style>.*?</style>", text, re.S).group(0)
-    charts = re.findall(r"<svg .*?</svg>", text, re.S)[:2]
-    body = "".join(f'<div style="width:760px;float:left">{chart}</div>' for chart in charts)
+def picture(chart, png):
+    """The two drawings of a single frame side by side: the whole picture, and its fog light."""
+    drawings = [(chart / name).resolve().as_uri() for name in ("chart.svg", "chart_fog.svg")]
+    body = "".join(f'<img src="{drawing}" style="width:760px;vertical-align:top">' for drawing in drawings)
     with tempfile.TemporaryDirectory() as directory:
         file = pathlib.Path(directory) / "charts.html"
-        file.write_text(f'<meta charset="utf-8">{style}<body style="margin:0;max-width:none;padding:0">{body}</body>')
+        file.write_text(f'<meta charset="utf-8"><body style="margin:0;font-size:0">{body}</body>')
         subprocess.run([BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-                        f"--user-data-dir={directory}/profile", "--window-size=1520,475",
+                        f"--user-data-dir={directory}/profile", "--window-size=1520,690",
                         f"--screenshot={png}", file.as_uri()], check=True, capture_output=True)
 
 
@@ -70,7 +67,7 @@ def main():
                        check=True, stdout=subprocess.DEVNULL)
         charts[scene] = json.loads((out / scene / "chart.json").read_text())
         if BROWSER:
-            picture(out / scene / "chart.html", ROOT / f"docs/images/chart_{scene}.png")
+            picture(out / scene, ROOT / f"docs/images/chart_{scene}.png")
     print("| wanted of the fog light |", " | ".join(scenes), "|")
     print("|---|" + "---|" * len(scenes))
     for kind, limit in CHOICES:

@@ -55,8 +55,8 @@ ChartJob make_job(const Options& texts) {
 
 // Every file that will be written, so that what cannot be is found out before the work.
 void check_places(const ChartJob& job, OutputPlaces& places) {
-    for (const char* name :
-         {"chart.csv", "chart.json", "chart.html", "points/a.json", "pictures/a.png", "reference/a.exr"})
+    for (const char* name : {"chart.csv", "chart.json", "chart.html", "chart.svg", "chart_fog.svg",
+                             "chart_sequence.svg", "points/a.json", "pictures/a.png", "reference/a.exr"})
         places.check(job.directory / name);
 }
 
@@ -64,6 +64,9 @@ void write_reports(const Chart& chart) {
     const std::filesystem::path& directory = chart.job.directory;
     write_file_atomically(directory / "chart.csv", chart_csv(chart));
     write_file_atomically(directory / "chart.json", chart_json(chart));
+    write_file_atomically(directory / "chart.svg", chart_svg_file(chart, FrameTime::single, ErrorOf::worse));
+    write_file_atomically(directory / "chart_fog.svg", chart_svg_file(chart, FrameTime::single, ErrorOf::fog));
+    write_file_atomically(directory / "chart_sequence.svg", chart_svg_file(chart, FrameTime::sequence, ErrorOf::worse));
     write_file_atomically(directory / "chart.html", chart_html(chart));
 }
 
@@ -72,7 +75,7 @@ void say_end(const Chart& chart) {
     if (chart.kept > 0) line += formatted(", %d kept from before", chart.kept);
     if (!chart.left_out.empty()) line += formatted(", %zu left out", chart.left_out.size());
     say(line);
-    if (chart.load_before > chart.threads + 0.5)
+    if (was_loaded(chart))
         say(formatted("note: other work was running (load %.1f on %d threads): times are longer than they need be",
                       chart.load_before, chart.threads));
     say("look: " + printable((chart.job.directory / "chart.html").string()));
@@ -109,7 +112,9 @@ Run add_chart(const Command& program) {
     const Command command = program.command("chart", "every mode's error against its time on a scene");
     auto texts = std::make_shared<Options>();
     command.option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
-    command.option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html and pictures", "DIR")
+    command
+        .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\npictures",
+                "DIR")
         .required();
     command.option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
     command.flag("--quick", texts->quick, "small pictures, without the settings that take longest: under a minute");

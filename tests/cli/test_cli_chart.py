@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import unittest
+import xml.dom.minidom
 
 from program import ProgramTest, scene
 
@@ -94,6 +95,24 @@ class Chart(ProgramTest):
         result = self.chart("--modes", "cone", "--json")
         self.assertEqual(result.stdout, self.path("chart/chart.json").read_text())
         self.assertIn("error of at most", self.chart("--modes", "cone", "-q").stdout)
+
+    def test_says_what_was_left_out_and_why(self):
+        result = self.chart("--modes", "cone,path", "--longest", "0.01", "-q")
+        left_out = json.loads(self.path("chart/chart.json").read_text())["left_out"]
+        self.assertGreater(len(left_out), 0)  # 1024 paths a pixel take more than 10 ms
+        listed = [line for line in result.stdout.splitlines() if line.startswith("  ")]
+        self.assertEqual(len(listed), len(left_out))
+        for rung, line in zip(left_out, listed):
+            self.assertTrue(line.startswith(f"  {rung['mode']} {rung['rung']}, "), line)
+            self.assertIn(rung["settings"], line)
+        self.assertIn("more than 10 ms (--longest)", result.stdout)
+
+    def test_drawings_are_files_of_their_own(self):
+        self.chart("--modes", "cone")
+        for name in ("chart", "chart_fog", "chart_sequence"):
+            drawing = xml.dom.minidom.parse(str(self.path(f"chart/{name}.svg"))).documentElement
+            marks = [group for group in drawing.getElementsByTagName("g") if group.getAttribute("class") == "mark"]
+            self.assertEqual(len(marks), len(self.points()))
 
     def test_refusals(self):
         out = ["-o", self.path("out")]

@@ -196,7 +196,7 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
             tasks.push_back(std::move(task));
             continue;
         }
-        chart.left_out.push_back({std::string(rung.mode->name), rung.place, task.seconds});
+        chart.left_out.push_back({std::string(rung.mode->name), rows_of(settings_of(rung)), rung.place, task.seconds});
         if (control.remark && !goes_on)
             control.remark(formatted("%s.%d and what follows it are left out: a picture would take about %.2g s",
                                      std::string(rung.mode->name).c_str(), rung.place, task.seconds));

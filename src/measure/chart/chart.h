@@ -57,7 +57,7 @@ struct ChartJob {
 
 // A rung that was left out, and the seconds its picture would have taken: that many or more.
 struct LeftOut {
-    std::string mode;
+    std::string mode, settings; // as of a point
     int rung = 0;
     double seconds = 0;
 };
@@ -84,6 +84,9 @@ struct Chart {
     int kept = 0; // points that an earlier run had measured
     double seconds = 0;
 };
+
+// Whether other work ran beside it, which makes times longer.
+inline bool was_loaded(const Chart& chart) { return chart.load_before > chart.threads + 0.5; }
 
 struct ChartControl {
     std::atomic<bool>* cancel = nullptr;

@@ -57,6 +57,13 @@ std::string advice_table(const Chart& chart) {
            rows + "</tbody></table>\n";
 }
 
+std::string left_out(const Chart& chart) {
+    if (chart.left_out.empty()) return {};
+    std::string list;
+    for (const LeftOut& rung : chart.left_out) list += element("li", xml_text(left_out_words(rung)));
+    return element("p", xml_text(left_out_reason(chart)) + ":") + element("ul class=\"quiet\"", list);
+}
+
 // --- all numbers ---------------------------------------------------------------------------------------------------
 struct Column {
     const char* head;
@@ -176,9 +183,6 @@ std::string method(const Chart& chart) {
         "run; two standard deviations of what the reference's noise leaves unknown."};
     std::string list;
     for (const std::string& text : lines) list += element("li", text);
-    for (const LeftOut& rung : chart.left_out)
-        list += element("li", xml_text(rung.mode) + " " + std::to_string(rung.rung) + " was left out: it takes about " +
-                                  seconds_words(rung.seconds) + " a picture, or more.");
     return element("ul", list);
 }
 }
@@ -188,9 +192,9 @@ std::string chart_html(const Chart& chart) {
     std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
                        "</title>\n<meta name=\"viewport\" content=\"width=device-width\">\n"
                        "<link rel=\"icon\" href=\"data:,\">\n<style>" +
-                       std::string(chart_page_style) + "</style></head><body>\n";
+                       std::string(chart_page_style) + std::string(chart_svg_style) + "</style></head><body>\n";
     html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
-    html += element("h2", "What to use when") + advice_table(chart);
+    html += element("h2", "What to use when") + advice_table(chart) + left_out(chart);
     html +=
         element("h2", "The technique alone") +
         element("p class=\"quiet\"",

@@ -34,16 +34,22 @@ Json advice_json(const Chart& chart) {
 
 Json left_out_json(const Chart& chart) {
     return json_list(chart.left_out, [](const LeftOut& rung) {
-        return json_object({{"mode", rung.mode}, {"rung", rung.rung}, {"expected_seconds", rung.seconds}});
+        return json_object({{"mode", rung.mode},
+                            {"rung", rung.rung},
+                            {"settings", rung.settings},
+                            {"expected_seconds", rung.seconds}});
     });
 }
 
-// The point that answers a need, by the time and the error that count; none that is as far off as a black picture.
+constexpr double max_advised_error = 0.5;
+
+// The point that answers a need, by the time and the error that count.
 std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
     const ChartPoint* best = nullptr;
     for (const ChartPoint& point : chart.points) {
         const double seconds = seconds_of(point, time), error = error_of(point, what);
-        if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds && error < 1)) continue;
+        if (need.error > 0 ? !(error <= need.error) : !(seconds <= need.seconds && error <= max_advised_error))
+            continue;
         const bool better =
             !best || (need.error > 0 ? seconds < seconds_of(*best, time) : error < error_of(*best, what));
         if (better) best = &point;
@@ -130,6 +136,21 @@ std::string chart_json(const Chart& chart) {
          {"points", json_list(chart.points, json_of_point)}});
 }
 
+std::string left_out_reason(const Chart& chart) {
+    if (chart.left_out.empty()) return {};
+    std::string text = count_text(chart.left_out.size(), "setting") + " left out: a picture would take more than " +
+                       seconds_words(chart.job.longest) + " (--longest)";
+    if (was_loaded(chart))
+        text += formatted("; other work was running (load %.1f on %d threads), without it more of them may fit",
+                          chart.load_before, chart.threads);
+    return text;
+}
+
+std::string left_out_words(const LeftOut& rung) {
+    return rung.mode + " " + std::to_string(rung.rung) + ", " + seconds_words(rung.seconds) +
+           " or more: " + rung.settings;
+}
+
 std::string chart_text(const Chart& chart) {
     std::string text;
     const auto words = [](const std::optional<ChartPoint>& point, ErrorOf what) {
@@ -140,6 +161,9 @@ std::string chart_text(const Chart& chart) {
     for (const Advice& advice : advice_of(chart))
         text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the technique alone " +
                 words(advice.fog, ErrorOf::fog) + "\n";
+    if (chart.left_out.empty()) return text;
+    text += left_out_reason(chart) + ":\n";
+    for (const LeftOut& rung : chart.left_out) text += "  " + left_out_words(rung) + "\n";
     return text;
 }
 }

@@ -7,13 +7,18 @@
 namespace tyndall {
 std::string chart_csv(const Chart& chart);
 std::string chart_json(const Chart& chart);
-std::string chart_text(const Chart& chart); // a few lines: what to use when
+std::string chart_text(const Chart& chart); // a few lines: what to use when, and what was left out
+
+// Why settings were left out, and each of them; empty when none was.
+std::string left_out_reason(const Chart& chart);
+std::string left_out_words(const LeftOut& rung); // "march 5, 1.2 s or more: pixel.samples=64"
 
 // A page with inline pictures, read from the chart's directory. Throws Error (unreadable).
 std::string chart_html(const Chart& chart);
 
 // Error against time, both logarithmic; the marks carry data-id="march.3" and the names of the `chart_page` styles.
 std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what);
+std::string chart_svg_file(const Chart& chart, FrameTime time, ErrorOf what); // with its style
 
 // The answers to a need: the quickest point with an error of at most `error`, or the best within `seconds`.
 struct Advice {

@@ -1,13 +1,21 @@
-// The picture of a chart, as SVG.
+// The picture of a chart, as SVG: to be read at the width of a column, on paper and on dark screens.
+#include "measure/report/svg.h"
 #include "base/text.h"
+#include "measure/chart/page.h"
 #include "measure/chart/report.h"
 #include "modes/mode.h"
 
 #include <algorithm>
+#include <sstream>
 
 namespace tyndall {
 namespace {
-constexpr double width = 960, height = 600, left = 86, right = 130, top = 24, bottom = 62;
+constexpr double width = 640, left = 78, right = 626, top = 12, bottom = 400; // of the plot in the picture
+constexpr double legend_top = 474, legend_row = 23, legend_column = 152;
+constexpr int legend_columns = 4, max_ticks = 8;
+
+// Errors above do not stretch the axis: they stand in a strip of their own over a break.
+constexpr double max_error = 2, strip = 40;
 
 // A logarithmic axis onto pixels.
 struct Axis {
@@ -33,6 +41,7 @@ struct Frame {
     FrameTime time;
     ErrorOf what;
     Axis x, y;
+    bool broken = false; // some errors lie in the strip
 
     double seconds(const ChartPoint& point) const { return seconds_of(point, time); }
     double error(const ChartPoint& point, bool fitted) const {
@@ -46,6 +55,11 @@ struct Frame {
     // What is below the reference's noise lies on it.
     double value(const ChartPoint& point, bool fitted) const {
         return std::max({error(point, fitted), uncertainty(point, fitted), 1e-6});
+    }
+    bool in_strip(const ChartPoint& point, bool fitted) const { return value(point, fitted) > max_error; }
+    Place place(const ChartPoint& point, bool fitted) const {
+        const double over = top + 0.45 * strip;
+        return {x.at(seconds(point)), in_strip(point, fitted) ? over : y.at(value(point, fitted))};
     }
 };
 
@@ -67,22 +81,26 @@ Frame frame_of(const Chart& chart, FrameTime time, ErrorOf what) {
         errors.push_back(frame.value(point, false));
         if (is_look(point)) errors.push_back(frame.value(point, true));
     }
-    frame.x = axis_over(seconds, left, width - right), frame.y = axis_over(errors, height - bottom, top);
+    frame.broken = std::erase_if(errors, [](double error) { return error > max_error; }) > 0;
+    frame.x = axis_over(seconds, left, right);
+    frame.y = axis_over(errors, bottom, frame.broken ? top + strip : top);
     return frame;
 }
 
 // 1, 2 and 5 of each decade within the axis; those of 1 are strong.
 struct Tick {
     double value;
-    bool strong;
+    bool strong, named;
 };
 std::vector<Tick> ticks_of(const Axis& axis) {
     std::vector<Tick> ticks;
     for (int decade = -7; decade <= 7; ++decade)
         for (const int digit : {1, 2, 5}) {
             const double value = digit * std::pow(10.0, decade);
-            if (value >= axis.low && value <= axis.high) ticks.push_back({value, digit == 1});
+            if (value >= axis.low && value <= axis.high) ticks.push_back({value, digit == 1, true});
         }
+    if (ticks.size() > max_ticks)
+        for (Tick& tick : ticks) tick.named = tick.strong;
     return ticks;
 }
 
@@ -103,23 +121,31 @@ std::string grid(const Frame& frame) {
     std::string svg;
     for (const Tick& tick : ticks_of(frame.x)) {
         const double x = frame.x.at(tick.value);
-        svg += line(x, top, x, height - bottom, tick.strong ? "grid strong" : "grid");
-        svg += text(x, height - bottom + 18, "tick", tick_words(tick.value), " text-anchor='middle'");
+        svg += line(x, frame.y.to, x, bottom, tick.strong ? "grid strong" : "grid");
+        if (tick.named) svg += text(x, bottom + 20, "tick", tick_words(tick.value), " text-anchor='middle'");
     }
     for (const Tick& tick : ticks_of(frame.y)) {
         const double y = frame.y.at(tick.value);
-        svg += line(left, y, width - right, y, tick.strong ? "grid strong" : "grid");
-        svg += text(left - 8, y + 4, "tick", formatted("%g %%", 100 * tick.value), " text-anchor='end'");
+        svg += line(left, y, right, y, tick.strong ? "grid strong" : "grid");
+        if (tick.named)
+            svg += text(left - 7, y + 5, "tick", formatted("%g %%", 100 * tick.value), " text-anchor='end'");
     }
     const std::string what = frame.time == FrameTime::single ? "time of a single frame, set-up included"
                                                              : "time of each of 100 frames, set-up shared among them";
-    svg += text((left + width - right) / 2, height - 16, "axis", what, " text-anchor='middle'");
-    const double middle = (top + height - bottom) / 2;
-    const char* error = frame.what == ErrorOf::worse ? "error E of the picture or its fog light, whichever is worse"
-                                                     : "error of the fog light at pixel centres";
-    svg += text(18, middle, "axis", std::string(error) + " / mean",
-                " text-anchor='middle' transform='rotate(-90 18 " + n(middle) + ")'");
-    return svg;
+    svg += text((left + right) / 2, bottom + 46, "axis", what, " text-anchor='middle'");
+    const double middle = (top + bottom) / 2;
+    const char* error = frame.what == ErrorOf::worse ? "error E" : "error of the fog light at pixel centres";
+    return svg + text(17, middle, "axis", std::string(error) + " / mean",
+                      " text-anchor='middle' transform='rotate(-90 17 " + n(middle) + ")'");
+}
+
+// The break of the error axis and what is above it.
+std::string strip_of(const Frame& frame) {
+    if (!frame.broken) return {};
+    const double y = top + strip - 4;
+    std::string svg = line(left, y - 4, right, y - 4, "break") + line(left, y, right, y, "break");
+    return svg +
+           text(left - 7, top + 0.45 * strip + 5, "tick", formatted("> %g %%", 100 * max_error), " text-anchor='end'");
 }
 
 // Regular polygons and stars by their corners, one shape for each mode.
@@ -144,12 +170,12 @@ std::string shape(int kind, Place at, double size) {
 
 // Where points lie, and how uncertain that is.
 std::string whiskers(const Frame& frame, const ChartPoint& point, bool fitted) {
-    const double x = frame.x.at(frame.seconds(point)), y = frame.y.at(frame.value(point, fitted));
+    const auto [x, y] = frame.place(point, fitted);
     const double error = frame.error(point, fitted), uncertainty = frame.uncertainty(point, fitted);
     std::string svg;
-    if (uncertainty > 0.1 * error) {
+    if (uncertainty > 0.1 * error && !frame.in_strip(point, fitted)) {
         const double low = error - 2 * uncertainty;
-        svg += line(x, frame.y.at(error + 2 * uncertainty), x, low > 0 ? frame.y.at(low) : height - bottom, "whisker");
+        svg += line(x, frame.y.at(error + 2 * uncertainty), x, low > 0 ? frame.y.at(low) : bottom, "whisker");
     }
     if (point.frame_slowest > 1.1 * point.frame_fastest) {
         const double more = frame.seconds(point) - point.frame_seconds;
@@ -158,43 +184,61 @@ std::string whiskers(const Frame& frame, const ChartPoint& point, bool fitted) {
     return svg;
 }
 
+// Black is the colour of letters, which are light on dark screens.
+std::string ink(const std::string& mode) {
+    const std::string color = style_of(mode).color;
+    return color == "#000000" ? "currentColor" : color;
+}
+
+std::string colored(const std::string& mode, bool fitted, Place at) {
+    const std::string color = ink(mode);
+    const std::string style = fitted ? "class='hollow' stroke='" + color + "' stroke-width='2'"
+                                     : "fill='" + color + "' stroke='currentColor' stroke-width='0.8'";
+    return "<g " + style + ">" + shape(style_of(mode).shape, at, 6) + "</g>";
+}
+
 std::string mark(const Frame& frame, const ChartPoint& point, Place at, bool fitted) {
-    const MarkStyle style = style_of(point.mode);
     const std::string id = point_name(point) + (fitted ? ".fitted" : "");
     const std::string words =
         id + ": " + share_words(frame.error(point, fitted)) + ", " + seconds_words(frame.seconds(point));
-    return "<g class='mark' data-id='" + id + "' tabindex='0' role='img' aria-label='" + words + "' fill='" +
-           (fitted ? "#fff" : style.color) + "' stroke='" + (fitted ? style.color : "#222") + "' stroke-width='" +
-           (fitted ? "2" : "0.8") + "'>" + shape(style.shape, at, 6) + "</g>\n";
+    return "<g class='mark' data-id='" + id + "' tabindex='0' role='img' aria-label='" + words + "'>" +
+           colored(point.mode, fitted, at) + "</g>\n";
 }
 
-struct Label {
-    double x, y;
-    std::string words, color;
-};
-
-// What lies over what: lines, their names, marks.
+// What lies over what.
 struct Drawing {
     std::string lines, marks;
-    std::vector<Label> labels;
+    std::vector<std::string> modes;     // that are drawn
+    std::vector<std::string> over = {}; // errors in the strip, a mode each
+    bool fitted = false;                // a look is drawn a second time
 };
+
+// The range of a mode's errors in the strip.
+void note_strip(const Frame& frame, const std::string& mode, Drawing& drawing) {
+    double low = infinity, high = 0;
+    for (const ChartPoint& point : frame.chart.points)
+        if (point.mode == mode && drawn(point) && frame.in_strip(point, false))
+            low = std::min(low, frame.value(point, false)), high = std::max(high, frame.value(point, false));
+    if (high == 0) return;
+    const std::string from = share_words(low), to = share_words(high);
+    drawing.over.push_back(mode + " " + from + (from == to ? "" : " to " + to));
+}
 
 // A mode's marks with a line through them; looks a second time with the gain that fits them.
 void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawing& drawing) {
     std::string path;
-    Place last{};
     for (const ChartPoint& point : frame.chart.points) {
         if (point.mode != mode || !drawn(point) || !std::isfinite(frame.error(point, fitted))) continue;
-        last = {frame.x.at(frame.seconds(point)), frame.y.at(frame.value(point, fitted))};
-        path += (path.empty() ? "" : " ") + n(last.x) + "," + n(last.y);
+        const Place at = frame.place(point, fitted);
+        path += (path.empty() ? "" : " ") + n(at.x) + "," + n(at.y);
         drawing.lines += whiskers(frame, point, fitted);
-        drawing.marks += mark(frame, point, last, fitted);
+        drawing.marks += mark(frame, point, at, fitted);
     }
     if (path.empty()) return;
-    const std::string color = style_of(mode).color;
-    drawing.labels.push_back({last.x + 11, last.y + 4, mode + (fitted ? ", gain fitted" : ""), color});
-    drawing.lines +=
-        "<polyline points='" + path + "' class='series" + (fitted ? " fitted" : "") + "' stroke='" + color + "'/>\n";
+    drawing.lines += "<polyline points='" + path + "' class='series" + (fitted ? " fitted" : "") + "' stroke='" +
+                     ink(mode) + "'/>\n";
+    if (fitted) drawing.fitted = true;
+    if (!fitted) drawing.modes.push_back(mode);
 }
 
 // Steps along the points that nothing beats.
@@ -202,29 +246,46 @@ std::string front(const Frame& frame) {
     std::vector<Place> best;
     for (const ChartPoint& point : frame.chart.points)
         if (drawn(point) && unbeaten(point, frame.chart.points, frame.time, frame.what))
-            best.push_back({frame.x.at(frame.seconds(point)), frame.y.at(frame.value(point, false))});
+            best.push_back(frame.place(point, false));
     std::ranges::sort(best, {}, &Place::x);
     if (best.empty()) return {};
     std::string path = "M" + n(best[0].x) + " " + n(top);
     for (const Place& place : best)
         path += " L" + n(place.x) + " " + n(best.data() == &place ? top : (&place)[-1].y) + " L" + n(place.x) + " " +
                 n(place.y);
-    path += " L" + n(width - right) + " " + n(best.back().y);
+    path += " L" + n(right) + " " + n(best.back().y);
     return "<path d='" + path + "' class='front'/>\n";
 }
 
-// Labels of lines that end close together move apart.
-std::string placed(std::vector<Label> labels) {
-    constexpr double line_height = 15;
-    std::ranges::sort(labels, {}, &Label::y);
+// Names of the marks in rows below the plot, and what the strip holds. Returns where they end as well.
+std::string legend(const Drawing& drawing, double& end) {
     std::string svg;
-    for (size_t i = 0; i < labels.size(); ++i)
-        for (size_t k = 0; k < i; ++k)
-            if (std::abs(labels[i].x - labels[k].x) < 110 && labels[i].y < labels[k].y + line_height &&
-                labels[i].y > labels[k].y - line_height)
-                labels[i].y = labels[k].y + line_height;
-    for (const Label& label : labels)
-        svg += text(label.x, label.y, "label", label.words, " fill='" + label.color + "'");
+    int entries = 0;
+    Place at{};
+    const auto entry = [&](const std::string& words) {
+        at = {left - 60 + legend_column * (entries % legend_columns),
+              legend_top + legend_row * (entries / legend_columns)};
+        ++entries;
+        svg += text(at.x + 16, at.y + 5, "legend", words);
+    };
+    for (const std::string& mode : drawing.modes) {
+        entry(mode);
+        svg += colored(mode, false, at) + "\n";
+    }
+    if (drawing.fitted) {
+        entry("gain fitted");
+        svg += line(at.x - 10, at.y, at.x + 10, at.y, "series fitted quiet") + "<circle class='hollow quiet' cx='" +
+               n(at.x) + "' cy='" + n(at.y) + "' r='5'/>\n";
+    }
+    entry("unbeaten");
+    svg += line(at.x - 10, at.y, at.x + 10, at.y, "front");
+    end = at.y + legend_row + 5;
+
+    std::string over;
+    for (const std::string& words : drawing.over) over += (over.empty() ? "over the break: " : ", ") + words;
+    std::istringstream lines(wrapped(over, 84, 0));
+    for (std::string words; std::getline(lines, words); end += 19)
+        svg += text(left - 60 - 6, end, "tick", xml_text(words));
     return svg;
 }
 }
@@ -242,9 +303,18 @@ std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what) {
     for (const ChartedMode& mode : chart.modes) {
         add_series(frame, mode.name, false, drawing);
         if (mode.accuracy == Accuracy::artistic) add_series(frame, mode.name, true, drawing);
+        note_strip(frame, mode.name, drawing);
     }
+    double height = 0;
+    const std::string names = legend(drawing, height);
     return "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 " + n(width) + " " + n(height) +
-           "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + front(frame) +
-           drawing.lines + placed(drawing.labels) + drawing.marks + "</svg>\n";
+           "' class='chart' role='group' aria-label='error against time'>\n" + grid(frame) + strip_of(frame) +
+           front(frame) + drawing.lines + drawing.marks + names + "</svg>\n";
+}
+
+std::string chart_svg_file(const Chart& chart, FrameTime time, ErrorOf what) {
+    std::string svg = chart_svg(chart, time, what);
+    const std::string paper = "<rect class='paper' width='100%' height='100%'/>\n";
+    return svg.insert(svg.find('\n') + 1, "<style>" + std::string(chart_svg_style) + "</style>\n" + paper);
 }
 }

@@ -126,6 +126,30 @@ TEST(Chart, AdvisesTheQuickestGoodEnoughAndTheBestInTime) {
     EXPECT_EQ(in_seconds, (std::map<double, std::string>{{1.0 / 30, "march.1"}, {0.1, "march.2"}, {1.0, "march.2"}}));
 }
 
+TEST(Chart, AdvisesNothingThatIsMoreThanHalfWrong) {
+    Chart chart = small_chart();
+    chart.points = {point_at("march", 1, 0.5, 0.45), point_at("billboard", 1, 0.002, 0.94)};
+    for (const Advice& advice : advice_of(chart))
+        for (const auto& point : {advice.single, advice.sequence, advice.fog})
+            EXPECT_TRUE(!point || point->mode == "march") << need_words(advice);
+}
+
+TEST(Chart, ListsWhatWasLeftOutBesideTheAdvice) {
+    Chart chart = small_chart();
+    EXPECT_EQ(chart_text(chart).find("left out"), std::string::npos);
+    chart.modes.clear(); // their pictures are on the page
+    chart.job.longest = 0.7, chart.threads = 2, chart.load_before = 6;
+    chart.left_out = {{"march", "pixel.samples=64", 4, 1.25}, {"march", "pixel.samples=256", 5, 1.25}};
+    const std::string text = chart_text(chart), page = chart_html(chart);
+    for (const char* words :
+         {"2 settings left out: a picture would take more than 700 ms (--longest); other work was "
+          "running (load 6.0 on 2 threads)",
+          "march 4, 1.2 s or more: pixel.samples=64", "march 5, 1.2 s or more: pixel.samples=256"}) {
+        EXPECT_NE(text.find(words), text.npos) << text;
+        EXPECT_NE(page.find(words), page.npos) << page;
+    }
+}
+
 TEST(Chart, SaysTheSameInCsvAndJson) {
     const Chart chart = small_chart();
     const Json json = parse_json(chart_json(chart), "chart.json");
@@ -143,9 +167,59 @@ TEST(Chart, DrawsEveryPointAndLooksTwice) {
     const std::string svg = chart_svg(small_chart(), FrameTime::single, ErrorOf::worse);
     for (const char* id : {"march.1", "march.2", "march.3", "billboard.1", "billboard.1.fitted"})
         EXPECT_NE(svg.find(std::string("data-id='") + id + "'"), svg.npos) << id;
-    EXPECT_NE(svg.find(">billboard, gain fitted<"), svg.npos);
     EXPECT_EQ(svg.find("nan"), svg.npos);
     EXPECT_EQ(svg.find("inf"), svg.npos);
+}
+
+// The numbers behind each `key='` in a drawing.
+std::vector<double> numbers_of(const std::string& svg, const std::string& key) {
+    std::vector<double> numbers;
+    for (size_t at = svg.find(key); at != svg.npos; at = svg.find(key, at + 1))
+        numbers.push_back(std::stod(svg.substr(at + key.size())));
+    return numbers;
+}
+
+TEST(Chart, NamesMarksBelowThePlotAndKeepsWordsOffThem) {
+    const std::string svg = chart_svg(small_chart(), FrameTime::single, ErrorOf::worse);
+    for (const char* name : {">march<", ">billboard<", ">gain fitted<", ">unbeaten<"})
+        EXPECT_NE(svg.find(name), svg.npos) << name;
+    // Letters stand left of the plot or below it.
+    const std::vector<double> x = numbers_of(svg, "<text x='");
+    std::vector<double> y;
+    for (size_t at = svg.find("<text x='"); at != svg.npos; at = svg.find("<text x='", at + 1))
+        y.push_back(std::stod(svg.substr(svg.find("y='", at) + 3)));
+    ASSERT_EQ(x.size(), y.size());
+    for (size_t i = 0; i < x.size(); ++i) EXPECT_TRUE(x[i] < 78 || y[i] > 400) << x[i] << ", " << y[i];
+    // As wide as 400 pixels, no letter is smaller than 9.
+    for (const double points :
+         numbers_of(chart_svg_file(small_chart(), FrameTime::single, ErrorOf::worse), "font-size: "))
+        EXPECT_GE(points * 400 / 640, 9);
+}
+
+TEST(Chart, SetsOutliersOverABreakOfTheAxis) {
+    Chart chart = small_chart();
+    EXPECT_EQ(chart_svg(chart, FrameTime::single, ErrorOf::worse).find("over the break"), std::string::npos);
+    const double height = 388; // of the plot
+    const auto of = [&](const std::string& svg, const std::string& id) {
+        const size_t at = svg.find("data-id='" + id + "'");
+        return std::stod(svg.substr(svg.find("cy='", at) + 4));
+    };
+    const std::string even = chart_svg(chart, FrameTime::single, ErrorOf::worse);
+    const double spread = of(even, "march.2") - of(even, "march.1");
+
+    chart.points[3].errors.error = 37;
+    const std::string broken = chart_svg(chart, FrameTime::single, ErrorOf::worse);
+    EXPECT_NE(broken.find("over the break: billboard 3700 %"), broken.npos);
+    EXPECT_NE(broken.find("class='break'"), broken.npos);
+    EXPECT_GT(of(broken, "march.2") - of(broken, "march.1"), 0.8 * spread) << "the rest keeps its room";
+    EXPECT_LT(spread, height);
+}
+
+TEST(Chart, IsDrawnInAFileOfItsOwnThatFollowsTheScreen) {
+    const std::string file = chart_svg_file(small_chart(), FrameTime::sequence, ErrorOf::worse);
+    EXPECT_EQ(file.find("<svg xmlns='http://www.w3.org/2000/svg'"), 0u);
+    EXPECT_NE(file.find("@media (prefers-color-scheme: dark)"), file.npos);
+    EXPECT_NE(file.find("class='paper'"), file.npos);
 }
 
 TEST(Chart, DrawsModesInColoursAndShapesOfTheirOwn) {
