@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "modes/froxel/beam_fill_simd.h"
 #include "modes/froxel/scatter_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,6 +21,7 @@ struct Packet {
     std::vector<FirstRays> first;            // per sample
     std::vector<LightInjection> exact;       // likewise
     std::vector<std::array<float, 16>> here; // extinction of each medium, of the sample under way
+    PacketBeams beams;
 };
 
 // Extinction of every medium where the lanes look, and their sum.
@@ -58,6 +60,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     // Extinctions and lights add up over the samples.
     Vec3s light = splat(vec3(0));
     Floats total = 0.0f;
+    for (std::array<float, 16>& sum : packet.beams.sums) sum.fill(0);
     for (int sample = 0; sample < fill.samples(); ++sample) {
         const size_t s = static_cast<size_t>(sample);
         const FroxelSamples looks = look(fill, packet.where, packet.first[s], slice, sample);
@@ -66,17 +69,19 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         total = total + here;
         const FroxelLanes lanes = sheet ? in_fog(snapshot.media, whole, extinction) : whole;
         const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
-        if (!any(lit)) continue;
-        Vec3s sum = other_light(fill, lanes, extinction);
         const Job job{packet.where, looks,
                       slice,        sample,
                       sheet,        fill.exact() ? &packet.exact[s] : nullptr,
                       extinction,   here * whole.length * fill.scene.style.view_depth};
+        if (has_beams(fill) && any(here > 0.0f)) add_beams(fill, packet.beams, lanes, here, job);
+        if (!any(lit)) continue;
+        Vec3s sum = other_light(fill, lanes, extinction);
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);
         light = fused(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);
     }
     const Floats inverse = zero_unless(total > 0.0f, 1.0f / max(total, 1e-30f));
+    if (has_beams(fill)) put_beams(fill, packet.where, packet.beams, slice);
     put(fill, packet.where, slice, light * inverse, total * (1 / static_cast<float>(fill.samples())));
 }
 
@@ -128,6 +133,7 @@ void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
     static thread_local Packet memory;
     Packet& packet = memory;
     packet.here.resize(fill.scene.snapshot.media.size());
+    if (!has_beams(fill)) packet.beams.sums.clear();
     for (int phase = 0; phase < stride * stride; ++phase) {
         if (!set_lanes(fill, corner + ivec2(phase % stride, phase / stride), stride, packet.where)) continue;
         packet.index = block * static_cast<size_t>(stride * stride) + static_cast<size_t>(phase);
@@ -138,7 +144,10 @@ void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
         for (int i = 0; i < 16; ++i) any_wanted |= wanted[i] = is_wanted(fill, packet.where, i);
         if (fill.pass.statics && !any_wanted && !fill.pass.noted) continue;
         if (fill.exact()) find_all_lit(fill, wanted, packet);
+        if (has_beams(fill)) prepare_beams(fill, packet.where, packet.beams);
         for (int slice = 0; slice < packet.where.last; ++slice) fill_slice(fill, packet, slice);
+        for (int slice = packet.where.last; has_beams(fill) && slice < fill.grid.slices(); ++slice)
+            put_beams(fill, packet.where, packet.beams, slice);
         const size_t behind = static_cast<size_t>(fill.grid.slices() - packet.where.last);
         for (size_t i = 0; i < 16; ++i)
             if (packet.where.there[i])

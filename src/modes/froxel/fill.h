@@ -1,6 +1,7 @@
 // Light and extinction of every froxel.
 #pragma once
 #include "base/recycled.h"
+#include "modes/froxel/beams.h"
 #include "modes/froxel/settings.h"
 #include "modes/froxel/tiles.h"
 #include "modes/settings.h"
@@ -21,11 +22,14 @@ struct FroxelScene {
     std::vector<LightDepth> depths;                          // one per light
     std::vector<std::unique_ptr<const GridColumns>> columns; // of their grids; null where there is none
     std::vector<ConeFalloff> cones;                          // one per light
+    std::vector<size_t> beams; // the lights that look-ups follow ray by ray: they are not in the froxels' light
     // With FroxelVisibility::intervals: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
     ShadowSlices slices;
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
+
+    bool is_beam(size_t light) const { return std::find(beams.begin(), beams.end(), light) != beams.end(); }
 };
 
 // Four floats per froxel, [tile · slices + slice]: the light that its fog sends towards the eye, per unit of
@@ -47,6 +51,7 @@ struct FillPass {
     bool statics = false;           // stale froxels need no extinction either; tiles all stale may be left as they are
     const float* known = nullptr;   // extinctions as an earlier pass of this frame's looks has noted them
     float* noted = nullptr;         // where to note them, extinction_count() floats
+    FroxelBeams* beams = nullptr;   // where to put what is kept of the beams; null = not wanted
 };
 size_t extinction_count(const FroxelScene& scene, const FroxelGrid& grid);
 

@@ -52,6 +52,9 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
+    // Amortised filling lights few of the froxels anew, beams all of them.
+    for (size_t i = 0; i < scene.snapshot.lights.size() && !scene.settings.amortise; ++i)
+        if (has_cone(scene.snapshot.lights[i])) scene.beams.push_back(i);
     scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
     if (scene.settings.visibility != FroxelVisibility::intervals || !snapshot.occluders) return;
     if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
@@ -96,10 +99,11 @@ Reprojection remembered(std::shared_ptr<FroxelHistory> memory, const FroxelStati
 FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::shared_ptr<FroxelHistory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
     const float view_depth = frame.picture.view_depth;
+    FroxelBeams* beams = &frame.picture.beams;
     FroxelLight light;
     FroxelSums sums;
     if (frame.frame == 0 || !memory) {
-        light = fill_still_froxels(frame.scene, statics, {});
+        light = fill_still_froxels(frame.scene, statics, {.beams = beams});
         sums = integrate_froxels(statics.grid, statics.tiles, light, view_depth);
         clean(statics.grid, statics.tiles, light);
     } else {
@@ -110,10 +114,11 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::sh
         const bool settled = statics.settled();
         if (settings.amortise) stale = stale_froxels(statics.grid, light, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
-        const FroxelLight now = fill_still_froxels(frame.scene, statics, {-1, frame.frame, skipped, settled});
+        const FillPass pass{.frame = frame.frame, .stale = skipped, .statics = settled, .beams = beams};
+        const FroxelLight now = fill_still_froxels(frame.scene, statics, pass);
         const float most = 1 - 1 / static_cast<float>(frame.frame + 1); // the mean of all frames so far
-        const BlendPass pass{std::min(settings.history, most), view_depth, skipped, settled, past.blur};
-        sums = blend_history(statics.grid, statics.tiles, now, pass, light);
+        const BlendPass blend{std::min(settings.history, most), view_depth, skipped, settled, past.blur};
+        sums = blend_history(statics.grid, statics.tiles, now, blend, light);
         frame.has_history = true;
     }
     memory = std::make_shared<FroxelHistory>(FroxelHistory{statics.grid, std::move(light), std::move(statics)});
@@ -131,8 +136,8 @@ void make_parts(FroxelFrame& frame) {
     const FroxelPicture& picture = frame.picture;
     const size_t lights = frame.scene.snapshot.lights.size();
     for (size_t part = 0; part < part_count(lights); ++part) {
-        if (part >= lights && !has(frame.scene, OtherLight{part - lights})) continue;
-        const FillPass pass{static_cast<int>(part), frame.frame};
+        if (part >= lights ? !has(frame.scene, OtherLight{part - lights}) : frame.scene.is_beam(part)) continue;
+        const FillPass pass{.only = static_cast<int>(part), .frame = frame.frame};
         frame.indices.push_back(part);
         frame.parts.push_back(integrate_froxels(picture.grid, picture.tiles,
                                                 fill_froxels(frame.scene, picture.grid, picture.tiles, pass),
@@ -144,15 +149,19 @@ void make_parts(FroxelFrame& frame) {
 // remembers goes to the first.
 void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
     std::call_once(frame.parts_made, [&] { make_parts(frame); });
-    const size_t parts = frame.parts.size();
-    std::vector<vec3> light(batch.rays.size() * parts);
-    look_up_froxels(frame.picture, batch, results, frame.parts, light);
+    const size_t parts = frame.parts.size(), beams = frame.scene.beams.size();
+    std::vector<vec3> light(batch.rays.size() * parts), of_beams(batch.rays.size() * beams);
+    look_up_froxels(frame.picture, batch, results, frame.parts, light, of_beams);
     for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
         const std::span<const vec3> of_ray{light.data() + ray * parts, parts};
-        vec3 sum(0), scale(1), rest(0);
+        vec3 sum(0), scale(1), rest(0), remembered = results[ray].radiance;
+        for (size_t i = 0; i < beams; ++i) {
+            batch.part(ray, frame.scene.beams[i]) += of_beams[ray * beams + i];
+            remembered -= of_beams[ray * beams + i];
+        }
         for (const vec3& part : of_ray) sum += part;
         for (int c = 0; c < 3 && frame.has_history; ++c)
-            (sum[c] > 0 ? scale[c] : rest[c]) = results[ray].radiance[c] / (sum[c] > 0 ? sum[c] : 1);
+            (sum[c] > 0 ? scale[c] : rest[c]) = std::max(remembered[c], 0.0f) / (sum[c] > 0 ? sum[c] : 1);
         for (size_t i = 0; i < parts; ++i)
             batch.part(ray, frame.indices[i]) += scale * of_ray[i] + (i == 0 ? rest : vec3(0));
     }
@@ -177,10 +186,13 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.of<FroxelSettings>().lookup, picture.view_depth = settings.style.view_depth;
     picture.grid = statics.grid, picture.tiles = statics.tiles;
+    picture.beams = make_froxel_beams(frame->scene, picture.grid);
+    picture.scene = &frame->scene;
     picture.sums =
         history ? sums_with_history(*frame, statics, history->froxels)
                 : integrate_froxels(picture.grid, picture.tiles,
-                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {}), picture.view_depth);
+                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {.beams = &picture.beams}),
+                                    picture.view_depth);
     return [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);

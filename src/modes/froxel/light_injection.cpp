@@ -3,6 +3,7 @@
 #include "base/gauss_legendre.h"
 #include "base/random.h"
 #include "integrate/light_along.h"
+#include "scene/light_reach.h"
 
 #include <array>
 
@@ -242,10 +243,42 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
     lit.depths.assign(suns ? lights.size() * slices : 0, {});
     lit.arrivals.assign(all_suns ? 0 : lights.size() * slices, {});
     for (size_t i = 0; i < lights.size(); ++i)
-        if (is_sun(lights[i]))
+        if (scene.is_beam(i))
+            continue;
+        else if (is_sun(lights[i]))
             add_sun(scene, grid, i, find_lines(grid, tiles, lights[i], static_cast<uint32_t>(i), lanes, ray, indices),
                     lit.depths.data() + i * slices);
         else
             add_local(scene, grid, tiles, i, lanes, ray, indices, lit.arrivals.data() + i * slices);
+}
+
+void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
+                   const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
+                   LightInjection::Depths* inside, LightInjection::Depths* lit) {
+    const Light& spot = scene.snapshot.lights[light];
+    Lines lines = find_lines(grid, tiles, spot, static_cast<uint32_t>(light), lanes, ray, indices);
+    Interval<double> chords[16];
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!(lines.active >> lane & 1)) continue;
+        Ray& line = lines.rays[lane];
+        if (reaches[lane].end > 0)
+            chords[lane] = common({0, line.t_max}, light_reach(spot, dvec3(line.origin), dvec3(line.direction)));
+        if (chords[lane].empty())
+            lines.active &= ~(1u << lane);
+        else
+            line.t_max = std::min(line.t_max, std::nextafter(static_cast<float>(chords[lane].high), infinity));
+    }
+    static thread_local PathPacket stretches;
+    find_stretches(scene, light, lines, stretches);
+    for (size_t lane = 0; lane < 16; ++lane) {
+        if (!(lines.active >> lane & 1)) continue;
+        const auto add = [&](Interval<double> stretch, LightInjection::Depths* slices) {
+            add_depths(grid, static_cast<float>(stretch.low * lines.per_metre[lane]),
+                       static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
+        };
+        add(chords[lane], inside);
+        for (const Interval<double>& stretch : stretches[lane])
+            if (const Interval<double> part = common(stretch, chords[lane]); !part.empty()) add(part, lit);
+    }
 }
 }

@@ -31,6 +31,12 @@ struct LightInjection {
 void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, const ivec2* lanes,
                      size_t ray, const uint32_t* indices, LightInjection& lit);
 
+// The stretches in a beam of one ray of each tile that it reaches, and what of them is lit, by slices; `indices` as
+// above.
+void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
+                   const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
+                   LightInjection::Depths* inside, LightInjection::Depths* lit);
+
 // Sixteen points spread over a froxel that is large beside its distance from a local light, dense towards the light
 // and each with a shadow ray: what they receive on average.
 FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at,

@@ -4,6 +4,7 @@
 
 #include "modes/froxel/lookup.h"
 
+#include "modes/froxel/beam_lookup_simd.h"
 #include "modes/froxel/place_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -125,15 +126,33 @@ void store_light(const Vec3s& light, float (&rgb)[3][16]) {
 }
 
 // A surface may cut the ray's last froxels short: their light is known for the part before it only.
-Floats validity_of(const Places& places, const FaceSums& faces, const Reached& end) {
-    const Floats all = end.light.x + end.light.y + end.light.z;
+Floats validity_of(const Places& places, const FaceSums& faces, const Reached& end, const Vec3s& beams) {
+    const Floats all = end.light.x + end.light.y + end.light.z + beams.x + beams.y + beams.z;
     const Floats of_last = end.last_light.x + end.last_light.y + end.last_light.z;
     const Floats last = zero_unless(places.nearest < faces.behind, of_last / max(all, 1e-30f));
     return max(min(places.kept * (1.0f - last), 1.0f), 0.0f);
 }
 
+// Light of all beams; that of each to `of_beams`, where wanted.
+Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Places& places, const Floats& depth_before,
+                std::span<vec3> of_beams) {
+    Vec3s sum = splat(vec3(0));
+    const size_t count = picture.beams.lights.size();
+    if (count == 0) return sum;
+    const BeamRays rays = beam_rays(picture, batch, places);
+    alignas(64) float rgb[3][16];
+    for (size_t beam = 0; beam < count; ++beam) {
+        const Vec3s light = beam_light(picture, beam, rays, places, depth_before);
+        sum = sum + light;
+        if (of_beams.empty()) continue;
+        store_light(light, rgb);
+        for (size_t i = 0; i < batch.rays.size(); ++i) of_beams[i * count + beam] = {rgb[0][i], rgb[1][i], rgb[2][i]};
+    }
+    return sum;
+}
+
 void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
-                    std::span<const FroxelSums> shares, std::span<vec3> of_shares) {
+                    std::span<const FroxelSums> shares, std::span<vec3> of_shares, std::span<vec3> of_beams) {
     Places places;
     find_places(picture, batch, places);
     const bool late = any(places.start > picture.grid.faces.front()); // some ray starts behind the first slice
@@ -146,13 +165,15 @@ void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::sp
     };
     FaceSums faces;
     Reached start{splat(vec3(0)), 0.0f, 0.0f, splat(vec3(0))}, end = start;
-    const Vec3s light = light_of(picture.sums, faces, start, end);
+    const Vec3s of_froxels = light_of(picture.sums, faces, start, end);
+    const Vec3s beams = all_beams(picture, batch, places, start.depth, of_beams);
+    const Vec3s light = of_froxels + beams;
     const Floats through = exp(start.depth - max(end.depth, start.depth));
     alignas(64) float rgb[3][16], first[64], seen[16], valid[16];
     for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], through.part[i], FloatTag(),
                               first + 4 * i * lane_step);
-    store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end), valid);
+    store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end, beams), valid);
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         const float* f = first + 4 * i;
         if (seen[i] > 0)
@@ -175,8 +196,8 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(look_up_kernel);
 void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
-                     std::span<const FroxelSums> parts, std::span<vec3> of_parts) {
-    HWY_DYNAMIC_DISPATCH(look_up_kernel)(picture, batch, results, parts, of_parts);
+                     std::span<const FroxelSums> parts, std::span<vec3> of_parts, std::span<vec3> of_beams) {
+    HWY_DYNAMIC_DISPATCH(look_up_kernel)(picture, batch, results, parts, of_parts, of_beams);
 }
 }
 #endif

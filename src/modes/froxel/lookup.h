@@ -11,10 +11,13 @@ struct FroxelPicture {
     FroxelSums sums;
     FroxelLookup lookup = FroxelLookup::trilinear;
     float view_depth = 1;
+    FroxelBeams beams;
+    const FroxelScene* scene = nullptr; // of the beams, where there are some
 };
 
 // Radiance, transmittance and validity of up to 16 rays of the grid's camera, each by itself. `parts` are further sums
-// over the same froxels; their light goes to `of_parts`, rays × parts.
+// over the same froxels; their light goes to `of_parts`, rays × parts; that of the beams to `of_beams`, rays × beams.
 void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
-                     std::span<const FroxelSums> parts = {}, std::span<vec3> of_parts = {});
+                     std::span<const FroxelSums> parts = {}, std::span<vec3> of_parts = {},
+                     std::span<vec3> of_beams = {});
 }

@@ -24,7 +24,8 @@ struct Places {
     alignas(64) int32_t tiles[16][16]; // [tile][ray]
     alignas(64) float weights[16][16]; // sum 1
     Floats kept;                       // weight of the tiles that see as far as the ray
-    Floats nearest;                    // surface that the pixel's own tile sees
+    Ints own;                          // the tile that the pixel lies in
+    Floats nearest;                    // surface that it sees
 };
 
 // The slices that hold planar depths, as slice_of().
@@ -165,8 +166,8 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     at_x = zero_unless(places.seen, at_x), at_y = zero_unless(places.seen, at_y);
     const auto whole = [](const Floats& at, int size)
                            HWY_ATTR { return truncate(max(min(at + 0.5f, static_cast<float>(size - 1)), 0.0f)); };
-    const Ints own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
-    places.nearest = value_at(picture.tiles.nearest.data(), own);
+    places.own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
+    places.nearest = value_at(picture.tiles.nearest.data(), places.own);
     if (picture.lookup == FroxelLookup::jittered) jitter_places(batch, at_x, at_y);
 
     const bool cubic = picture.lookup == FroxelLookup::tricubic;

@@ -23,7 +23,9 @@ struct Fill {
     FroxelLight& light;
 
     bool exact() const { return scene.settings.visibility == FroxelVisibility::intervals; }
-    bool wants(size_t part) const { return pass.only < 0 || static_cast<size_t>(pass.only) == part; }
+    bool wants(size_t part) const {
+        return !scene.is_beam(part) && (pass.only < 0 || static_cast<size_t>(pass.only) == part);
+    }
     // One look at a soft light is at its centre: other points would be noise that nothing averages.
     bool spreads() const { return scene.settings.shadow_rays > 1 || pass.frame > 0; }
     int samples() const { return scene.settings.shadow_rays; }

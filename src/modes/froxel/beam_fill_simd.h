@@ -1,0 +1,148 @@
+// What froxels keep of the beams through them (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
+#endif
+
+#include "base/simd/reduce_simd.h"
+#include "modes/froxel/scatter_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// The beams of a packet of tiles, from slice to slice.
+struct PacketBeams {
+    std::vector<FroxelBeams::Reach> reaches; // [beam · 16 + lane]
+    std::vector<FroxelBeams::Reach> all;     // per beam, of any lane
+    // Of the rays, in the beams and lit there: [(sample · beams + beam) · slices + slice]
+    std::vector<LightInjection::Depths> inside, lit;
+    std::vector<std::array<float, 16>> sums; // per channel, over the samples of a slice
+};
+
+bool has_beams(const Fill& fill) { return fill.pass.beams && !fill.pass.beams->lights.empty(); }
+
+// The rays that the beams are seen along: the same ones in each frame, as nothing averages them over frames.
+size_t beam_ray(const Fill& fill, int sample) { return static_cast<size_t>(sample) % fill.tiles.rays(); }
+
+// Reaches of all beams, and their lit stretches on the rays of every sample.
+void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
+    const FroxelBeams& kept = *fill.pass.beams;
+    const size_t count = kept.lights.size(), slices = static_cast<size_t>(fill.grid.slices());
+    beams.reaches.assign(16 * count, {}), beams.all.assign(count, {fill.grid.slices(), 0});
+    beams.sums.resize(count + kept.media);
+    for (size_t b = 0; b < count; ++b)
+        for (size_t i = 0; i < 16; ++i) {
+            if (!where.there[i]) continue;
+            const FroxelBeams::Reach& reach = beams.reaches[16 * b + i] = kept.reach(where.tile[i], b);
+            if (reach.end == 0) continue;
+            beams.all[b] = {std::min(beams.all[b].first, reach.first), std::max(beams.all[b].end, reach.end)};
+        }
+    if (!fill.exact()) return;
+    beams.lit.assign(static_cast<size_t>(fill.samples()) * count * slices, {});
+    beams.inside = beams.lit;
+    for (int sample = 0; sample < fill.samples(); ++sample) {
+        uint32_t indices[16];
+        for (int i = 0; i < 16; ++i)
+            indices[i] =
+                static_cast<uint32_t>(((where.at[i].y & 3) * 4 + (where.at[i].x & 3)) * fill.samples() + sample);
+        for (size_t b = 0; b < count; ++b) {
+            const size_t first = (static_cast<size_t>(sample) * count + b) * slices;
+            if (beams.all[b].end > 0)
+                find_beam_lit(fill.scene, fill.grid, fill.tiles, kept.lights[b], where.at, beam_ray(fill, sample),
+                              fill.samples() > 1 ? indices : nullptr, beams.reaches.data() + 16 * b,
+                              beams.inside.data() + first, beams.lit.data() + first);
+        }
+    }
+}
+
+// Points outside a cone turned into it, at their distance from the apex: the light's fog is known in there only.
+Vec3s turned_inside(const Light& light, const Vec3s& point) {
+    const float cosine = std::cos(0.999f * light.outer_cone), sine = std::sin(0.999f * light.outer_cone);
+    const Vec3s offset = point - splat(light.position), axis = splat(light.direction);
+    const Floats along = dot(offset, axis), distance = sqrt(dot(offset, offset));
+    const Vec3s across = offset - axis * along;
+    const Floats wide = sqrt(dot(across, across));
+    const Mask16 outside = wide * cosine > along * sine;
+    const Vec3s turned = fused(axis, distance * cosine, across * (distance * sine / max(wide, 1e-20f)));
+    const Vec3s inside{select(outside, turned.x, offset.x), select(outside, turned.y, offset.y),
+                       select(outside, turned.z, offset.z)};
+    return inside + splat(light.position);
+}
+
+// Share of a beam that surfaces let through to the lanes: of the stretches that lie in it, or to a point in it where
+// the lanes lie beside it.
+Floats seen_share(const Fill& fill, const PacketBeams& beams, size_t beam, const FroxelLanes& lanes, const Vec3s& point,
+                  const Job& job) {
+    const FroxelBeams& kept = *fill.pass.beams;
+    const size_t index = kept.lights[beam];
+    const Light& light = fill.scene.snapshot.lights[index];
+    Floats share = 1.0f;
+    Mask16 by_rays = lanes.active;
+    if (fill.exact()) {
+        const size_t slices = static_cast<size_t>(fill.grid.slices());
+        const size_t at =
+            (static_cast<size_t>(job.sample) * kept.lights.size() + beam) * slices + static_cast<size_t>(job.slice);
+        const Floats inside = load(beams.inside[at].length);
+        const Mask16 known = inside > 0.0f;
+        by_rays = by_rays & !known;
+        share = select(known, min(load(beams.lit[at].length) / max(inside, 1e-30f), 1.0f), share);
+    }
+    if (!any(by_rays)) return share;
+    FroxelLanes within = lanes;
+    within.point = point;
+    const Vec3s offset = splat(light.position) - point;
+    const Floats distance = max(sqrt(dot(offset, offset)), 1e-12f);
+    const LightSamples plain{offset * (1.0f / distance), distance, 1.0f};
+    return select(by_rays, traced_share(fill, index, within, job, plain, by_rays), share);
+}
+
+// Adds a sample's shares to the sums of a slice.
+void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, const Floats& here, const Job& job) {
+    const FroxelBeams& kept = *fill.pass.beams;
+    for (size_t b = 0; b < kept.lights.size(); ++b) {
+        if (job.slice < beams.all[b].first || job.slice >= beams.all[b].end) continue;
+        const size_t index = kept.lights[b];
+        const Vec3s point = turned_inside(fill.scene.snapshot.lights[index], lanes.point);
+        Floats share = seen_share(fill, beams, b, lanes, point, job);
+        const Mask16 some = lanes.active & (share > 0.0f);
+        if (!any(some)) continue;
+        if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);
+        share = share * exp(-light_depth16(fill.scene.depths[index], point, some));
+        share = share * style_fade(fill.scene.style, fill.grid.camera, lanes.point);
+        store(load(beams.sums[b].data()) + zero_unless(some, share), beams.sums[b].data());
+    }
+    const Floats inverse = 1.0f / max(here, 1e-30f);
+    for (size_t m = 0; m < kept.media; ++m) {
+        float* sum = beams.sums[kept.lights.size() + m].data();
+        store(fused(load(job.extinction[m]), inverse, load(sum)), sum);
+    }
+}
+
+// The sums of a slice to its froxels. Those behind what a tile sees are as the last one that it does.
+void put_beams(const Fill& fill, const Lanes& where, const PacketBeams& beams, int slice) {
+    FroxelBeams& kept = *fill.pass.beams;
+    const size_t count = kept.lights.size();
+    const float share = 1 / static_cast<float>(fill.samples());
+    for (size_t i = 0; i < 16; ++i) {
+        if (!where.there[i]) continue;
+        const bool hidden = is_hidden(fill.grid, fill.tiles, where.tile[i], slice);
+        const auto put = [&](float& value, bool first, float sum) {
+            value = !hidden ? sum * share : first ? 0 : (&value)[-1];
+        };
+        for (size_t b = 0; b < count; ++b) {
+            const FroxelBeams::Reach& reach = beams.reaches[16 * b + i];
+            if (slice < reach.first || slice >= reach.end) continue;
+            const size_t place = reach.place + static_cast<size_t>(slice - reach.first);
+            put(kept.shares[place], slice == reach.first, beams.sums[b][i]);
+        }
+        for (size_t m = 0; m < kept.media; ++m)
+            put(kept.media_shares[kept.media_place(fill.grid, where.tile[i], m, slice)], slice == 0,
+                beams.sums[count + m][i]);
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,83 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "modes/froxel/beams.cpp"
+#include <hwy/foreach_target.h>
+
+#include "modes/froxel/beams.h"
+
+#include "base/parallel.h"
+#include "base/simd/simd.h"
+#include "modes/froxel/fill.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// The slices of up to 16 tiles of a row whose froxels lie in a spot's cone, or within `margin` tiles of it.
+void find_reaches(const FroxelGrid& grid, const Light& light, float margin, ivec2 first,
+                  FroxelBeams::Reach (&reaches)[16]) {
+    alignas(64) float x[16], inside[16];
+    for (int i = 0; i < 16; ++i) x[i] = grid.pixel_of(vec2(first + ivec2(i, 0))).x, reaches[i] = {};
+    const float y = grid.pixel_of(vec2(first)).y;
+    const Vec3s step = fused(splat(grid.step_x), load(x), splat(grid.step + y * grid.step_y));
+    const Vec3s start = fused(splat(grid.origin_x), load(x), splat(grid.origin + y * grid.origin_y - light.position));
+    const Floats slant = sqrt(dot(step, step));
+    const float cosine = std::cos(light.outer_cone), sine = std::sin(light.outer_cone);
+    for (int k = 0; k < grid.slices(); ++k) {
+        const float low = grid.faces[static_cast<size_t>(k)], high = grid.faces[static_cast<size_t>(k) + 1];
+        const float width =
+            static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + high * glm::length(grid.step_x));
+        // From the middle of the froxel's line; no point of it is further from there than half its length.
+        const Vec3s offset = fused(step, 0.5f * (low + high), start);
+        const Floats near = fused(slant, 0.5f * (high - low), margin * width);
+        const Floats squared = dot(offset, offset), along = dot(offset, splat(light.direction));
+        const Floats across = sqrt(max(squared - along * along, 0.0f));
+        Mask16 reached = (across * cosine - along * sine <= near) & (along >= -near);
+        if (!std::isinf(light.range)) reached = reached & (sqrt(squared) <= near + light.range);
+        if (!any(reached)) continue;
+        store(select(reached, 1.0f, 0.0f), inside);
+        for (size_t i = 0; i < 16; ++i) {
+            if (!(inside[i] > 0)) continue;
+            if (reaches[i].end == 0) reaches[i].first = k;
+            reaches[i].end = k + 1;
+        }
+    }
+}
+
+void reaches_kernel(const FroxelScene& scene, const FroxelGrid& grid, FroxelBeams& beams) {
+    // Rays find froxels up to a tile away, with wider look-ups two: across corners that is √2 times as far.
+    const float margin = scene.settings.lookup == FroxelLookup::trilinear ? 1.5f : 3.0f;
+    const size_t count = beams.lights.size();
+    parallel_for(grid.size.y, [&](int64_t row) {
+        FroxelBeams::Reach found[16];
+        for (int x = 0; x < grid.size.x; x += 16)
+            for (size_t beam = 0; beam < count; ++beam) {
+                const ivec2 first(x, static_cast<int>(row));
+                find_reaches(grid, scene.snapshot.lights[beams.lights[beam]], margin, first, found);
+                for (int i = 0; i < std::min(16, grid.size.x - x); ++i)
+                    beams.reaches[grid.tile_index(first + ivec2(i, 0)) * count + beam] = found[i];
+            }
+    });
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace tyndall {
+HWY_EXPORT(reaches_kernel);
+FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) {
+    FroxelBeams beams;
+    beams.lights = scene.beams;
+    if (beams.lights.empty()) return beams;
+    beams.reaches.resize(grid.tiles() * beams.lights.size());
+    HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
+    size_t place = 0;
+    for (FroxelBeams::Reach& reach : beams.reaches)
+        reach.place = std::exchange(place, place + static_cast<size_t>(reach.end - reach.first));
+    beams.shares.resize(place);
+    const size_t media = scene.snapshot.media.size();
+    beams.media = media > 1 ? media : 0;
+    beams.media_shares.resize(grid.tiles() * beams.media * static_cast<size_t>(grid.slices()));
+    return beams;
+}
+}
+#endif

@@ -1,0 +1,34 @@
+// Spots, whose light follows from each ray of the picture itself: its distance from the lamp and the edge of the cone,
+// which froxels would smear. They keep what changes slowly: how much of the light gets there at all.
+#pragma once
+#include "base/recycled.h"
+#include "modes/froxel/grid.h"
+
+namespace tyndall {
+struct FroxelScene;
+
+struct FroxelBeams {
+    // Slices of a tile that the light may reach in it or in the tiles around it.
+    struct Reach {
+        int32_t first = 0, end = 0;
+        size_t place = 0; // of the first one's share
+    };
+    std::vector<size_t> lights;  // of the scene
+    std::vector<Reach> reaches;  // [tile · lights + light]
+    RecycledFloats shares;       // of the light that would arrive without surfaces and fog: what does
+    size_t media = 0;            // of the scene; 0 where there is only one
+    RecycledFloats media_shares; // in the extinction [(tile · media + medium) · slices + slice]
+
+    const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
+    float share(size_t tile, size_t beam, int slice) const {
+        const Reach& of = reach(tile, beam);
+        return slice < of.first || slice >= of.end ? 0 : shares[of.place + static_cast<size_t>(slice - of.first)];
+    }
+    size_t media_place(const FroxelGrid& grid, size_t tile, size_t medium, int slice) const {
+        return (tile * media + medium) * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice);
+    }
+};
+
+// Finds what the beams of a scene reach, with room for their shares, which fill_froxels() fills in.
+FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid);
+}

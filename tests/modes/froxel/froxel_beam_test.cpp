@@ -1,0 +1,131 @@
+// Beams of spots in the froxel cache: against quadrature of the closed form, and against the exact march.
+#include "modes/froxel/froxel_fixtures.h"
+#include "support/threads.h"
+
+#include "integrate/equi_angular.h"
+#include "modes/history.h"
+#include "scene/light_reach.h"
+#include "volume/phase.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+Settings with(const std::vector<std::string>& assignments) {
+    Settings settings;
+    for (const std::string& assignment : assignments) apply_setting(settings, assignment);
+    return settings;
+}
+
+Light lamp_across() { return spot_light({-1.5f, 0.4f, 0.3f}, glm::normalize(vec3(1, -0.25f, 0.1f)), 5, 0.1f, 0.16f); }
+
+// ∫ σ p e^-σt I(t)/d² dt along a ray through even fog that does not dim the light itself, by many midpoints of equal
+// angle seen from the lamp.
+double beam_through(const Light& light, const Medium& medium, const Ray& ray) {
+    constexpr int count = 2000;
+    const double sigma = grey_extinction(medium.optics);
+    const dvec3 origin(ray.origin), direction(ray.direction), lamp(light.position);
+    const Interval<double> inside = common({0, ray.t_max}, light_reach(light, origin, direction));
+    if (inside.empty()) return 0;
+    const double nearest = glm::dot(lamp - origin, direction);
+    const double height = glm::length(origin + nearest * direction - lamp);
+    const EquiAngular<double> angles = equi_angular(nearest, height, inside.low, inside.high);
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+        const auto [t, length] = angles.at((i + 0.5) / count);
+        const vec3 point(origin + t * direction);
+        const LightSample arriving = arrival(light, point);
+        const float cosine = glm::dot(arriving.to_light, ray.direction);
+        sum += double(arriving.irradiance.x) * phase_value(medium.optics.phase, cosine) * std::exp(-sigma * t) * length;
+    }
+    return sum * sigma / count;
+}
+
+TEST(FroxelBeam, EachPixelHasItsOwnIntegral) {
+    // Froxels of 8 pixels are as wide as the beam next to the lamp.
+    const View view = view_of({0, 0, 4}, {0, 0, 0}, {96, 54});
+    for (const float g : {0.0f, 0.7f})
+        for (const float radius : {0.0f, 0.05f})
+            for (const char* lookup : {"trilinear", "tricubic"}) {
+                const Medium fog =
+                    homogeneous_medium(0.2f, {vec3(-30), vec3(30)}, Phase{PhaseKind::henyey_greenstein, g});
+                Light lamp = lamp_across();
+                lamp.radius = radius, lamp.range = 6;
+                const Snapshot snapshot = snapshot_of({fog}, {lamp});
+                const Settings settings = with({"terms.light=off", std::string("froxel.lookup=") + lookup});
+                const std::vector<Ray> rays = picture_rays(view, snapshot, 20);
+                const std::vector<Scatter> results = scattered(froxels(view, snapshot, settings), rays);
+                double most = 0, mean = 0;
+                std::vector<double> truth;
+                for (const Ray& ray : rays) {
+                    truth.push_back(beam_through(lamp, fog, ray));
+                    most = std::max(most, truth.back()), mean += truth.back() / static_cast<double>(rays.size());
+                }
+                EXPECT_GT(most, 20 * mean); // the lamp is in view
+                for (size_t i = 0; i < rays.size(); ++i)
+                    ASSERT_NEAR(results[i].radiance.x, truth[i], 0.02 * truth[i] + 0.002 * mean)
+                        << i % 96 << ' ' << i / 96 << " g " << g << " radius " << radius << lookup;
+            }
+}
+
+// A beam through two kinds of fog, half of it cut off by a slab.
+Stage beam_behind_slab() {
+    const Medium mist =
+        homogeneous_medium(0.15f, {vec3(-3), vec3(3)}, Phase{PhaseKind::henyey_greenstein, 0.6f}, {0.9f, 0.6f, 0.3f});
+    Medium banks = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 0.4f);
+    return stage_of({mist, banks}, {lamp_across()}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0.01f));
+}
+
+TEST(FroxelBeam, ShadowsAndSeveralFogsAreThoseOfTheReference) {
+    const Stage stage = beam_behind_slab();
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+    const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
+    for (const char* way : {"froxel.visibility=intervals", "froxel.visibility=rays", "froxel.lookup=tricubic"}) {
+        // What is left is the edge of the slab's shadow, as wide as a froxel.
+        const double error = relative_rmse(scattered(froxels(view, stage.snapshot, with({way})), rays), truth);
+        EXPECT_LT(error, 0.12) << way;
+    }
+    const Settings fine = with({"froxel.tile=1", "froxel.depth_slices=256"});
+    EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, fine), rays), truth), 0.02);
+}
+
+TEST(FroxelBeam, ARayDoesNotKnowItsNeighboursNorTheThreads) {
+    const Stage stage = beam_behind_slab();
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
+    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+    for (const char* way : {"froxel.tile=8", "froxel.tile=3"}) {
+        const auto seen = [&](size_t packet) {
+            return [&, packet] { return scattered(froxels(view, stage.snapshot, with({way})), rays, packet); };
+        };
+        const std::vector<Scatter> alone = on_threads(1, seen(1)), packed = on_threads(3, seen(16));
+        for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(alone[i].radiance, packed[i].radiance) << way << i;
+    }
+}
+
+TEST(FroxelBeam, StretchesContinueARayAndPartsAddUp) {
+    const Stage stage = beam_behind_slab();
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
+    History history;
+    for (const bool remembered : {false, true}) {
+        const ScatterFunction scatter = froxels(view, stage.snapshot, {}, remembered ? &history : nullptr);
+        for (const float along : {0.4f, 1.2f}) { // before the slab and behind it
+            const vec3 eye = view.camera.position, point = lamp_across().position + along * lamp_across().direction;
+            Ray whole{eye, glm::normalize(point - eye), 1}, first = whole, second = whole;
+            whole.t_max = 8, first.t_max = 4.1f;
+            second.origin = whole.at(4.1f), second.t_max = 8 - 4.1f;
+            const auto parts = scattered(scatter, {whole, first, second});
+            const float sum = parts[1].radiance.x + parts[1].transmittance * parts[2].radiance.x;
+            EXPECT_NEAR(sum / parts[0].radiance.x, 1, 0.02) << along;
+
+            vec3 light[part_count(1)]{};
+            const uint32_t id = 0;
+            Scatter result;
+            scatter({.rays = {&whole, 1}, .ids = {&id, 1}, .parts = light}, {&result, 1});
+            EXPECT_GT(light[0].x, 0);
+            EXPECT_NEAR((light[0] + light[1]).x / result.radiance.x, 1, 1e-5);
+        }
+    }
+}
+}
+}
