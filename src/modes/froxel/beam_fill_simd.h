@@ -104,7 +104,8 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
     for (size_t b = 0; b < kept.lights.size(); ++b) {
         if (job.slice < beams.all[b].first || job.slice >= beams.all[b].end) continue;
         const size_t index = kept.lights[b];
-        const Vec3s point = turned_inside(fill.scene.snapshot.lights[index], lanes.point);
+        const Light& light = fill.scene.snapshot.lights[index];
+        const Vec3s point = has_cone(light) ? turned_inside(light, lanes.point) : lanes.point;
         Floats share = seen_share(fill, beams, b, lanes, point, job);
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;

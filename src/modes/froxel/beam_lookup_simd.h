@@ -9,6 +9,7 @@
 
 #include "integrate/equi_angular_simd.h"
 #include "integrate/scattering_simd.h"
+#include "modes/froxel/near_simd.h"
 #include "modes/froxel/place_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,6 +33,12 @@ HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const V
     rays.by = dot(nearest, splat(light.direction)) / max(sqrt(rays.height2), 1e-20f);
     rays.away = max(sqrt(rays.height2), capped_radius(light));
     return rays;
+}
+
+// The stretch within a radius of the lamp.
+HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
+    const Floats half = sqrt(max(Floats(radius * radius) - rays.height2, 0.0f));
+    return {-half, half};
 }
 
 // The stretch inside a spot's cone. Seen from the lamp at the angle θ from the point next to it, the ray is off the
@@ -61,7 +68,7 @@ HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const
     const float reach = capped_radius(light);
     const Floats cosine = fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f);
     const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-    Floats amount = edge * edge / max(distance * distance, reach * reach);
+    Floats amount = (has_cone(light) ? edge * edge : Floats(1.0f)) / max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) {
         const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
         amount = amount * max(min(1.0f - fourth, 1.0f), 0.0f);
@@ -152,6 +159,7 @@ struct BeamWalk {
     size_t beam;
     const Light& light;
     const ConeFalloff& cone;
+    const NearLight& near;
     RaysByLamp by_lamp;
     Floats depth_before; // optical, of what lies before the rays' starts
     Floats whole;        // angle of all of the beam on each ray
@@ -172,6 +180,17 @@ HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, con
     return select(close, density16(of, point) * grey_extinction(of.optics), extinction);
 }
 
+// How much of its optical depth the fog on a light's way counts for where it is asked for by place.
+float dimming(const LightDepth& depth) {
+    return depth.method == LightTransmittance::off || depth.method == LightTransmittance::average ? 0 : depth.scale;
+}
+
+// Mean of e^-x over a stretch by that in its middle: sinh(d/2) / (d/2) for the depth d of the stretch.
+HWY_INLINE Floats mean_over(const Floats& depth) {
+    const Floats square = depth * depth;
+    return fused(square, fused(square, 1.0f / 1920, 1.0f / 24), 1.0f);
+}
+
 // Light of a beam on a stretch of the rays within a slice, by two Gauss points in each of some equal angles seen from
 // the lamp: there 1/r² is constant. A beam of few slices is cut finer; a small angle has one point in its middle.
 Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice, const BeamSlice& here,
@@ -183,6 +202,11 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     const Mask16 close = wanted & close_rays(grid, walk.light, walk.by_lamp, angles);
     const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
+    // Fog dims the light on its way to the points as it does to the middle of the slice, but for what lies between.
+    const float dims = dimming(walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]]);
+    const Floats middle =
+        (Floats(low + 0.5f * thickness) - walk.places.start) * walk.places.slant - walk.by_lamp.nearest;
+    const Floats to_middle = sqrt(fused(middle, middle, walk.by_lamp.height2));
     const Floats points = select(single, 1.0f, cut * 2.0f), weight = select(single, 1.0f, share * 0.5f);
     Vec3s sum = splat(vec3(0));
     for (int i = 0; i < 2 * static_cast<int>(pieces); ++i) {
@@ -194,14 +218,39 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Floats z = (u + walk.by_lamp.nearest) / walk.places.slant + walk.places.start;
         const Floats place = max(min((z - low) * (1 / thickness), 1.0f), 0.0f);
         const Floats depth = fused(here.across, place, here.before) * walk.places.slant - walk.depth_before;
+        const Floats length = angles.length(weight, slope);
+        const Floats dimmed =
+            max(depth, 0.0f) * walk.picture.view_depth + here.extinction * (distance - to_middle) * dims;
+        const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
-                              angles.length(weight, slope) * exp(max(depth, 0.0f) * -walk.picture.view_depth);
+                              near_share(walk.near, distance) * length * exp(-dimmed) * mean_over(change);
         const Vec3s towards =
             scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
                        [&](size_t m) HWY_ATTR { return extinction_at(walk, here, close, m, slice, u); });
         sum = fused(towards, zero_unless(here_too, amount), sum);
     }
     return sum * zero_unless(wanted, here.share);
+}
+
+// The same, cut where the rays enter the core inside of which 1/r² is capped, and leave it.
+Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
+                          const Mask16& wanted) {
+    constexpr float far = 1e30f;
+    const float core = capped_radius(walk.light);
+    const Floats half = sqrt(max(core * core - walk.by_lamp.height2, 0.0f));
+    const Mask16 through = wanted & (half > 0.0f) & (part.low < half) & (part.high > -half);
+    const Floats enter = select(through, -half, far), leave = select(through, half, far);
+    const Interval<Floats> parts[] = {{part.low, min(part.high, enter)},
+                                      {max(part.low, enter), min(part.high, leave)},
+                                      {max(part.low, leave), part.high}};
+    Vec3s sum = splat(vec3(0));
+    for (const Interval<Floats>& one : parts) {
+        const Mask16 some = wanted & (one.high > one.low);
+        if (!any(some)) continue;
+        const Interval<Floats> held{zero_unless(some, one.low), zero_unless(some, one.high)};
+        sum = sum + light_within(walk, EquiAngular16(held, walk.by_lamp.away), slice, here, some);
+    }
+    return sum;
 }
 
 // Optical depth per metre of slant up to a face of the slices.
@@ -237,11 +286,17 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   beam,
                   light,
                   picture.scene->cones[index],
+                  picture.scene->nears[index],
                   seen_from(light, rays.origin, rays.direction),
                   depth_before,
                   0.0f};
     const Floats nearest = walk.by_lamp.nearest;
-    Interval<Floats> chord = inside_cone(light, walk.by_lamp);
+    const float radius = std::min(light.range, walk.near.radius);
+    Interval<Floats> chord = inside_ball(std::min(radius, 1e15f), walk.by_lamp);
+    if (has_cone(light)) {
+        const Interval<Floats> cone = inside_cone(light, walk.by_lamp);
+        chord = {max(chord.low, cone.low), min(chord.high, cone.high)};
+    }
     chord.low = max(chord.low, rays.first - nearest), chord.high = min(chord.high, rays.last - nearest);
     const Mask16 met = places.seen & (chord.high > chord.low);
     if (!any(met)) return sum;
@@ -263,7 +318,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
         const BeamSlice around = slice_around(walk, k, before, behind);
         before = behind;
         const Mask16 lit = here & (around.share * around.across > 0.0f);
-        if (any(lit)) sum = sum + light_within(walk, EquiAngular16(part, walk.by_lamp.away), k, around, lit);
+        if (any(lit)) sum = sum + light_between_kinks(walk, part, k, around, lit);
     }
     return sum * splat(light.intensity * light.volume_scale);
 }

@@ -11,8 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// The slices of up to 16 tiles of a row whose froxels lie in a spot's cone, or within `margin` tiles of it.
-void find_reaches(const FroxelGrid& grid, const Light& light, float margin, ivec2 first,
+// The slices of up to 16 tiles of a row whose froxels lie in a spot's cone, or near to another lamp, or within `margin`
+// tiles of that.
+void find_reaches(const FroxelGrid& grid, const Light& light, float radius, float margin, ivec2 first,
                   FroxelBeams::Reach (&reaches)[16]) {
     alignas(64) float x[16], inside[16];
     for (int i = 0; i < 16; ++i) x[i] = grid.pixel_of(vec2(first + ivec2(i, 0))).x, reaches[i] = {};
@@ -30,8 +31,8 @@ void find_reaches(const FroxelGrid& grid, const Light& light, float margin, ivec
         const Floats near = fused(slant, 0.5f * (high - low), margin * width);
         const Floats squared = dot(offset, offset), along = dot(offset, splat(light.direction));
         const Floats across = sqrt(max(squared - along * along, 0.0f));
-        Mask16 reached = (across * cosine - along * sine <= near) & (along >= -near);
-        if (!std::isinf(light.range)) reached = reached & (sqrt(squared) <= near + light.range);
+        Mask16 reached = sqrt(squared) <= near + std::min(light.range, radius);
+        if (has_cone(light)) reached = reached & (across * cosine - along * sine <= near) & (along >= -near);
         if (!any(reached)) continue;
         store(select(reached, 1.0f, 0.0f), inside);
         for (size_t i = 0; i < 16; ++i) {
@@ -51,7 +52,8 @@ void reaches_kernel(const FroxelScene& scene, const FroxelGrid& grid, FroxelBeam
         for (int x = 0; x < grid.size.x; x += 16)
             for (size_t beam = 0; beam < count; ++beam) {
                 const ivec2 first(x, static_cast<int>(row));
-                find_reaches(grid, scene.snapshot.lights[beams.lights[beam]], margin, first, found);
+                find_reaches(grid, scene.snapshot.lights[beams.lights[beam]], scene.nears[beams.lights[beam]].radius,
+                             margin, first, found);
                 for (int i = 0; i < std::min(16, grid.size.x - x); ++i)
                     beams.reaches[grid.tile_index(first + ivec2(i, 0)) * count + beam] = found[i];
             }
@@ -63,6 +65,15 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tyndall {
+NearLight near_light(const FroxelGrid& grid, const Light& light) {
+    constexpr float froxels = 10; // across: from half of that on they show a light's 1/r² as it is
+    if (is_distant(light)) return {};
+    if (has_cone(light)) return {infinity};
+    const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
+    if (!(z > 0)) return {};
+    return {froxels * static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x))};
+}
+
 HWY_EXPORT(reaches_kernel);
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) {
     FroxelBeams beams;

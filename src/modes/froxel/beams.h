@@ -1,11 +1,27 @@
-// Spots, whose light follows from each ray of the picture itself: its distance from the lamp and the edge of the cone,
-// which froxels would smear. They keep what changes slowly: how much of the light gets there at all.
+// Beams of spots and what is near to other lamps. Light there follows from each ray of the picture itself: its distance
+// from the lamp and the edge of the cone, which froxels would smear. They keep what changes slowly: how much of the
+// light gets there at all.
 #pragma once
 #include "base/recycled.h"
 #include "modes/froxel/grid.h"
+#include "scene/light.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace tyndall {
 struct FroxelScene;
+
+// The part of a light that look-ups follow ray by ray: all around the lamp, less and less from half a radius on, until
+// froxels have all of it. 0 = none, infinite = all.
+struct NearLight {
+    float radius = 0; // metres
+    float at(float distance) const {
+        const float x = std::clamp(2 - 2 * distance / radius, 0.0f, 1.0f);
+        return std::isinf(radius) ? 1 : radius > 0 ? x * x * (3 - 2 * x) : 0;
+    }
+};
+NearLight near_light(const FroxelGrid& grid, const Light& light);
 
 struct FroxelBeams {
     // Slices of a tile that the light may reach in it or in the tiles around it.

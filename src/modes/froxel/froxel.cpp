@@ -52,9 +52,6 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }
-    // Amortised filling lights few of the froxels anew, beams all of them.
-    for (size_t i = 0; i < scene.snapshot.lights.size() && !scene.settings.amortise; ++i)
-        if (has_cone(scene.snapshot.lights[i])) scene.beams.push_back(i);
     scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
     if (scene.settings.visibility != FroxelVisibility::intervals || !snapshot.occluders) return;
     if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
@@ -67,6 +64,14 @@ Camera tile_camera(const FroxelGrid& grid) {
     camera.vertical_fov = 2 * std::atan(std::tan(0.5f * camera.vertical_fov) * wider);
     camera.ortho_height *= wider;
     return camera;
+}
+
+// Which lights rays are to follow themselves. Amortised filling lights few of the froxels anew, beams all of them.
+void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
+    for (size_t i = 0; i < scene.snapshot.lights.size(); ++i) {
+        scene.nears.push_back(scene.settings.amortise ? NearLight{} : near_light(grid, scene.snapshot.lights[i]));
+        if (scene.nears.back().radius > 0) scene.beams.push_back(i);
+    }
 }
 
 // What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
@@ -181,6 +186,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
         if (history) history->froxels = nullptr;
         return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
     }
+    set_beams(statics.grid, frame->scene);
     set_shadows(*frame, statics);
 
     FroxelPicture& picture = frame->picture;

@@ -21,12 +21,13 @@ struct Moments {
 
 // Light on a stretch without kinks: 2 Gauss points along it, or 4 in the angle seen from the light where that is near
 // (equi-angular).
-Moments light_on(const LightAlong& along, double low, double high) {
+Moments light_on(const LightAlong& along, const NearLight& near, double low, double high) {
     const double length = high - low;
     if (!along.local()) return {length, length * 0.5 * (low + high)};
     Moments sum;
     const auto add = [&](double t, double weight) {
-        const double light = weight * arriving_at(along, t).amount;
+        const double off = t - along.nearest, distance = std::sqrt(off * off + along.distance * along.distance);
+        const double light = weight * arriving_at(along, t).amount * (1 - near.at(static_cast<float>(distance)));
         sum.amount += light, sum.first += light * t;
     };
     if (length < 0.25 * along.distance_to(low, high)) {
@@ -43,8 +44,8 @@ Moments light_on(const LightAlong& along, double low, double high) {
 }
 
 // Adds a lit stretch to the slices it crosses, in lengths of the ray.
-void add_stretch(const FroxelGrid& grid, const LightAlong& along, Interval<double> stretch, double per_metre,
-                 std::vector<Moments>& slices) {
+void add_stretch(const FroxelGrid& grid, const LightAlong& along, const NearLight& near, Interval<double> stretch,
+                 double per_metre, std::vector<Moments>& slices) {
     const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_metre; };
     int k = slice_of(grid, static_cast<float>(stretch.low * per_metre));
     while (k > 0 && end(k - 1) > stretch.low) --k;
@@ -52,7 +53,7 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, Interval<doubl
         const double high = std::min(stretch.high, end(k));
         if (!(high > low)) continue;
         if (low * per_metre >= grid.faces[0]) {
-            const Moments part = light_on(along, low, high);
+            const Moments part = light_on(along, near, low, high);
             slices[static_cast<size_t>(k)].amount += part.amount, slices[static_cast<size_t>(k)].first += part.first;
         }
         low = high;
@@ -147,13 +148,13 @@ void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, con
 }
 
 // Adds the light on one line of a tile: sums over the line of amounts and of points times amounts.
-void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, size_t lane,
-              LightInjection::Arrivals* slices) {
+void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, const NearLight& near,
+              size_t lane, LightInjection::Arrivals* slices) {
     static thread_local std::vector<Moments> moments;
     const double start = grid.faces.front() / per_metre;
     moments.assign(static_cast<size_t>(grid.slices()), {});
     for (const Interval<double>& s : along.lit)
-        add_stretch(grid, along, {std::max(s.low, start), s.high}, per_metre, moments);
+        add_stretch(grid, along, near, {std::max(s.low, start), s.high}, per_metre, moments);
     for (size_t k = 0; k < moments.size(); ++k) {
         if (!(moments[k].amount > 0)) continue;
         const auto amount = static_cast<float>(moments[k].amount);
@@ -194,7 +195,7 @@ void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, L
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         keep_common(lit[lane], along[lane].lit);
-        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], lane, slices);
+        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], scene.nears[light], lane, slices);
     }
 }
 
@@ -252,17 +253,26 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
             add_local(scene, grid, tiles, i, lanes, ray, indices, lit.arrivals.data() + i * slices);
 }
 
+namespace {
+// The stretch of a line that is followed ray by ray.
+Interval<double> near_reach(const Light& light, const NearLight& near, const Ray& line) {
+    const dvec3 origin(line.origin), direction(line.direction);
+    const Interval<double> reach = light_reach(light, origin, direction);
+    return std::isinf(near.radius) ? reach
+                                   : common(reach, inside_ball(dvec3(light.position), near.radius, origin, direction));
+}
+}
+
 void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
                    const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
                    LightInjection::Depths* inside, LightInjection::Depths* lit) {
-    const Light& spot = scene.snapshot.lights[light];
-    Lines lines = find_lines(grid, tiles, spot, static_cast<uint32_t>(light), lanes, ray, indices);
+    const Light& lamp = scene.snapshot.lights[light];
+    Lines lines = find_lines(grid, tiles, lamp, static_cast<uint32_t>(light), lanes, ray, indices);
     Interval<double> chords[16];
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         Ray& line = lines.rays[lane];
-        if (reaches[lane].end > 0)
-            chords[lane] = common({0, line.t_max}, light_reach(spot, dvec3(line.origin), dvec3(line.direction)));
+        if (reaches[lane].end > 0) chords[lane] = common({0, line.t_max}, near_reach(lamp, scene.nears[light], line));
         if (chords[lane].empty())
             lines.active &= ~(1u << lane);
         else

@@ -66,7 +66,7 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
     if (shadows && is_soft(light) && settings.shadow_rays == 1) add(Severity::degraded, limitation::hard_shadows);
     if (has_cone(light) && !settings.amortise) return; // a beam is that of the frame, and of each ray
     if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
-    if (!is_distant(light) && in_fog(snapshot, light.position))
+    if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))
         add(Severity::info, limitation::flat_glow, {size.coarse()});
 }
 

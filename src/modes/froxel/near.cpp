@@ -42,13 +42,13 @@ size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, in
 }
 
 // Factor on a light's intensity at a point, as arrival() of scene/light.h, with 1/r² of at most 1/width2.
-float falloff_at(const Light& light, vec3 point, float width2) {
+float falloff_at(const Light& light, const NearLight& near, vec3 point, float width2) {
     Light unit = light;
     unit.intensity = vec3(1);
     const LightSample arriving = arrival(unit, point);
     const float reach = capped_radius(light);
     const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
-    return arriving.irradiance.x * squared / std::max(squared, width2);
+    return arriving.irradiance.x * squared / std::max(squared, width2) * (1 - near.at(arriving.distance));
 }
 }
 
@@ -71,7 +71,7 @@ FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid,
         const auto [t, stands_for] = line.angles.at(u);
         points[i] = line.start + t * line.direction;
         weight[i] = stands_for / (on_line * line.length * static_cast<float>(count));
-        weight[i] *= falloff_at(light, points[i], line.width2);
+        weight[i] *= falloff_at(light, scene.nears[light_index], points[i], line.width2);
 
         const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
         shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;

@@ -9,6 +9,7 @@
 #include "integrate/scattering_simd.h"
 #include "integrate/style_simd.h"
 #include "modes/froxel/light_injection.h"
+#include "modes/froxel/near_simd.h"
 #include "modes/froxel/samples_simd.h"
 #include "modes/froxel/settings.h"
 #include "trace/transmittance/light_grid_simd.h"
@@ -67,11 +68,14 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
 
 // Froxels whose size counts beside their distance from a local light. An exact line answers for their depth, and for
 // their width where that is a single ray.
-Mask16 near_lanes(const Fill& fill, const Light& light, const FroxelLanes& lanes, const Floats& distance) {
+Mask16 near_lanes(const Fill& fill, size_t index, const FroxelLanes& lanes, const Floats& distance) {
+    const Light& light = fill.scene.snapshot.lights[index];
     constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
     if (is_distant(light) || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
     const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
-    return lanes.active & (distance * distance < size2 * (near * near));
+    const Floats all_near =
+        0.5f * fill.scene.nears[index].radius - sqrt(wide2 + lanes.length * lanes.length); // not its
+    return lanes.active & (distance * distance < size2 * (near * near)) & (distance > all_near);
 }
 
 // Share of a light that passes the surfaces on the way to the lanes that shadow rays answer for.
@@ -118,9 +122,10 @@ void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mas
 
 LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const LightSamples plain = arriving(light, fill.scene.cones[index], lanes.point);
+    LightSamples plain = arriving(light, fill.scene.cones[index], lanes.point);
+    plain.amount = plain.amount * (1.0f - near_share(fill.scene.nears[index], plain.distance));
     LaneLightSamples arrived{lanes.point, zero_unless(lit, plain.amount)};
-    const Mask16 near = lit & near_lanes(fill, light, lanes, plain.distance);
+    const Mask16 near = lit & near_lanes(fill, index, lanes, plain.distance);
     Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: what arrives on the whole stretch is known
     by_rays = by_rays & !near;
     if (job.exact) {

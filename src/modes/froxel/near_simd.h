@@ -1,0 +1,23 @@
+// The near part of a light for kernels (see base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_NEAR_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_NEAR_SIMD_H
+#undef TYNDALL_MODES_FROXEL_NEAR_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_NEAR_SIMD_H
+#endif
+
+#include "base/simd/simd.h"
+#include "modes/froxel/beams.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+// As NearLight::at().
+HWY_INLINE Floats near_share(const NearLight& near, const Floats& distance) {
+    if (std::isinf(near.radius) || near.radius == 0) return near.radius > 0 ? 1.0f : 0.0f;
+    const Floats x = max(min(2.0f - distance * (2 / near.radius), 1.0f), 0.0f);
+    return x * x * (3.0f - x * 2.0f);
+}
+
+}
+HWY_AFTER_NAMESPACE();
+#endif
