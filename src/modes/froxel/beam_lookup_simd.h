@@ -159,7 +159,7 @@ struct BeamWalk {
     size_t beam;
     const Light& light;
     const ConeFalloff& cone;
-    const NearLight& near;
+    NearLight near;
     RaysByLamp by_lamp;
     Floats depth_before; // optical, of what lies before the rays' starts
     Floats whole;        // angle of all of the beam on each ray
@@ -286,7 +286,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   beam,
                   light,
                   picture.scene->cones[index],
-                  picture.scene->nears[index],
+                  picture.scene->near(index),
                   seen_from(light, rays.origin, rays.direction),
                   depth_before,
                   0.0f};

@@ -52,7 +52,7 @@ void reaches_kernel(const FroxelScene& scene, const FroxelGrid& grid, FroxelBeam
         for (int x = 0; x < grid.size.x; x += 16)
             for (size_t beam = 0; beam < count; ++beam) {
                 const ivec2 first(x, static_cast<int>(row));
-                find_reaches(grid, scene.snapshot.lights[beams.lights[beam]], scene.nears[beams.lights[beam]].radius,
+                find_reaches(grid, scene.snapshot.lights[beams.lights[beam]], scene.near(beams.lights[beam]).radius,
                              margin, first, found);
                 for (int i = 0; i < std::min(16, grid.size.x - x); ++i)
                     beams.reaches[grid.tile_index(first + ivec2(i, 0)) * count + beam] = found[i];

@@ -22,7 +22,7 @@ struct FroxelScene {
     std::vector<LightDepth> depths;                          // one per light
     std::vector<std::unique_ptr<const GridColumns>> columns; // of their grids; null where there is none
     std::vector<ConeFalloff> cones;                          // one per light
-    std::vector<NearLight> nears;                            // likewise
+    std::vector<NearLight> nears;                            // likewise; empty = none
     std::vector<size_t> beams; // the lights that look-ups follow ray by ray, as far as they are near
     // With FroxelVisibility::intervals: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
@@ -30,8 +30,9 @@ struct FroxelScene {
     ShadowSlices slices;
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 
+    NearLight near(size_t light) const { return light < nears.size() ? nears[light] : NearLight{}; }
     // Whether nothing of a light is in the froxels' light.
-    bool is_beam(size_t light) const { return std::isinf(nears[light].radius); }
+    bool is_beam(size_t light) const { return std::isinf(near(light).radius); }
 };
 
 // Four floats per froxel, [tile · slices + slice]: the light that its fog sends towards the eye, per unit of

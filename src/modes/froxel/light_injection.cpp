@@ -195,7 +195,7 @@ void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, L
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         keep_common(lit[lane], along[lane].lit);
-        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], scene.nears[light], lane, slices);
+        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], scene.near(light), lane, slices);
     }
 }
 
@@ -272,7 +272,7 @@ void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const Froxe
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         Ray& line = lines.rays[lane];
-        if (reaches[lane].end > 0) chords[lane] = common({0, line.t_max}, near_reach(lamp, scene.nears[light], line));
+        if (reaches[lane].end > 0) chords[lane] = common({0, line.t_max}, near_reach(lamp, scene.near(light), line));
         if (chords[lane].empty())
             lines.active &= ~(1u << lane);
         else

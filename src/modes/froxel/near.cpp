@@ -71,7 +71,7 @@ FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid,
         const auto [t, stands_for] = line.angles.at(u);
         points[i] = line.start + t * line.direction;
         weight[i] = stands_for / (on_line * line.length * static_cast<float>(count));
-        weight[i] *= falloff_at(light, scene.nears[light_index], points[i], line.width2);
+        weight[i] *= falloff_at(light, scene.near(light_index), points[i], line.width2);
 
         const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
         shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;

@@ -73,8 +73,7 @@ Mask16 near_lanes(const Fill& fill, size_t index, const FroxelLanes& lanes, cons
     constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
     if (is_distant(light) || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
     const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
-    const Floats all_near =
-        0.5f * fill.scene.nears[index].radius - sqrt(wide2 + lanes.length * lanes.length); // not its
+    const Floats all_near = 0.5f * fill.scene.near(index).radius - sqrt(wide2 + lanes.length * lanes.length); // not its
     return lanes.active & (distance * distance < size2 * (near * near)) & (distance > all_near);
 }
 
@@ -123,7 +122,7 @@ void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mas
 LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
     LightSamples plain = arriving(light, fill.scene.cones[index], lanes.point);
-    plain.amount = plain.amount * (1.0f - near_share(fill.scene.nears[index], plain.distance));
+    plain.amount = plain.amount * (1.0f - near_share(fill.scene.near(index), plain.distance));
     LaneLightSamples arrived{lanes.point, zero_unless(lit, plain.amount)};
     const Mask16 near = lit & near_lanes(fill, index, lanes, plain.distance);
     Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: what arrives on the whole stretch is known
