@@ -11,12 +11,12 @@
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
-#include "render/image/contact_sheet.h"
 #include "render/sequence/auto_exposure.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "sheet.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 
@@ -205,23 +205,23 @@ std::string sheet_name(const RenderOptions& texts, int frame) {
         .string();
 }
 
-// One PNG per frame with the pictures of all modes and the time each took.
+// One PNG per frame with the pictures of all modes, the time each took, and how far it is from a reference.
 void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& texts,
                   const Globals& globals) {
     for (const int frame : all[0].request.frames) {
-        std::vector<SheetPicture> pictures;
+        std::vector<SheetEntry> entries;
         for (const Rendered& one : all) {
             const auto found = std::ranges::find(one.report.frames, frame, &FrameReport::frame);
             if (found == one.report.frames.end()) return; // cancelled
             const FrameStats& stats = found->stats;
-            std::string remark = "kept";
+            std::string times = "kept";
             if (!found->kept)
-                remark = seconds_text(stats.prepare_seconds + stats.render_seconds) + ", fog " +
-                         seconds_text(stats.fog_seconds);
-            pictures.push_back({color_of(read_exr(found->file)), std::string(one.plan.mode->name), remark});
+                times = seconds_text(stats.prepare_seconds + stats.render_seconds) + ", fog " +
+                        seconds_text(stats.fog_seconds);
+            entries.push_back({std::string(one.plan.mode->name), times, found->file});
         }
         const Display display = display_of(scene, all[0].request, all[0].plan, frame);
-        write_contact_sheet(sheet_name(texts, frame), pictures, display);
+        write_sheet(sheet_name(texts, frame), entries, texts.sheet_reference, frame, display);
     }
     if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].request.frames[0])));
 }
@@ -243,6 +243,8 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     std::vector<RenderRequest> requests = make_requests(texts);
     const bool several = requests.size() > 1;
     const LoadOptions options = load_options(texts);
+    if (!several && !texts.sheet_reference.empty())
+        fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one picture");
     OutputPlaces places;
     for (RenderRequest& request : requests) {
         request.light_units = options.light_units;
@@ -261,6 +263,9 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
         find_camera(scene, request.camera);
         check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     }
+    if (!texts.sheet_reference.empty())
+        check_sheet_reference(texts.sheet_reference, requests[0].frames,
+                              requests[0].resolution.x > 0 ? requests[0].resolution : scene.resolution);
     if (several)
         for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
 

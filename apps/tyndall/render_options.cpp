@@ -162,6 +162,12 @@ void add_results(const Command& command, RenderOptions& texts) {
                 "it off, srgb cuts it off at 1",
                 "NAME")
         .group(group);
+    command
+        .option("--reference", texts.sheet_reference,
+                "with several modes: an EXR that the PNG of all shows beside them, with the\n"
+                "error and the FLIP of each against it; #### stands for the frame number",
+                "FILE")
+        .group(group);
     command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
     command
         .option("--stats-json", texts.stats,

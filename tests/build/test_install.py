@@ -10,7 +10,8 @@ import unittest
 BUILD = pathlib.Path(os.environ["TYNDALL_BUILD_DIR"])
 SOURCE = pathlib.Path(os.environ["TYNDALL_SOURCE_DIR"])
 LARGEST = 10_000_000  # bytes a stripped program may have
-SANITIZED = "TYNDALL_SANITIZE:STRING=\n" not in (BUILD / "CMakeCache.txt").read_text()
+CACHE = (BUILD / "CMakeCache.txt").read_text()
+SANITIZED = "TYNDALL_SANITIZE:STRING=\n" not in CACHE
 EMULATOR = shutil.which("qemu-x86_64")
 
 
@@ -20,7 +21,7 @@ class Install(unittest.TestCase):
         cls.directory = pathlib.Path(tempfile.mkdtemp(prefix="tyndall_install_"))
         cls.addClassCleanup(shutil.rmtree, cls.directory, ignore_errors=True)
         cls.prefix = cls.directory / "prefix"
-        subprocess.run(["cmake", "--install", BUILD, "--prefix", cls.prefix, "--strip"], check=True, capture_output=True)
+        subprocess.run(["cmake", "--install", BUILD, "--prefix", cls.prefix], check=True, capture_output=True)
         cls.programs = sorted((cls.prefix / "bin").iterdir())
 
     def test_holds_programs_scenes_volumes_and_texts(self):
@@ -29,14 +30,18 @@ class Install(unittest.TestCase):
                      "share/tyndall/volumes/drifting_dust.json", "share/doc/tyndall/README.md", "share/doc/tyndall/LICENSE"]:
             self.assertTrue((self.prefix / name).is_file(), name)
 
-    def test_renders_an_installed_scene_from_an_empty_folder(self):
-        picture = self.directory / "window.exr"
-        result = subprocess.run(
-            [self.prefix / "bin/tyndall", "render", self.prefix / "share/tyndall/scenes/window.json", "-o", picture,
-             "--frames", "1", "--res", "64x36", "--quality", "draft"],
-            capture_output=True, text=True, cwd=self.directory, env={"PATH": "/usr/bin:/bin"})
-        self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertGreater(picture.stat().st_size, 1000)
+    def test_renders_every_installed_scene_from_an_empty_folder(self):
+        scenes = [file for file in sorted((self.prefix / "share/tyndall/scenes").iterdir())
+                  if file.suffix in (".json", ".glb") and not file.name.endswith(".schema.json")]
+        self.assertGreater(len(scenes), 6)
+        for scene in scenes:
+            picture = self.directory / f"{scene.name}.exr"
+            result = subprocess.run(
+                [self.prefix / "bin/tyndall", "render", scene, "-o", picture, "--frames", "1", "--res", "64x36",
+                 "--quality", "draft"],
+                capture_output=True, text=True, cwd=self.directory, env={"PATH": "/usr/bin:/bin"})
+            self.assertEqual(result.returncode, 0, f"{scene.name}: {result.stderr}")
+            self.assertGreater(picture.stat().st_size, 1000, scene.name)
 
     def test_names_no_folder_of_the_build(self):
         for program in self.programs:
@@ -48,6 +53,11 @@ class Install(unittest.TestCase):
     def test_is_small(self):
         for program in self.programs:
             self.assertLessEqual(program.stat().st_size, LARGEST, program)
+
+    @unittest.skipUnless("CMAKE_BUILD_TYPE:STRING=Release\n" in CACHE, "other builds keep them")
+    def test_has_no_symbols_left(self):
+        for program in self.programs:
+            self.assertNotIn(b".symtab", program.read_bytes(), program)
 
     @unittest.skipUnless(EMULATOR, "qemu-user is not installed")
     @unittest.skipIf(SANITIZED, "sanitizers start before any code of ours")

@@ -27,6 +27,21 @@ class Modes(ProgramTest):
         self.assertGreater(width, 2 * 32)
         self.assertGreater(height, 18)
 
+    def test_a_sheet_with_a_reference(self):
+        modes = ["--mode", "march,radial-blur", "--samples", "1"]
+        self.succeed("render", self.scene, "-o", self.path("truth.exr"), "--quality", "reference")
+        self.succeed("render", self.scene, "-o", self.path("plain.exr"), *modes)
+        self.succeed("render", self.scene, "-o", self.path("out.exr"), *modes, "--reference", self.path("truth.exr"))
+        plain, sheet = png_size(self.path("plain.modes.png")), png_size(self.path("out.modes.png"))
+        self.assertEqual(sheet[0], plain[0])
+        self.assertGreater(sheet[1], 2 * plain[1])  # the reference begins a second row, and a line more is under each
+        self.refuse(2, ["--reference", "several modes"], "render", self.scene, "-o", self.path("one.exr"),
+                    "--reference", self.path("truth.exr"))
+        self.refuse(4, ["gone.exr"], "render", self.scene, "-o", self.path("b.exr"), *modes, "--reference", self.path("gone.exr"))
+        self.refuse(3, ["truth.exr", "pixels"], "render", self.scene, "-o", self.path("b.exr"), *modes, "--res", "16x9",
+                    "--reference", self.path("truth.exr"))
+        self.assertFalse(self.path("b.march.exr").exists(), "it is found out before the work")
+
     def test_two_modes_report_as_a_list(self):
         result = self.succeed("--json", "render", self.scene, "-o", self.path("out.exr"), "--mode", "march,radial-blur",
                               "--samples", "1")

@@ -3,6 +3,7 @@ TYNDALL_NIGHTLY=1."""
 import os
 import pathlib
 import re
+import resource
 import shlex
 import shutil
 import subprocess
@@ -13,6 +14,9 @@ from program import SOURCE, TYNDALL, ProgramTest
 
 # What takes longer than a few seconds on two cores, or wants a display.
 LONG = re.compile(r"oiiotool|tyndall (chart|stress|verify|plan|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--samples [0-9]{3}|--orders all")
+# "24 s" or "3 min" in the comment beside a command: about what it takes on two cores. Others are done within a few seconds.
+STATED = re.compile(r"\s#\s.*?\b([0-9.]+) (s|min)\b")
+UNSTATED_SECONDS, TOLERANCE = 4, 3
 ELSEWHERE = re.compile(r"tyndall (view|COMMAND|--help)")  # the viewer has tests of its own
 
 
@@ -21,11 +25,18 @@ def pages():
 
 
 def commands():
-    """Page and words of every command line: indented by four, without comments."""
+    """Page, words and stated seconds of every command line: indented by four, without comments."""
     for page in pages():
         for line in page.read_text().splitlines():
             if line.startswith(("    tyndall ", "    oiiotool ")) and not ELSEWHERE.search(line):
-                yield page.name, shlex.split(re.split(r"\s#\s", line)[0])
+                stated = STATED.search(line)
+                seconds = float(stated[1]) * (60 if stated[2] == "min" else 1) if stated else None
+                yield page.name, shlex.split(re.split(r"\s#\s", line)[0]), seconds
+
+
+def processor_seconds():
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 class Docs(ProgramTest):
@@ -37,11 +48,29 @@ class Docs(ProgramTest):
 
     def run_commands(self, long):
         """The quick ones; with the long ones, which use what those write, all of them."""
-        found = [(page, words) for page, words in commands() if long or not LONG.search(" ".join(words))]
+        found = [command for command in commands() if long or not LONG.search(" ".join(command[1]))]
         self.assertGreater(len(found), 5)
-        for page, words in found:
+        for page, words, stated in found:
+            before = processor_seconds()
             result = subprocess.run([TYNDALL if words[0] == "tyndall" else words[0], *words[1:]], cwd=self.directory, capture_output=True, text=True)
             self.assertEqual(result.returncode, 0, f"{page}: {' '.join(words)}\n{result.stderr}")
+            on_two_cores = (processor_seconds() - before) / 2  # whatever else the machine does
+            self.assertLess(on_two_cores, TOLERANCE * (stated or UNSTATED_SECONDS) + 1, f"{page}: {' '.join(words)}")
+
+    def test_long_commands_have_their_times_beside_them(self):
+        for page, words, stated in commands():
+            command = " ".join(words)
+            if re.search(r"--target-error|--quality (final|reference)|--samples [0-9]{3}|tyndall (chart|stress|verify|plan)", command):
+                self.assertIsNotNone(stated, f"{page}: {command}")
+
+    def test_files_that_commands_read_are_there(self):
+        for page, words, _ in commands():
+            for word in words[1:]:
+                if not word.startswith("out/") and re.fullmatch(r"[\w./]+/[\w.]+\.(json|glb|vdb|txt)", word):
+                    self.assertTrue((SOURCE / word).exists(), f"{page}: {word}")
+        for page in pages():  # and those of the viewer, which is tested elsewhere
+            for file in re.findall(r"^    tyndall view .*--script (\S+)", page.read_text(), re.M):
+                self.assertTrue((SOURCE / file).exists(), f"{page.name}: {file}")
 
     def test_quick_commands(self):
         self.run_commands(False)
@@ -72,11 +101,11 @@ class Docs(ProgramTest):
                            check=True, capture_output=True, timeout=300)
 
     def test_each_picture_stands_beside_its_command(self):
-        made = set(re.findall(r"# docs/images/(\S+)$", "".join(page.read_text() for page in pages()), re.M))
+        made = set(re.findall(r" #(?: .*)? docs/images/(\S+)$", "".join(page.read_text() for page in pages()), re.M))
         for page in pages():
             text = page.read_text()
             for name in re.findall(r"!\[[^]]*\]\([^)]*images/([^)]+)\)", text):
-                script = re.match(r"(chart|modes|architecture|accuracy)", name)
+                script = re.match(r"(chart|architecture|accuracy)", name)
                 command = script and "\n    python3 docs/make_" + script[1]
                 self.assertTrue(name in made or (command and command in text), f"{page.name}: what makes {name}?")
 

@@ -19,7 +19,10 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, cons
     const ivec2 whole = pictures[0].color.size;
     const int width = std::min(whole.x, widest_tile);
     const ivec2 tile(width, std::max(1, whole.y * width / whole.x));
-    const int scale = width >= 320 ? 2 : 1, strip = (2 * letter_height + 2) * scale;
+    const int scale = width >= widest_tile ? 3 : width >= widest_tile / 2 ? 2 : 1;
+    size_t lines = 0;
+    for (const SheetPicture& picture : pictures) lines = std::max(lines, picture.lines.size());
+    const int strip = (static_cast<int>(lines) * letter_height + 2) * scale;
     const int count = static_cast<int>(pictures.size());
     const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
     const int rows = (count + columns - 1) / columns;
@@ -29,9 +32,12 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, cons
         const ivec2 corner = ivec2(i % columns, i / columns) * (tile + ivec2(gap, strip + gap)) + gap;
         const auto same = [](vec3 color) { return color; };
         put(display_codes(shrunk(pictures[i].color, tile, same), display), corner, sheet);
-        draw_text(sheet, corner + ivec2(2 * scale, tile.y + 2 * scale), scale, pictures[i].title, glm::u8vec3(235));
-        draw_text(sheet, corner + ivec2(2 * scale, tile.y + (2 + letter_height) * scale), scale, pictures[i].remark,
-                  glm::u8vec3(150));
+        ivec2 place = corner + ivec2(2 * scale, tile.y + 2 * scale);
+        for (const std::string& line : pictures[i].lines) {
+            const bool title = &line == pictures[i].lines.data();
+            draw_text(sheet, place, scale, line, glm::u8vec3(title ? 235 : 165));
+            place.y += letter_height * scale;
+        }
     }
     return sheet;
 }

@@ -1,4 +1,4 @@
-// Several pictures of one view side by side, with two lines of text under each.
+// Several pictures of one view side by side, with lines of text under each.
 #pragma once
 #include "render/image/view_transform.h"
 
@@ -8,8 +8,8 @@
 
 namespace tyndall {
 struct SheetPicture {
-    Image<vec3> color; // linear Rec.709, all of one size
-    std::string title, remark;
+    Image<vec3> color;              // linear Rec.709, all of one size
+    std::vector<std::string> lines; // the first one is bright
 };
 
 // Tiles of at most 640 pixels across, in about as many rows as columns.

@@ -37,7 +37,7 @@ TEST(Lettering, LeavesOutWhatDoesNotFit) {
 TEST(ContactSheet, PutsPicturesSideBySideInOrder) {
     std::vector<SheetPicture> pictures;
     const vec3 colors[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (const vec3 color : colors) pictures.push_back({Image<vec3>({80, 40}, color), "x", "y"});
+    for (const vec3 color : colors) pictures.push_back({Image<vec3>({80, 40}, color), {"x", "y"}});
     const Image<glm::u8vec3> sheet = contact_sheet(pictures, {0, ViewTransform::srgb});
     const int tile_height = 40 + 2 * letter_height + 2;
     EXPECT_EQ(sheet.size, ivec2(2 * 80 + 3 * 4, 2 * tile_height + 3 * 4));
@@ -52,7 +52,7 @@ TEST(ContactSheet, ShrinksLargePicturesToTheirMean) {
     Image<vec3> checker({1280, 720});
     for (int y = 0; y < 720; ++y)
         for (int x = 0; x < 1280; ++x) checker.at(x, y) = vec3((x + y) % 2 ? 0.4f : 0.0f);
-    const Image<glm::u8vec3> sheet = contact_sheet({{checker, "checker", ""}}, {0, ViewTransform::srgb});
+    const Image<glm::u8vec3> sheet = contact_sheet({{checker, {"checker"}}}, {0, ViewTransform::srgb});
     EXPECT_EQ(sheet.size.x, 640 + 8);
     // sRGB code of the linear mean 0.2.
     EXPECT_NEAR(sheet.at(300, 200).x, 255 * (1.055 * std::pow(0.2, 1 / 2.4) - 0.055), 1.1);

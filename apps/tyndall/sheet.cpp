@@ -1,0 +1,42 @@
+#include "sheet.h"
+
+#include "base/error.h"
+#include "base/io/frames.h"
+#include "base/text.h"
+#include "measure/chart/report.h"
+#include "measure/metrics/comparison.h"
+#include "render/image/contact_sheet.h"
+
+namespace tyndall {
+void check_sheet_reference(const std::string& pattern, std::span<const int> frames, ivec2 size) {
+    std::string last;
+    for (const int frame : frames) {
+        const std::string file = frame_name(pattern, frame);
+        if (file == last) return; // one for all frames
+        last = file;
+        const ivec2 display = read_picture(file).display;
+        if (display != size)
+            refuse(file,
+                   formatted("has %d x %d pixels; the frames will have %d x %d", display.x, display.y, size.x, size.y));
+    }
+}
+
+void write_sheet(const std::filesystem::path& sheet, const std::vector<SheetEntry>& entries, const std::string& pattern,
+                 int frame, const Display& display) {
+    std::optional<Picture> reference;
+    if (!pattern.empty()) reference = read_picture(frame_name(pattern, frame));
+    std::vector<SheetPicture> pictures;
+    for (const SheetEntry& entry : entries) {
+        Picture picture = read_picture(entry.file);
+        std::vector<std::string> lines{entry.mode, entry.times};
+        if (reference) {
+            check_same_frame(picture, *reference);
+            const Comparison found = compare(picture, *reference, viewing_of(reference->beauty));
+            lines.push_back("error " + share_words(found.worst_rmse()) + formatted(", FLIP %.3f", found.flip));
+        }
+        pictures.push_back({std::move(picture.beauty), std::move(lines)});
+    }
+    if (reference) pictures.push_back({std::move(reference->beauty), {"reference"}});
+    write_contact_sheet(sheet, pictures, display);
+}
+}
