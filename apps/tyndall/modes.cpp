@@ -1,4 +1,4 @@
-// tyndall modes: the rendering techniques and every setting with its value at each quality.
+// tyndall modes: the rendering techniques, a line each; the settings of one, or all, with their values at each quality.
 #include "base/error.h"
 #include "common.h"
 #include "modes/mode.h"
@@ -63,7 +63,8 @@ std::string table_text() {
     for (const Mode& mode : modes())
         text += formatted("  %-13s %-20s %s\n", std::string(mode.name).c_str(),
                           std::string(name_of(mode.accuracy)).c_str(), std::string(mode.summary).c_str());
-    return text + "\ntyndall modes NAME tells what one is for, and which settings it reads.\n";
+    return text +
+           "\ntyndall modes MODE says what one is for and which settings it reads; --settings lists all settings.\n";
 }
 
 std::string mode_text(const Mode& mode) {
@@ -80,10 +81,12 @@ std::string mode_text(const Mode& mode) {
 Run add_modes(const Command& program) {
     const Command command = program.command("modes", "the rendering techniques and their settings");
     const auto name = std::make_shared<std::string>();
-    command.option("MODE", *name, "only this one, and the settings it reads (default: all)", "");
+    const auto settings = std::make_shared<bool>(false);
+    command.option("MODE", *name, "only this one, and the settings it reads (default: a line for each)", "");
+    command.flag("--settings", *settings, "also every setting of all modes (--json has them in any case)");
     command.footer("Example: what froxel is for, and its settings\n  tyndall modes froxel\n"
                    "Example: all settings as JSON, for a script\n  tyndall modes --json");
-    return [name](const Globals& globals) {
+    return [name, settings](const Globals& globals) {
         std::vector<const Mode*> shown;
         std::vector<SettingRow> rows = setting_rows();
         if (name->empty()) {
@@ -95,7 +98,8 @@ Run add_modes(const Command& program) {
         if (globals.json)
             print_report(modes_json(shown, rows));
         else
-            print_report((name->empty() ? table_text() : mode_text(*shown[0])) + rows_text(rows));
+            print_report((name->empty() ? table_text() : mode_text(*shown[0])) +
+                         (name->empty() && !*settings ? "" : rows_text(rows)));
         return 0;
     };
 }

@@ -96,12 +96,13 @@ std::span<const double> amounts_of(const Limitation& limitation) {
 }
 
 Json json_of(const Limitations& limitations) {
-    return json_list(limitations, [](const Limitation& limitation) {
-        return json_object({{"severity", name_of(limitation.severity)},
-                            {"id", limitation.kind->id},
-                            {"where", where_of(limitation)},
-                            {"amounts", json_list(amounts_of(limitation), [](double amount) { return Json(amount); })},
-                            {"why", sentence_of(limitation)}});
+    return json_list(groups_of(limitations), [](const LimitationGroup& group) {
+        return json_object({{"severity", name_of(group.worst.severity)},
+                            {"id", group.worst.kind->id},
+                            {"where", where_of(group)},
+                            {"names", json_list(group.names, [](const std::string& name) { return Json(name); })},
+                            {"amounts", json_list(amounts_of(group.worst), [](double amount) { return Json(amount); })},
+                            {"why", sentence_of(group.worst)}});
     });
 }
 }

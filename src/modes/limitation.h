@@ -60,5 +60,6 @@ std::string where_of(const LimitationGroup& group);               // "12 lights 
 std::string sentence_of(const Limitation& limitation);            // without severity and where
 std::span<const double> amounts_of(const Limitation& limitation); // those that the sentence names
 std::string line_of(const LimitationGroup& group);                // "degraded: light sun: ..."
-Json json_of(const Limitations& limitations);                     // an array of {severity, id, where, amounts, why}
+// An array with one {severity, id, where, names, amounts, why} a group: all names, the amounts of the worst.
+Json json_of(const Limitations& limitations);
 }

@@ -62,7 +62,7 @@ void apply_setting(Settings& settings, std::string_view assignment) {
         if (row.name == name) return row.set(settings, assignment.substr(equals + 1));
         names.push_back(row.name);
     }
-    fail(ExitCode::usage, "--set", unknown_name("setting", name, names) + " (tyndall modes lists them)");
+    fail(ExitCode::usage, "--set", unknown_name("setting", name, names) + " (tyndall modes --settings lists them)");
 }
 
 Settings settings_for(Quality quality) {

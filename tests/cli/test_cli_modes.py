@@ -51,6 +51,31 @@ class Modes(ProgramTest):
             self.assertLessEqual(report["totals"]["fog_seconds"],
                                  report["totals"]["prepare_seconds"] + report["totals"]["render_seconds"] + 0.1)
 
+    def test_the_list_of_modes_is_a_line_each_and_one_mode_comes_with_its_settings(self):
+        short = self.succeed("modes").stdout
+        for name in self.modes():
+            self.assertEqual(len([line for line in short.splitlines() if line.startswith(f"  {name} ")]), 1, short)
+        self.assertLess(len(short.splitlines()), len(self.modes()) + 6)
+        self.assertNotIn("pixel.samples", short)
+        self.assertIn("froxel.tile", self.succeed("modes", "froxel").stdout)
+        self.assertNotIn("froxel.tile", self.succeed("modes", "march").stdout)
+        every = self.succeed("modes", "--settings").stdout
+        self.assertTrue(every.startswith(short))
+        for row in json.loads(self.succeed("modes", "--json").stdout)["settings"]:
+            self.assertIn(f"\n  {row['name']} ", every)
+
+    def test_lights_with_the_same_limitation_are_one_line_of_the_report(self):
+        spots = [{"name": f"spot {i}", "type": "point", "position": [i, 2, 0], "radius": 0.3, "intensity": 5}
+                 for i in range(12)]
+        scene = self.write("spots.json", lit_scene(lights=spots))
+        result = self.succeed("--json", "render", scene, "-o", self.path("out.exr"), "--mode", "cone", "--samples", "1")
+        found = [one for one in json.loads(result.stdout)["limitations"] if one["id"] == "point_light_only"]
+        self.assertEqual([one["where"] for one in found], ["12 lights (spot 0, spot 1, spot 2, ...)"])
+        self.assertEqual(found[0]["names"], [spot["name"] for spot in spots])
+        said = self.succeed("render", scene, "-o", self.path("out.exr"), "--mode", "cone", "--samples", "1", "-v").stderr
+        self.assertEqual(said.count("12 lights (spot 0, spot 1, spot 2, ...): "), 1)
+        self.assertNotIn("light spot", said)
+
     def test_bad_lists_are_refused(self):
         for names, why in (("march,march", "named twice"), ("march,rays", "no mode 'rays'"), ("", "empty")):
             result = run("render", self.scene, "-o", self.path("out.exr"), "--mode", names)

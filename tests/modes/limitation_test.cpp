@@ -51,13 +51,18 @@ TEST(Limitations, WhereIsWordAndName) {
     EXPECT_LT(broken.size(), 120u);
 }
 
-TEST(Limitations, JsonHasAnEntryForEach) {
-    const Json json = json_of({{Severity::degraded, &blurred, Subject::light, "sun", {0.5, 3}}});
-    ASSERT_EQ(json.items.size(), 1u);
+TEST(Limitations, JsonHasAnEntryForEachGroup) {
+    const Json json = json_of({{Severity::degraded, &blurred, Subject::light, "sun", {0.5, 3}},
+                               {Severity::degraded, &blurred, Subject::light, "lamp", {2, 4}},
+                               {Severity::degraded, &dark, Subject::camera}});
+    ASSERT_EQ(json.items.size(), 2u);
     EXPECT_EQ(json.items[0].string_or("severity", ""), "degraded");
     EXPECT_EQ(json.items[0].string_or("id", ""), "blurred");
-    EXPECT_EQ(json.items[0].string_or("where", ""), "light sun");
-    EXPECT_EQ(json.items[0].string_or("why", ""), "blurred over 0.5 m in 3 places");
+    EXPECT_EQ(json.items[0].string_or("where", ""), "2 lights (sun, lamp)");
+    EXPECT_EQ(json.items[0].string_or("why", ""), "blurred over 2 m in 4 places");
+    EXPECT_EQ(format_json(*json.items[0].find("names")), "[\"sun\",\"lamp\"]");
+    EXPECT_EQ(format_json(*json.items[0].find("amounts")), "[2,4]");
+    EXPECT_EQ(json.items[1].string_or("where", ""), "camera");
 }
 }
 }
