@@ -38,6 +38,7 @@ int run_bake(const Options& texts, const Globals& globals) {
     const BakeOptions options = bake_options(texts);
     const double voxel_size = texts.voxel_size.empty() ? 0 : number_option("--voxel-size", texts.voxel_size, 1e-6, 1e6);
 
+    set_stop_remark("; finished frames are kept, --resume continues");
     OutputPlaces places;
     places.check(texts.output, frames);
     FogRecipe recipe = read_recipe(texts.recipe);

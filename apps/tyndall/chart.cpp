@@ -83,6 +83,7 @@ void say_end(const Chart& chart) {
 
 int run_chart(const Options& texts, const Globals& globals) {
     ChartJob job = make_job(texts);
+    set_stop_remark("; what is measured is kept, the same command continues");
     OutputPlaces places;
     check_places(job, places);
     const Scene scene = load_scene(job.render.scene_file);
@@ -91,7 +92,7 @@ int run_chart(const Options& texts, const Globals& globals) {
     if (texts.frame.empty()) job.frame = scene.first_frame;
     if (texts.resolution.empty()) job.render.resolution = chart_size(scene, texts.quick);
 
-    Progress progress(globals.progress, "chart", 1, true);
+    Progress progress(globals.progress, "chart", 1, globals.json);
     ChartControl control{&cancel_flag(), [&](double done) { progress.set(done); }, {}};
     if (!globals.quiet) control.remark = [&](const std::string& line) { progress.line(line); };
     const Chart chart = make_chart(scene, job, control);
@@ -111,7 +112,7 @@ int run_chart(const Options& texts, const Globals& globals) {
 Run add_chart(const Command& program) {
     const Command command = program.command("chart", "every mode's error against its time on a scene");
     auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command
         .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\npictures",
                 "DIR")

@@ -14,6 +14,7 @@
 namespace tyndall {
 namespace {
 const double started = steady_seconds();
+std::atomic<const char*> remark_of_stop{""};
 }
 
 double program_start() { return started; }
@@ -26,6 +27,9 @@ std::atomic<bool>& cancel_flag() {
 void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
 }
+
+void set_stop_remark(const char* remark) { remark_of_stop = remark; }
+const char* stop_remark() { return remark_of_stop; }
 
 int exit_code_of(const std::function<int()>& work) {
     const auto report = [](std::string_view text, ExitCode code) {

@@ -47,6 +47,10 @@ std::atomic<bool>& cancel_flag();
 // Throws when a signal asked to stop; for work that takes no flag itself.
 void stop_if_cancelled();
 
+// What the line about a stop adds for this command: what is kept, and how to go on. A text that lives on.
+void set_stop_remark(const char* remark);
+const char* stop_remark(); // empty where nothing is kept
+
 // Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
 // that a signal has caused.
 int exit_code_of(const std::function<int()>& work);

@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <optional>
 
 #include <fcntl.h>
@@ -26,8 +27,8 @@ extern "C" void on_stop(int signal) {
 
 // The work did not stop in time. What it was writing keeps its temporary name, which the next run removes.
 extern "C" void on_alarm(int) {
-    constexpr char line[] = "tyndall: stopped; finished files are kept, --resume continues\n";
-    if (write(STDERR_FILENO, line, sizeof line - 1) < 0) _exit(128 + stop_signal);
+    for (const char* text : {"tyndall: stopped", stop_remark(), "\n"})
+        if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
     _exit(128 + stop_signal);
 }
 
@@ -126,6 +127,6 @@ int main(int argc, char** argv) {
     handle_signals();
     const int code = exit_code_of([&] { return run(argc, argv); });
     if (!stop_signal || code == static_cast<int>(ExitCode::out_of_memory)) return code;
-    say(formatted("stopped by signal %d; finished files are kept, --resume continues", static_cast<int>(stop_signal)));
+    say(formatted("stopped by signal %d%s", static_cast<int>(stop_signal), stop_remark()));
     return static_cast<int>(ExitCode::stopped) + stop_signal;
 }

@@ -245,6 +245,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     const LoadOptions options = load_options(texts);
     if (!several && !texts.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one picture");
+    set_stop_remark("; finished frames are kept, --resume continues");
     OutputPlaces places;
     for (RenderRequest& request : requests) {
         request.light_units = options.light_units;

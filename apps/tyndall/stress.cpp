@@ -5,12 +5,13 @@
 #include "base/io/output.h"
 #include "modes/mode.h"
 #include "stress_report.h"
+#include "stress_resume.h"
 
 namespace tyndall {
 namespace {
 struct Options {
     std::string modes, cases, output;
-    bool list = false;
+    bool list = false, resume = false;
 };
 
 std::vector<Mode> chosen_modes(const std::string& names) {
@@ -62,6 +63,28 @@ void write_files(const std::filesystem::path& directory, const StressReport& rep
     write_file_atomically(directory / "stress.html", stress_html(report));
 }
 
+// Runs case by case; with an output folder, what is finished is in its files before the next case begins.
+StressReport run_cases(std::span<const StressCase* const> cases, std::span<const Mode> chosen, const Options& texts,
+                       Progress& progress) {
+    const std::filesystem::path directory = texts.output;
+    const EarlierStress earlier = texts.resume ? earlier_stress(directory / "stress.json") : EarlierStress();
+    const double start = steady_seconds();
+    StressReport report;
+    report.asked = cases.size();
+    for (size_t i = 0; i < cases.size(); ++i) {
+        std::vector<StressResult> results = kept_results(earlier, *cases[i], chosen);
+        const bool kept = !results.empty();
+        if (!kept) results = run_stress(*cases[i], chosen, &cancel_flag());
+        stop_if_cancelled();
+        report.results.insert(report.results.end(), results.begin(), results.end());
+        report.modes = columns(report.results);
+        report.seconds = steady_seconds() - start;
+        if (!texts.output.empty() && (!kept || i + 1 == cases.size())) write_files(directory, report);
+        progress.set(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
+    }
+    return report;
+}
+
 int run(const Options& texts, const Globals& globals) {
     const std::vector<Mode> chosen = chosen_modes(texts.modes);
     const std::vector<const StressCase*> cases = cases_for(chosen, chosen_cases(texts.cases));
@@ -70,20 +93,17 @@ int run(const Options& texts, const Globals& globals) {
         print_report(stress_list(cases));
         return 0;
     }
-    const std::filesystem::path directory = texts.output;
+    if (texts.resume && texts.output.empty()) fail(ExitCode::usage, "--resume", "needs --output");
     OutputPlaces places;
-    if (!texts.output.empty())
-        for (const char* name : {"stress.txt", "stress.json", "stress.html"}) places.check(directory / name);
+    if (!texts.output.empty()) {
+        set_stop_remark("; finished cases are kept, --resume continues");
+        for (const char* name : {"stress.txt", "stress.json", "stress.html"})
+            places.check(std::filesystem::path(texts.output) / name);
+    }
 
-    const double start = steady_seconds();
-    Progress progress(globals.progress, "stress", 1, true);
-    StressReport report;
-    report.results = run_stress(cases, chosen, {&cancel_flag(), [&](double done) { progress.set(done); }});
-    stop_if_cancelled();
+    Progress progress(globals.progress, "stress", 1, globals.json);
+    const StressReport report = run_cases(cases, chosen, texts, progress);
     progress.finish();
-    report.modes = columns(report.results);
-    report.seconds = steady_seconds() - start;
-    if (!texts.output.empty()) write_files(directory, report);
     print_report(globals.json ? stress_json(report) : stress_text(report));
     return static_cast<int>(report.count(Verdict::fails) ? ExitCode::differs : ExitCode::ok);
 }
@@ -95,7 +115,9 @@ Run add_stress(const Command& program) {
     command.option("--modes", texts->modes, "which modes, between commas (default: all)", "NAMES");
     command.option("--cases", texts->cases,
                    "cases with one of these in their name or group, between commas\n(default: all)", "PARTS");
-    command.option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there", "DIR");
+    command.option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there, case by case",
+                   "DIR");
+    command.flag("--resume", texts->resume, "keep the cases that stress.json in the output folder has already");
     command.flag("--list", texts->list, "only list the cases and what they sweep");
     command.footer("Examples: everything, some minutes; then one mode's shadows\n"
                    "  tyndall stress -o out/stress\n"

@@ -95,9 +95,12 @@ std::string stress_value(const StressCase& stress, double value) {
 
 std::string stress_summary(const StressReport& report) {
     const WrongWarnings warnings = wrong_warnings(report.results);
-    return formatted("%zu cases, %zu results: %d hold, %d degrade and say so, %d fail in silence; of %d warnings "
+    const size_t finished = report.cases().size();
+    const std::string cases =
+        finished < report.asked ? formatted("%zu of %zu cases", finished, report.asked) : count_text(finished, "case");
+    return formatted("%s, %zu results: %d hold, %d degrade and say so, %d fail in silence; of %d warnings "
                      "\"wrong\" %d (%.1f %%) with an error below 5 %%",
-                     report.cases().size(), report.results.size(), report.count(Verdict::holds),
+                     cases.c_str(), report.results.size(), report.count(Verdict::holds),
                      report.count(Verdict::degrades), report.count(Verdict::fails), warnings.count, warnings.idle,
                      warnings.count ? 100.0 * warnings.idle / warnings.count : 0.0);
 }
@@ -123,6 +126,7 @@ std::string stress_json(const StressReport& report) {
     const auto case_of = [&](const StressCase* stress) { return case_json(report, *stress); };
     const WrongWarnings warnings = wrong_warnings(report.results);
     return json_line({{"version", TYNDALL_VERSION},
+                      {"asked", report.asked},
                       {"holds", report.count(Verdict::holds)},
                       {"degrades", report.count(Verdict::degrades)},
                       {"fails", report.count(Verdict::fails)},

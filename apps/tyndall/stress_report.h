@@ -9,6 +9,7 @@ struct StressReport {
     std::vector<StressResult> results; // case by case
     std::vector<std::string> modes;    // columns, in the order of the mode table; "program" last
     double seconds = 0;
+    size_t asked = 0; // cases to run, of which a stop may have left some
 
     int count(Verdict verdict) const;
     const StressResult* find(const StressCase& stress, const std::string& mode) const; // null: not asked of it

@@ -66,12 +66,12 @@ void ask_limitations(const StressCase& stress, const Mode& mode, const StressSce
 }
 
 StressPoint run_point(const StressCase& stress, const Mode* mode, double value, const StressScene& scene,
-                      std::optional<Truth>& truth, const StressControl& control) {
-    if (control.cancel && *control.cancel) fail(ExitCode::internal, "stress", "cancelled");
+                      std::optional<Truth>& truth, std::atomic<bool>* cancel) {
+    if (cancel && *cancel) fail(ExitCode::internal, "stress", "cancelled");
     StressPoint point;
     point.value = value;
     point.allowed = allowed_to(mode, stress.measure);
-    Trial trial{mode, value, point.allowed, scene, truth, control.cancel};
+    Trial trial{mode, value, point.allowed, scene, truth, cancel};
     if (mode) ask_limitations(stress, *mode, scene, point);
     point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
     if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;
@@ -99,8 +99,7 @@ bool takes_part(const StressCase& stress, const Mode& mode) {
     });
 }
 
-std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
-                                     const StressControl& control) {
+std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes, std::atomic<bool>* cancel) {
     std::vector<const Mode*> taking;
     for (const Mode& mode : modes)
         if (takes_part(stress, mode)) taking.push_back(&mode);
@@ -114,19 +113,9 @@ std::vector<StressResult> run_stress(const StressCase& stress, std::span<const M
         std::optional<Truth> truth;
         for (size_t i = 0; i < taking.size(); ++i) {
             const double start = steady_seconds();
-            results[i].points.push_back(run_point(stress, taking[i], value, scene, truth, control));
+            results[i].points.push_back(run_point(stress, taking[i], value, scene, truth, cancel));
             results[i].seconds += steady_seconds() - start;
         }
-    }
-    return results;
-}
-
-std::vector<StressResult> run_stress(std::span<const StressCase* const> cases, std::span<const Mode> modes,
-                                     const StressControl& control) {
-    std::vector<StressResult> results;
-    for (size_t i = 0; i < cases.size(); ++i) {
-        for (StressResult& result : run_stress(*cases[i], modes, control)) results.push_back(std::move(result));
-        if (control.progress) control.progress(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
     }
     return results;
 }

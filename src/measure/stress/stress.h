@@ -4,7 +4,6 @@
 #pragma once
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -107,17 +106,10 @@ struct StressResult {
     const StressPoint* first() const; // the point that decides the verdict; null when it holds
 };
 
-struct StressControl {
-    std::atomic<bool>* cancel = nullptr;
-    std::function<void(double)> progress; // 0..1
-};
-
 // Runs a case with those of the modes that it names; the program's own when there is one. Throws Error (internal) when
 // cancelled.
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
-                                     const StressControl& control);
-std::vector<StressResult> run_stress(std::span<const StressCase* const> cases, std::span<const Mode> modes,
-                                     const StressControl& control);
+                                     std::atomic<bool>* cancel = nullptr);
 
 // How often a mode called itself `wrong`, and how often its measured error was below 5 % then.
 struct WrongWarnings {

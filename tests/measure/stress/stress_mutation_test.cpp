@@ -30,7 +30,7 @@ Mode broken(std::string_view name, Prepare prepare) {
 
 Verdict verdict_of(std::string_view id, const Mode& mode) {
     const StressCase& stress = *std::ranges::find(stress_cases(), id, &StressCase::id);
-    const std::vector<StressResult> results = run_stress(stress, {&mode, 1}, {});
+    const std::vector<StressResult> results = run_stress(stress, {&mode, 1});
     EXPECT_EQ(results.size(), 1u) << id << " does not take " << mode.name;
     return results.empty() ? Verdict::holds : results[0].verdict();
 }
@@ -161,7 +161,7 @@ TEST(MutationCheck, NoShadowsInAnyCaseOfShadows) {
         for (const StressCase& stress : stress_cases()) {
             const Mode mode = broken(shadowing[i], prepares[i]);
             if (!shows_shadows(stress) || !takes_part(stress, mode)) continue;
-            const StressResult result = run_stress(stress, {&mode, 1}, {})[0];
+            const StressResult result = run_stress(stress, {&mode, 1})[0];
             const bool said = std::ranges::any_of(result.points, &StressPoint::wrong);
             EXPECT_TRUE(said || result.verdict() == Verdict::fails) << stress.id << ", " << mode.name;
         }
@@ -386,7 +386,7 @@ TEST(MutationCheck, AModeThatAlwaysWarns) {
         return Limitations{{Severity::wrong, &limitation::single_scattering_only, Subject::image}};
     };
     const StressCase& stress = *std::ranges::find(stress_cases(), "albedo", &StressCase::id);
-    const WrongWarnings warnings = wrong_warnings(run_stress(stress, {&anxious, 1}, {}));
+    const WrongWarnings warnings = wrong_warnings(run_stress(stress, {&anxious, 1}));
     EXPECT_EQ(warnings.count, static_cast<int>(stress.values.size()));
     EXPECT_EQ(warnings.idle, warnings.count);
 }

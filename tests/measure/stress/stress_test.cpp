@@ -27,7 +27,7 @@ const std::vector<StressResult>& results_of(std::string_view id) {
     static std::map<std::string_view, std::vector<StressResult>> known;
     const StressCase& stress = case_named(id);
     const auto [place, fresh] = known.try_emplace(stress.id);
-    if (fresh) place->second = run_stress(stress, modes(), {});
+    if (fresh) place->second = run_stress(stress, modes());
     return place->second;
 }
 
@@ -99,11 +99,11 @@ TEST(StressVerdict, ALimitationWrongExcusesMoreThanOneDegraded) {
     black.limitations = [](const View&, const Snapshot&, const Settings&) {
         return Limitations{{Severity::degraded, &limitation::deep_steps, Subject::medium}};
     };
-    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::fails);
+    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1})[0].verdict(), Verdict::fails);
     black.limitations = [](const View&, const Snapshot&, const Settings&) {
         return Limitations{{Severity::wrong, &limitation::deep_steps, Subject::medium}};
     };
-    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1}, {})[0].verdict(), Verdict::degrades);
+    EXPECT_EQ(run_stress(case_named("slab"), {&black, 1})[0].verdict(), Verdict::degrades);
 }
 
 TEST(StressVerdict, NothingExcusesWhatIsNoLight) {
@@ -130,7 +130,7 @@ TEST(StressVerdict, CountsWarningsThatNothingBearsOut) {
 
 TEST(StressRun, StopsWhenCancelled) {
     std::atomic<bool> cancel = true;
-    EXPECT_THROW(run_stress(case_named("thin-fog"), modes(), {&cancel, {}}), Error);
+    EXPECT_THROW(run_stress(case_named("thin-fog"), modes(), &cancel), Error);
 }
 
 // A mode that always warns would never fail; the suite counts that too.
