@@ -217,6 +217,9 @@ def scene_page(root):
         page += "\n" + table(["key", "value", "meaning", "of type"],
                             [[*row, "all" if len(of) == len(kinds) else ", ".join(of)] for row, of in sorted(
                                 rows.items(), key=lambda item: -len(item[1]))])
+    page += ("\n## Words of other programs\n\nUnknown keys and types are answered with the nearest one here; these words of others "
+             "are known:\n\n" + table(["others say", "here"], sorted(
+                 [", ".join(f"`{word}`" for word in words), f"`{key}`"] for key, words in root["synonyms"].items())))
     page += "\n## Keys over time\n\nA value that takes keys may be an object instead of a number or a vector:\n\n" + animation_text(root)
     return page
 

@@ -62,7 +62,7 @@ Problem members_problem(const Json& value, const Json& schema, const Json& root,
         const std::string place = json_pointer(pointer, key);
         for (const Json* one : member_schemas(key, schema)) {
             if (one == schema.find("additionalProperties") && is_false(*one))
-                return SchemaProblem{place, unknown_key(key, keys_of(schema.find("properties")))};
+                return SchemaProblem{place, unknown_key(key, keys_of(schema.find("properties")), root)};
             if (Problem problem = find_problem(member, *one, root, place)) return problem;
         }
     }
@@ -103,7 +103,8 @@ Problem condition_problem(const Json& value, const Json& schema, const Json& roo
 Problem find_problem(const Json& value, const Json& unresolved, const Json& root, const std::string& pointer) {
     const Json& schema = resolved(unresolved, root);
     if (is_false(schema)) return SchemaProblem{pointer, "is not allowed here"};
-    if (const std::string what = value_problem(value, schema); !what.empty()) return SchemaProblem{pointer, what};
+    if (const std::string what = value_problem(value, schema); !what.empty())
+        return SchemaProblem{pointer, what + meant_value(value, allowed_values(schema), root)};
     Problem problem;
     if (value.kind == Json::Kind::object) problem = members_problem(value, schema, root, pointer);
     if (value.kind == Json::Kind::array) problem = items_problem(value, schema, root, pointer);

@@ -29,8 +29,36 @@ bool looks_like(std::string_view a, std::string_view b) {
 }
 }
 
-std::string unknown_key(const std::string& key, const std::vector<std::string>& known) {
+namespace {
+// Letters and digits only, so that outerConeAngle and outer_cone_angle are one word.
+std::string bare(std::string_view text) {
+    std::string word = lowered(text);
+    std::erase_if(word, [](unsigned char c) { return !std::isalnum(c); });
+    return word;
+}
+
+// Those names for which other programs have this word.
+std::vector<std::string> meant_by(std::string_view word, const std::vector<std::string>& names, const Json& root) {
+    const Json* synonyms = root.find("synonyms");
+    std::vector<std::string> meant;
+    for (const std::string& name : names)
+        for (const std::string& synonym : strings_of(synonyms ? synonyms->find(name) : nullptr))
+            if (bare(synonym) == bare(word)) meant.push_back(quote_json(name));
+    return meant;
+}
+}
+
+std::string meant_value(const Json& value, const std::vector<const Json*>& allowed, const Json& root) {
+    std::vector<std::string> names;
+    for (const Json* one : allowed) names.push_back(one->string);
+    const std::vector<std::string> meant = meant_by(value.string, names, root);
+    return meant.empty() ? "" : "; did you mean " + joined(meant, " or ") + "?";
+}
+
+std::string unknown_key(const std::string& key, const std::vector<std::string>& known, const Json& root) {
     if (known.empty()) return "unknown key; none is known here";
+    if (const auto meant = meant_by(key, known, root); !meant.empty())
+        return "unknown key; did you mean " + joined(meant, " or ") + "?";
     const auto longer_form = [wanted = lowered(key)](const std::string& name) {
         const bool at_end =
             name.size() > wanted.size() && name.ends_with(wanted) && name[name.size() - wanted.size() - 1] == '_';
@@ -103,13 +131,14 @@ Problem narrow_by_member(const Json& value, std::vector<Branch>& branches, const
 
         if (const Json* member = value.find(key)) {
             if (!contains(allowed, *member))
-                return SchemaProblem{json_pointer(pointer, key), expected_values(allowed, member)};
+                return SchemaProblem{json_pointer(pointer, key),
+                                     expected_values(allowed, member) + meant_value(*member, allowed, root)};
             std::erase_if(branches,
                           [&](const auto& branch) { return !contains(allowed_for(branch, key, root), *member); });
         } else if (all_require(branches, key)) {
             for (const auto& other : value.members)
                 if (contains(allowed, other.second) && looks_like(other.first, key))
-                    return SchemaProblem{json_pointer(pointer, other.first), unknown_key(other.first, {key})};
+                    return SchemaProblem{json_pointer(pointer, other.first), unknown_key(other.first, {key}, root)};
             return SchemaProblem{pointer, "missing key " + quote_json(key) + "; " + expected_values(allowed)};
         }
     }
@@ -153,7 +182,7 @@ Problem likeliest_problem(const Json& value, std::vector<Branch> branches, const
         return !here.empty();
     };
     if (std::all_of(branches.begin(), branches.end(), lists_values))
-        return SchemaProblem{pointer, expected_values(allowed, &value)};
+        return SchemaProblem{pointer, expected_values(allowed, &value) + meant_value(value, allowed, root)};
     if (const std::string what = required_choice(branches, "needs one of "); !what.empty())
         return SchemaProblem{pointer, what};
     if (value.kind == Json::Kind::object && branches.size() > 1)

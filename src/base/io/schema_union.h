@@ -18,6 +18,10 @@ const Json& resolved(const Json& schema, const Json& root);
 std::vector<std::string> keys_of(const Json* object);
 std::vector<std::string> strings_of(const Json* array);
 
-// 'unknown key; did you mean "fov"?', or what is known when nothing is near.
-std::string unknown_key(const std::string& key, const std::vector<std::string>& known);
+// 'unknown key; did you mean "fov"?', by the words of other programs that the schema `root` lists as "synonyms" and by
+// the spelling, or what is known when nothing is near.
+std::string unknown_key(const std::string& key, const std::vector<std::string>& known, const Json& root);
+
+// '; did you mean "sun"?' of a value that is none of those allowed, by the same synonyms; else empty.
+std::string meant_value(const Json& value, const std::vector<const Json*>& allowed, const Json& root);
 }

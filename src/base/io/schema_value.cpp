@@ -27,11 +27,11 @@ std::string short_text(const Json& value) {
 }
 
 std::string list_text(const std::vector<std::string>& texts) {
-    constexpr size_t most = 140;
+    constexpr size_t longest = 140, most = 360; // of one, of all: an error is one line
     std::string list;
     for (const std::string& text : texts) {
         if (!list.empty() && list.size() + text.size() > most) return list + ", ...";
-        list += (list.empty() ? "" : ", ") + printable(text, most);
+        list += (list.empty() ? "" : ", ") + printable(text, longest);
     }
     return list;
 }

@@ -47,6 +47,7 @@ constexpr const char* schema = R"({
     "file": {"type": "object", "additionalProperties": false, "required": ["type", "path"],
       "properties": {"type": {"const": "file"}, "path": {"type": "string"}, "grid": {"type": "string"}}}
   },
+  "synonyms": {"extinction": ["density", "sigma_t"], "type": ["kind", "density"], "sun": ["directional"], "box": ["cuboid"]},
   "$defs": {"color": {"oneOf": [{"type": "number"}, {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3}]}}
 })";
 
@@ -70,6 +71,15 @@ TEST(JsonSchema, SaysWhereAndWhatWasExpected) {
         const char *member, *complaint;
     } cases[] = {
         {R"("camera": {"fovv": 45})", R"(/camera/fovv: unknown key; did you mean "fov"?)"},
+        // Words of other programs, however they are written; only what is known at the place.
+        {R"("media": [{"type": "even", "sigmaT": 1}])", R"(/media/0/sigmaT: unknown key; did you mean "extinction"?)"},
+        {R"("media": [{"type": "even", "density": 1}])",
+         R"(/media/0/density: unknown key; did you mean "type" or "extinction"?)"},
+        {R"("lights": [{"density": 1}])", R"(/lights/0/density: unknown key; did you mean "type"?)"},
+        {R"("lights": [{"type": "Directional"}])",
+         R"(/lights/0/type: expected one of "point", "spot", "sun"; got "Directional"; did you mean "sun"?)"},
+        {R"("shape": {"kind": "cuboid"})",
+         R"(/shape/kind: expected one of "box", "ball"; got "cuboid"; did you mean "box"?)"},
         {R"("camera": {"FOV": 45})", R"(/camera/FOV: unknown key; did you mean "fov"?)"},
         {R"("camera": {"shift": 1})", R"(/camera/shift: unknown key; did you mean "vertical_shift"?)"},
         {R"("camera": {"vert": 1})", R"(/camera/vert: unknown key; did you mean "vertical_shift"?)"},
@@ -177,7 +187,8 @@ void collect_keywords(const Json& rules, std::set<std::string>& keywords) {
         const bool named = keyword == "properties" || keyword == "patternProperties" || keyword == "definitions";
         if (named)
             for (const auto& member : value.members) collect_keywords(member.second, keywords);
-        else if (keyword != "const" && keyword != "enum" && keyword != "default" && keyword != "examples")
+        else if (keyword != "const" && keyword != "enum" && keyword != "default" && keyword != "examples" &&
+                 keyword != "synonyms")
             collect_keywords(value, keywords);
         for (const Json& item : value.items) collect_keywords(item, keywords);
     }
@@ -190,7 +201,7 @@ TEST(JsonSchema, ShippedSchemasUseKeywordsThatAreUnderstood) {
         "$ref", "additionalItems", "additionalProperties", "allOf", "anyOf", "const", "definitions", "else", "enum",
         "exclusiveMaximum", "exclusiveMinimum", "if", "items", "maxItems", "maxLength", "maxProperties", "maximum",
         "minItems", "minLength", "minProperties", "minimum", "multipleOf", "not", "oneOf", "pattern",
-        "patternProperties", "properties", "required", "then", "type", "uniqueItems",
+        "patternProperties", "properties", "required", "synonyms", "then", "type", "uniqueItems",
         // Said to people and editors.
         "$comment", "$id", "$schema", "default", "description", "examples", "title"};
     for (const char* file : {"scenes/scene.schema.json", "volumes/recipe.schema.json"}) {
