@@ -87,7 +87,7 @@ int run_explain(const Options& texts, const Globals& globals) {
     if (!globals.quiet)
         for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
 
-    Progress progress(globals.progress, "explain", 1, true);
+    Progress progress(globals.progress, "explain", 1, globals.json);
     const Snapshot snapshot = make_snapshot(scene, moment_of(scene, frame));
     stop_if_cancelled();
     if (!globals.quiet)
@@ -112,7 +112,7 @@ int run_explain(const Options& texts, const Globals& globals) {
 Run add_explain(const Command& program) {
     const Command command = program.command("explain", "say what happens along one camera ray");
     auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
         .required();
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");

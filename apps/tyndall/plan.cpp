@@ -94,7 +94,7 @@ int run_plan(const Options& texts, const Globals& globals) {
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
 
-    Progress progress(globals.progress, "plan", 1, true);
+    Progress progress(globals.progress, "plan", 1, globals.json);
     const TermControl control{&cancel_flag(), [&](double share) { progress.set(share); }};
     const View view = view_of(scene, request, request.settings, request.frames[0]);
     const Plan plan = make_plan(modes(), view, snapshot, request.settings,
@@ -121,7 +121,7 @@ Run add_plan(const Command& program) {
     auto texts = std::make_shared<Options>();
     RenderOptions& render = texts->render;
     render.mode = automatic, render.output = "out.####.exr";
-    command.option("SCENE", render.scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("--target-error", render.target_error,
                    "error wanted (rmse), as a share of the picture's mean (default: by quality,\n"
                    "0.05 for preview)",

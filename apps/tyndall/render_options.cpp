@@ -56,7 +56,7 @@ void check_samples(const RenderRequest& request, const Mode& mode) {
 }
 
 void add_what(const Command& command, RenderOptions& texts) {
-    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf/.glb by itself", "").required();
+    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("-o,--output", texts.output, "files to write; #### stands for the frame number", "out.####.exr")
         .required();
     command.option("--frames", texts.frames,

@@ -127,7 +127,7 @@ struct Scene {
     std::vector<std::string> warnings; // one line each, said once
 };
 
-// Reads a scene file, or a bare .gltf/.glb (framed by a default camera when it has none). Throws Error.
+// Reads a scene file, or a bare .gltf, .glb or .vdb: what these lack is made up, with warnings. Throws Error.
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // A scene from the text of a scene file that need not exist: paths in it are relative to where `file` would be.

@@ -2,7 +2,8 @@
 import math
 import unittest
 
-from program import SOURCE, TRIANGLE, ProgramTest, glb, gltf, recipe, scene
+from exr import read_channels
+from program import SOURCE, TRIANGLE, ProgramTest, corpus, glb, gltf, recipe, scene
 
 
 def lamp(kind, intensity):
@@ -35,6 +36,36 @@ class Info(ProgramTest):
         for name, corner in fog["bounds"].items():
             for found, expected in zip(grid["bounds"][name], corner):
                 self.assertAlmostEqual(found, expected, places=5)
+
+    def test_grids_of_one_name_are_told_apart_by_what_a_scene_types(self):
+        [path] = corpus("vdb/arnold/grids.vdb")
+        text = self.succeed("info", path).stdout
+        keys = [grid["grid"] for grid in self.info(path)["grids"]]
+        self.assertEqual(keys, ["density[0]", "density[1]", "density[2]"])
+        pictures = set()
+        for i, key in enumerate(keys):
+            self.assertIn(f"\n  {key}: ", text)
+            media = [{"type": "vdb", "file": str(path), "grid": key, "extinction": 1}]
+            self.succeed("render", self.write("scene.json", scene(frames="1", media=media)), "-o", self.path(f"{i}.exr"),
+                         "--samples", "1", "--png")
+            pictures.add(self.path(f"{i}.png").read_bytes())
+        self.assertEqual(len(pictures), 3, "each name is another grid")
+
+    def test_a_volume_by_itself_is_a_scene_to_every_command(self):
+        self.succeed("bake", self.write("recipe.json", recipe()), "-o", self.path("smoke.vdb"))
+        smoke = self.path("smoke.vdb")
+        result = self.succeed("render", smoke, "-o", self.path("a.exr"), "--res", "48x27", "--samples", "1")
+        self.assertIn("a volume by itself", result.stderr)
+        self.assertGreater(max(read_channels(self.path("a.exr"))["inscatter.R"]), 0.01, "there is light in the fog")
+        self.assertIn("smoke.vdb", self.attributes("a.exr")["tyndall:command"])
+        self.assertIn("density", self.succeed("info", smoke).stdout)
+        self.succeed("check", smoke)
+        for command in (("explain", smoke, "--pixel", "24,13", "--res", "48x27", "--modes", "none"),
+                        ("plan", smoke, "--res", "48x27", "--target-error", "0.5"),
+                        ("chart", smoke, "-o", self.path("chart"), "--quick", "--modes", "cone", "--res", "48x27")):
+            self.succeed("--json", *command, timeout=200)
+        again = self.succeed("render", smoke, "-o", self.path("a.exr"), "--res", "48x27", "--samples", "1", "--resume")
+        self.assertIn("kept", again.stderr)
 
     def test_pictures(self):
         box = {"type": "homogeneous", "extinction": 0.1, "bounds": {"low": [-2, -2, -2], "high": [2, 2, 2]}}

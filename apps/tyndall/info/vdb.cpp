@@ -13,6 +13,7 @@ Json grid_json(const VdbGridInfo& grid) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) matrix.push_back(grid.index_to_world[column][row]);
     return json_object({{"name", grid.name},
+                        {"grid", grid.key},
                         {"type", grid.type},
                         {"class", grid.grid_class},
                         {"usable", grid.usable},
@@ -43,7 +44,7 @@ std::string metadata_lines(const std::vector<std::pair<std::string, std::string>
 }
 
 std::string grid_text(const VdbGridInfo& grid) {
-    std::string text = "  " + printable(grid.name, 80) + ": " + kind_text(grid) + "\n";
+    std::string text = "  " + printable(grid.key, 80) + ": " + kind_text(grid) + "\n";
     for (const auto& [name, value] : grid_rows(grid)) text += formatted("    %-13s %s\n", name.c_str(), value.c_str());
 
     // What stands above already, in other words, is left out.

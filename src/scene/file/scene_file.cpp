@@ -3,7 +3,9 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/text.h"
 #include "scene/file/origin.h"
+#include "scene/file/scene_words.h"
 #include "scene/file/stand_ins.h"
 #include "scene/gltf/gltf.h"
 #include "scene_schema.h"
@@ -110,12 +112,23 @@ void add_input(Scene& scene, const std::filesystem::path& path, std::string_view
         scene.inputs.push_back({path, content_hash(content)});
 }
 
+namespace {
+Scene load_volume(const std::filesystem::path& file, const LoadOptions& options) {
+    Scene scene = load_scene_text(volume_scene_text(file), file, options);
+    warn(scene, file.string() +
+                    ": a volume by itself; a sun of 3 lux, some ambient light and a camera that sees all of it "
+                    "are used, and " +
+                    formatted("%.3g", static_cast<double>(scene.media[0].extinction.at(0))) +
+                    " per metre as its extinction at density 1");
+    return scene;
+}
+}
+
 Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) {
     Scene scene;
     scene.file = file;
     const std::string extension = lower_extension(file);
-    if (extension == ".vdb")
-        refuse(file.string(), "is a volume, not a scene; name it in the \"media\" of a scene file");
+    if (extension == ".vdb") return load_volume(file, options);
     for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
         if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
     if (extension == ".gltf" || extension == ".glb") {

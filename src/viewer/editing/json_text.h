@@ -27,7 +27,4 @@ std::string with_json_item(std::string_view text, std::string_view array, size_t
 // What stands for one step of indentation, and for a line's end, in this text.
 std::string indentation_of(std::string_view text); // empty when the text is one line
 std::string line_end_of(std::string_view text);
-
-// The shortest decimal digits that a reader by way of double turns into these very bits; finite numbers only.
-std::string json_number(float value);
 }

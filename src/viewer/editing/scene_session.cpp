@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/text.h"
+#include "scene/file/scene_words.h"
 #include "viewer/editing/scene_text.h"
 
 namespace tyndall {
@@ -52,7 +53,7 @@ SceneSession read_session(const std::filesystem::path& file, const LoadOptions& 
     }
     if (extension_of(file) == ".vdb") {
         SceneSession session;
-        session.text = new_volume_text(file);
+        session.text = volume_scene_text(file);
         session.scene = load_scene_text(session.text, file, options);
         return session;
     }

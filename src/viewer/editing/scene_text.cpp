@@ -3,19 +3,14 @@
 #include "base/error.h"
 #include "base/io/json.h"
 #include "base/io/json_pointer.h"
-#include "scene/file/stand_ins.h"
+#include "scene/file/scene_words.h"
 #include "scene_schema.h"
 #include "viewer/editing/json_text.h"
 #include "viewer/editing/key_place.h"
-#include "volume/vdb/vdb.h"
 
 namespace tyndall {
 namespace {
 bool is_grey(vec3 value) { return value.x == value.y && value.y == value.z; }
-
-std::string list_text(vec3 value) {
-    return "[" + json_number(value.x) + ", " + json_number(value.y) + ", " + json_number(value.z) + "]";
-}
 
 std::string value_text(const Property& property, vec3 value) {
     if (property.kind == ValueKind::toggle) return value.x != 0 ? "true" : "false";
@@ -71,19 +66,6 @@ void write_key(std::string& text, const std::string& pointer, const Property& pr
     if (place.seam && color_of(keys.front().items[1]) == color_of(keys.back().items[1]))
         write_value(text, json_pointer(list, keys.size() - 1) + "/1", property, edit.value);
     write_value(text, json_pointer(list, place.index) + "/1", property, edit.value);
-}
-
-std::string camera_text(const CameraSource& camera) {
-    return "{ \"name\": " + quote_json(camera.name) + ", \"position\": " + list_text(camera.position.at(0)) +
-           ", \"target\": " + list_text(camera.target.at(0)) +
-           ", \"vertical_fov\": " + json_number(std::round(glm::degrees(camera.vertical_fov.at(0)))) +
-           ", \"near\": " + json_number(camera.near) + " }";
-}
-
-std::string sun_text(const LightSource& sun) {
-    return "{ \"name\": " + quote_json(sun.name) +
-           ", \"type\": \"sun\", \"direction\": " + list_text(sun.direction.at(0)) +
-           ", \"intensity\": " + json_number(sun.intensity.at(0)) + " }";
 }
 
 // A new last entry of a list in the root, on a line of its own where the text has lines.
@@ -176,33 +158,6 @@ std::string new_scene_text(Scene& scene) {
     }
     add("media", media);
     return text + "\n}\n";
-}
-
-std::string new_volume_text(const std::filesystem::path& vdb) {
-    const VdbInfo info = vdb_info(vdb);
-    const VdbGridInfo* fog = nullptr;
-    for (const VdbGridInfo& grid : info.grids)
-        if (grid.is_fog) fog = &grid;
-    if (!fog)
-        refuse(vdb.string(), "it is not clear which of its grids is the fog; name one as \"grid\" in a scene file");
-
-    // Framed and lit as a box of its size would be.
-    const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};
-    Scene stand_in;
-    stand_in.media.emplace_back().bounds = transform(mat4(fog->index_to_world), voxels);
-    const float diagonal = std::max(glm::length(stand_in.media[0].bounds.size()), 1e-3f);
-    add_missing_camera(stand_in);
-    add_missing_light_and_fog(stand_in);
-
-    // Where the file does not say how dense it is, its longest way through the densest fog lets 2 % of the light pass.
-    std::string optics;
-    const bool known =
-        std::ranges::any_of(info.metadata, [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });
-    if (!known && fog->maximum > 0) optics = ", \"extinction\": " + json_number(4 / (diagonal * fog->maximum));
-    return "{\n  \"tyndall\": 1,\n  \"camera\": " + camera_text(stand_in.cameras[0]) + ",\n  \"lights\": [\n    " +
-           sun_text(stand_in.lights[0]) + "\n  ],\n  \"ambient\": " + json_number(stand_in.ambient.at(0).x) +
-           ",\n  \"media\": [\n    { \"name\": " + quote_json(vdb.stem().string()) +
-           ", \"type\": \"vdb\", \"file\": " + quote_json(vdb.filename().string()) + optics + " }\n  ]\n}\n";
 }
 
 std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {

@@ -14,9 +14,6 @@ std::string edited_text(std::string text, const Scene& scene, std::span<const Ed
 // Notes in the scene where each of them stands.
 std::string new_scene_text(Scene& scene);
 
-// The text of a scene file beside a bare volume: the volume, a sun, a camera that frames it.
-std::string new_volume_text(const std::filesystem::path& vdb);
-
 // The text with its relative paths made to mean the same files from another folder.
 std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to);
 }

@@ -112,8 +112,8 @@ std::vector<std::pair<std::string, std::string>> file_facts(const std::filesyste
     const VdbInfo info = vdb_info(file);
     std::vector<std::pair<std::string, std::string>> facts{{"file", file.filename().string()}};
     for (const VdbGridInfo& grid : info.grids) {
-        if (!wanted.empty() && grid.name != wanted) continue;
-        facts.emplace_back("grid", printable(grid.name, 80) + ": " + kind_text(grid));
+        if (!wanted.empty() && grid.name != wanted && grid.key != wanted) continue;
+        facts.emplace_back("grid", printable(grid.key, 80) + ": " + kind_text(grid));
         for (auto& row : grid_rows(grid)) facts.push_back(std::move(row));
         if (grid.usable) // the only shape of tree that can be read
             facts.emplace_back("tree", "4 levels: root, nodes of 32\u00b3 and 16\u00b3, leaves of 8\u00b3");

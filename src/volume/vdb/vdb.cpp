@@ -32,22 +32,29 @@ std::string obstacle(const VdbGridEntry& grid) {
     return grid.transform_problem;
 }
 
-std::string listing(const VdbDirectory& directory) {
-    std::vector<std::string> names;
-    for (const VdbGridEntry& grid : directory.grids) {
-        const bool level_set = grid.grid_class == "level set";
-        names.push_back(printable(grid.name, 40) + " (" + printable(grid.type, 24) +
-                        (level_set ? ", level set)" : ")"));
-    }
-    return joined(names, ", ");
-}
-
 // The grids of a name in file order.
 std::vector<const VdbGridEntry*> grids_named(const VdbDirectory& directory, std::string_view name) {
     std::vector<const VdbGridEntry*> found;
     for (const VdbGridEntry& grid : directory.grids)
         if (grid.name == name) found.push_back(&grid);
     return found;
+}
+
+// What grid_called finds it by: its name, with an index where several have the name or it has none.
+std::string key_of(const VdbDirectory& directory, const VdbGridEntry& grid) {
+    const auto alike = grids_named(directory, grid.name);
+    if (alike.size() == 1 && !grid.name.empty()) return grid.name;
+    return grid.name + "[" + std::to_string(std::ranges::find(alike, &grid) - alike.begin()) + "]";
+}
+
+std::string listing(const VdbDirectory& directory) {
+    std::vector<std::string> names;
+    for (const VdbGridEntry& grid : directory.grids) {
+        const bool level_set = grid.grid_class == "level set";
+        names.push_back(printable(key_of(directory, grid), 40) + " (" + printable(grid.type, 24) +
+                        (level_set ? ", level set)" : ")"));
+    }
+    return joined(names, ", ");
 }
 
 // A name, or name[index] when no grid is called so to the letter.
@@ -165,6 +172,7 @@ template<class Body> auto within_memory(const std::filesystem::path& path, const
 VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid) {
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
+    info.key = key_of(directory, grid);
     info.why_not = obstacle(grid), info.usable = info.why_not.empty(), info.is_fog = fog_of(directory) == &grid;
     info.index_to_world = grid.index_to_world;
     for (int axis = 0; axis < 3; ++axis)

@@ -48,6 +48,7 @@ private:
 
 struct VdbGridInfo {
     std::string name, type, grid_class; // "density", "float", "fog volume"
+    std::string key;                    // what to ask read_vdb for: "density[1]" where several have the name
     bool usable = false;                // can be rendered as fog
     bool is_fog = false;                // is, where no grid is named
     std::string why_not;                // when it cannot

@@ -34,6 +34,20 @@ const Mistake mistakes[] = {
     {R"("exposure": {"keys": [[0, 99]]})", "/exposure/keys/0/1", "64"},
     {R"("exposure": {"keys": [[0, 1]], "interpolation": "cubic"})", "/exposure/interpolation", "smooth"},
     {R"("exposur": 1)", "/exposur", "exposure"},
+    // Words of other programs.
+    {R"("fps": 25)", "/fps", "did you mean \"frame_rate\"?"},
+    {R"("media": [{"type": "homogeneous", "anisotropy": 0.5}])", "/media/0/anisotropy", "did you mean \"g\"?"},
+    {R"("media": [{"type": "homogeneous", "density": 0.5}])", "/media/0/density", "did you mean \"extinction\"?"},
+    {R"("media": [{"type": "vdb", "file": "a.vdb", "sigma_s": 1}])", "/media/0/sigma_s",
+     "did you mean \"extinction\" or \"albedo\"?"},
+    {R"("media": [{"type": "homogeneous", "absorption": 1}])", "/media/0/absorption",
+     "did you mean \"extinction\" or \"albedo\"?"},
+    {R"("media": [{"type": "openvdb", "file": "a.vdb"}])", "/media/0/type", "did you mean \"vdb\"?"},
+    {R"("lights": [{"type": "directional", "intensity": 1}])", "/lights/0/type", "did you mean \"sun\"?"},
+    {R"("lights": [{"type": "point", "power": 100}])", "/lights/0/power", "did you mean \"intensity\"?"},
+    {R"("lights": [{"type": "point", "strength": 100}])", "/lights/0/strength", "did you mean \"intensity\"?"},
+    {R"("lights": [{"type": "spot", "outerConeAngle": 40}])", "/lights/0/outerConeAngle", "\"outer_cone\""},
+    {R"("background": {"hdri": "sky.hdr"})", "/background/hdri", "did you mean \"image\"?"},
     {R"("ambient": [1, 2])", "/ambient", ""},
     {R"("ambient": [1, 2, -1])", "/ambient/2", ""},
     {R"("gltf_lights": false)", "/gltf_lights", "glTF"},
@@ -187,7 +201,7 @@ TEST(SceneFileErrors, BrokenFilesThatAreNamed) {
     refused(R"("media": [{"type": "vdb", "file": "fog.vdb"}])", "fog.vdb");
     refused(R"("background": {"image": "bad.exr"})", "/background/image");
     refused(R"("background": {"image": "huge.png"})", "16384");
-    expect_refusal(load(folder / "fog.vdb"), "a volume, not a scene");
+    expect_refusal(load(folder / "fog.vdb"), "fog.vdb");
 }
 
 TEST(SceneFileErrors, TheGltfsLightsKeepTheirType) {

@@ -2,6 +2,7 @@
 #include "base/io/json.h"
 #include "base/io/json_pointer.h"
 #include "base/random.h"
+#include "scene/file/scene_words.h"
 #include "support/expect.h"
 #include "viewer/editing/json_text.h"
 

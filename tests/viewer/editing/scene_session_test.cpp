@@ -168,6 +168,14 @@ TEST(SceneSession, ABareVolumeIsSavedAsAScene) {
     const Studio studio;
     write_ball(studio / "ball.vdb");
     SceneSession session = open_session(studio / "ball.vdb");
+    // What the viewer shows of a bare volume is what all commands take.
+    const Scene bare = load_scene(studio / "ball.vdb");
+    EXPECT_EQ(bare.cameras.at(0).position.at(0), session.scene.cameras.at(0).position.at(0));
+    EXPECT_EQ(bare.lights.at(0).direction.at(0), session.scene.lights.at(0).direction.at(0));
+    EXPECT_EQ(bare.ambient.at(0), session.scene.ambient.at(0));
+    EXPECT_EQ(bare.media.at(0).extinction.at(0), session.scene.media.at(0).extinction.at(0));
+    ASSERT_EQ(bare.warnings.size(), 1u);
+    EXPECT_NE(bare.warnings[0].find("a volume by itself"), std::string::npos);
     ASSERT_EQ(session.scene.media.size(), 1u);
     // Voxels of 0.25 m, centres 0 to 1.75: a box of 2 m, diagonal 2 √3; its densest is 0.5.
     EXPECT_NEAR(session.scene.media[0].extinction.at(0), 4 / (2 * std::sqrt(3.0f) * 0.5f), 1e-4f);

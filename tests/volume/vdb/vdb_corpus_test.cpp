@@ -122,7 +122,11 @@ TEST(VdbCorpus, ThreeGridsOfOneName) {
     const fs::path file = vdb("arnold/grids.vdb");
     const VdbInfo info = vdb_info(file);
     ASSERT_EQ(info.grids.size(), 3u);
-    for (const VdbGridInfo& grid : info.grids) EXPECT_EQ(grid.name, "density");
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(info.grids[i].name, "density");
+        EXPECT_EQ(info.grids[i].key, "density[" + std::to_string(i) + "]");
+        EXPECT_EQ(read(file, info.grids[i].key).volume.index_to_world, info.grids[i].index_to_world);
+    }
     // They stand in the file as x = 0 comes last.
     std::vector<double> x;
     for (const char* grid : {"density[0]", "density[1]", "density[2]"})
@@ -130,7 +134,8 @@ TEST(VdbCorpus, ThreeGridsOfOneName) {
     EXPECT_EQ(read(file).volume.index_to_world[3][0], x[0]);
     std::ranges::sort(x);
     EXPECT_THAT(x, ::testing::ElementsAre(0, 2, 4));
-    EXPECT_THAT(error_of([&] { read(file, "density[3]"); }).what(), HasSubstr("density (float), density (float)"));
+    EXPECT_THAT(error_of([&] { read(file, "density[3]"); }).what(),
+                HasSubstr("density[0] (float), density[1] (float)"));
 }
 
 TEST(VdbCorpus, GridNotNamedDensity) {

@@ -225,10 +225,13 @@ TEST(VdbRead, NameAndIndex) {
     EXPECT_EQ(chosen("heat"), 2);
     EXPECT_EQ(chosen("odd[1]"), 4);
     EXPECT_EQ(chosen(""), 1);
+    const Scratch scratch;
+    const VdbInfo info = vdb_info(scratch.put("all.vdb", bytes));
+    for (size_t i = 0; i < grids.size(); ++i) EXPECT_EQ(chosen(info.grids[i].key), static_cast<float>(i + 1));
     for (const char* wrong : {"smoke", "density[2]", "density[-1]", "density[]", "density[1x]", "heat]"}) {
         const Error error = refusal(bytes, wrong);
         EXPECT_EQ(error.code, ExitCode::refused);
-        EXPECT_THAT(error.what(), HasSubstr("density (float), heat (float), density (float), odd[1] (float)"));
+        EXPECT_THAT(error.what(), HasSubstr("density[0] (float), heat (float), density[1] (float), odd[1] (float)"));
     }
 }
 

@@ -1,6 +1,6 @@
 // Floats as the digits of scene files.
 #include "base/error.h"
-#include "viewer/editing/json_text.h"
+#include "scene/file/scene_words.h"
 
 #include <charconv>
 #include <cmath>
