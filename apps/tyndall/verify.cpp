@@ -72,7 +72,7 @@ int run_verify(const Options& texts, const Globals& globals) {
     if (scene && scene->media.empty()) refuse(scene->file.string(), "has no fog to verify");
     if (scene && texts.frame.empty()) proof.frame = scene->first_frame;
 
-    Progress progress(globals.progress, "verify", 1, true);
+    Progress progress(globals.progress, "verify", 1, globals.json);
     const VerifyControl control{&cancel_flag(), [&](double done) { progress.set(done); }};
     const std::vector<Check> checks = scene ? verify_scene(*scene, proof, control) : verify_program(control);
     stop_if_cancelled();

@@ -2,6 +2,7 @@
 import array
 import itertools
 import pathlib
+import re
 import struct
 import zlib
 
@@ -66,6 +67,15 @@ def read_channels(path):
                 result[name].extend(struct.unpack_from(f"<{width}{'e' if kind == HALF else 'f'}", block, at))
                 at += width * (2 if kind == HALF else 4)
     return result
+
+
+def without_name(data):
+    """Header and stored pixels of a file's bytes, without the name of the output in its command, and without the hash of
+    all this: can be compared."""
+    attributes, at = _header(data)
+    attributes.pop("tyndall:check")
+    attributes["tyndall:command"] = re.sub(rb" -o \S+", b"", attributes["tyndall:command"])
+    return tuple(sorted(attributes.items())), data[struct.unpack_from("<Q", data, at)[0]:]
 
 
 def added(*terms):

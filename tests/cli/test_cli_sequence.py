@@ -1,6 +1,8 @@
 """Sequences: killed and resumed, stopped, on any number of threads, by several processes: always the same bits."""
+import contextlib
 import json
 import os
+import pty
 import random
 import re
 import signal
@@ -9,6 +11,7 @@ import threading
 import time
 import unittest
 
+from exr import without_name
 from program import TYNDALL, ProgramTest, recipe, run, scene
 
 FRAMES = "1-3"
@@ -25,6 +28,11 @@ class Sequence(ProgramTest):
 
     def render(self, place, *more):
         return ("render", self.scene, "-o", self.path(f"{place}/out.####.exr"), "--frames", FRAMES, *more)
+
+    def content(self, place):
+        """Files by name; images without the name of their folder."""
+        return {name: without_name(data) if name.endswith(".exr") else data
+                for name, data in super().content(place).items()}
 
     def finished(self, place):
         return {name: data for name, data in self.content(place).items() if not name.endswith(".tmp")}
@@ -223,6 +231,38 @@ class Progress(Sequence):
             self.assertEqual(percents, sorted(percents))
             self.assertEqual((percents[0], percents[-1]), (0, 100))
             self.assertNotIn("\r", result.stdout + result.stderr)
+
+    def test_reports_come_after_progress_on_the_same_stream(self):
+        """Of every command whose report has stdout; with --json it has it alone."""
+        still = self.write("still.json", scene(frames="1"))
+        for command in (("explain", still, "--pixel", "3,3", "--modes", "none"), ("plan", still, "--target-error", "0.5"),
+                        ("stress", "--cases", "albedo", "--modes", "cone"),
+                        ("chart", still, "-o", self.path("chart"), "--modes", "cone", "--quick")):
+            result = self.succeed(*command, timeout=200)
+            lines = result.stdout.splitlines()
+            percents = [int(line[13:-1]) for line in lines if line.startswith("ALF_PROGRESS ")]
+            self.assertEqual((percents[0], percents[-1]), (0, 100), command)
+            self.assertTrue(all(line.startswith("ALF_PROGRESS ") for line in lines[:len(percents)]), command)
+            self.assertGreater(len(lines), len(percents), command)
+            self.assertNotIn("ALF_PROGRESS", result.stderr)
+            result = self.succeed("--json", *command, timeout=200)
+            json.loads(result.stdout)
+            self.assertIn("ALF_PROGRESS 100%", result.stderr)
+
+    def test_the_bar_is_where_the_terminal_is(self):
+        """Also when only stderr is one, and the report goes into a file."""
+        for terminal, other in (("stdout", "stderr"), ("stderr", "stdout")):
+            reader, writer = pty.openpty()
+            process = subprocess.run([TYNDALL, "stress", "--cases", "albedo", "--modes", "cone"], text=True, timeout=60,
+                                     **{terminal: writer, other: subprocess.PIPE})
+            os.close(writer)
+            shown = b""
+            with contextlib.suppress(OSError):  # the end of a terminal
+                while piece := os.read(reader, 65536):
+                    shown += piece
+            os.close(reader)
+            self.assertIn(b"100%", shown)
+            self.assertNotIn("100%", getattr(process, other))
 
     def test_styles(self):
         self.succeed(*self.bake())

@@ -24,7 +24,7 @@ public:
     // Names of files and folders in it, sorted.
     std::vector<std::string> names() const;
 
-    // Its files by name, with their bytes.
+    // Its files by name, with their bytes; where headers of images name the folder, or have a hash of that, are dashes.
     std::map<std::string, std::string> contents() const;
 
 private:
@@ -32,4 +32,7 @@ private:
 };
 
 std::string bytes_of(const std::filesystem::path& path);
+
+// The bytes of an image with dashes instead of these names and of the hash over its header.
+std::string without_names(std::string bytes, const std::vector<std::string>& names);
 }

@@ -46,8 +46,11 @@ std::string bar_text(const std::string& what, double fraction, double elapsed, d
 
 Progress::Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr)
     : style_(style), what_(printable(what, 60)), total_(total), to_stderr_(to_stderr) {
-    if (style_ == ProgressStyle::automatic)
+    if (style_ == ProgressStyle::automatic) {
+        to_stderr_ = to_stderr_ || !isatty(STDOUT_FILENO);
         style_ = isatty(to_stderr_ ? STDERR_FILENO : STDOUT_FILENO) ? ProgressStyle::bar : ProgressStyle::alf;
+        if (style_ == ProgressStyle::alf) to_stderr_ = to_stderr;
+    }
     start_ = last_print_ = steady_seconds();
     print(false);
 }

@@ -1,4 +1,5 @@
-// Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise.
+// Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise. Where
+// only stderr is a terminal, as with "> report.txt", the bar is there.
 #pragma once
 #include <cstddef>
 #include <mutex>
@@ -8,7 +9,7 @@
 namespace tyndall {
 enum class ProgressStyle { automatic, alf, json, bar, none, silent }; // silent: no finished frames either
 
-// Thread-safe. `to_stderr` keeps stdout free for a report.
+// Thread-safe. `to_stderr` keeps stdout free for a report that programs read.
 class Progress {
 public:
     Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr = false);

@@ -100,7 +100,9 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderReq
     Layers layers = goal ? half_by_noise(shot, own, request, view, *goal, options, stats)
                          : render_frame(find_mode(request.mode), view, own, request.settings, options, stats);
     if (!shot.directory.empty()) {
-        Provenance provenance = provenance_of(shot.scene, request, plan_as_asked(request), view, hash, stats);
+        RenderRequest named = request;
+        named.output = file.string();
+        Provenance provenance = provenance_of(shot.scene, named, plan_as_asked(request), view, hash, stats);
         write_exr(file, layers, provenance, exact_colors);
     }
     return {std::move(layers.color), std::move(layers.inscatter)};

@@ -118,10 +118,40 @@ std::string mode_text(const std::string& mode, Quality quality) {
     return " --mode " + mode + " --quality " + std::string(name_of(quality));
 }
 
-std::string command_text(const RenderRequest& request, const RenderPlan& plan, const View& view) {
-    return "tyndall render " + quoted_for_shell(request.scene_file.filename().string()) + " -o out.####.exr --frames " +
-           std::to_string(view.frame) + mode_text(std::string(plan.mode->name), request.quality) + " --res " +
-           pair_text(view.size, "x") + option_text(request, plan.settings);
+// Scene and output of a command.
+struct Names {
+    std::filesystem::path scene, output;
+};
+
+std::filesystem::path common_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::filesystem::path common;
+    for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end() && *i == *j; ++i, ++j) common /= *i;
+    return common;
+}
+
+// As seen from the working folder, or else from the deepest folder that holds both; else folder and name of each: what
+// stands above them is no business of whoever gets the image.
+Names names_of(const RenderRequest& request) {
+    std::error_code ignored;
+    const std::filesystem::path here = std::filesystem::current_path(ignored);
+    const std::filesystem::path scene = (here / request.scene_file).lexically_normal();
+    const std::filesystem::path output = (here / request.output).lexically_normal();
+    for (const std::filesystem::path& base : {here, common_folder(scene.parent_path(), output.parent_path())}) {
+        const Names names{scene.lexically_relative(base), output.lexically_relative(base)};
+        const auto inside = [](const std::filesystem::path& name) { return !name.empty() && *name.begin() != ".."; };
+        if (base.has_relative_path() && inside(names.scene) && inside(names.output)) return names;
+    }
+    const auto short_name = [](const std::filesystem::path& path) {
+        return path.parent_path().filename() / path.filename();
+    };
+    return {short_name(scene), short_name(output)};
+}
+
+std::string command_text(const Names& names, const RenderRequest& request, const RenderPlan& plan, const View& view) {
+    return "tyndall render " + quoted_for_shell(names.scene.string()) + " -o " +
+           quoted_for_shell(names.output.string()) + " --frames " + std::to_string(view.frame) +
+           mode_text(std::string(plan.mode->name), request.quality) + " --res " + pair_text(view.size, "x") +
+           option_text(request, plan.settings);
 }
 }
 
@@ -146,8 +176,9 @@ void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileH
 std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                        FileHashes& files) {
     const double seconds = moment_of(scene, view.frame).seconds;
-    std::string text =
-        "version=" TYNDALL_VERSION "\n" + command_text(request, plan, view) + "\n" + settings_text(plan.settings);
+    const Names names{request.scene_file.filename(), "out.####.exr"}; // of any folder and output
+    std::string text = "version=" TYNDALL_VERSION "\n" + command_text(names, request, plan, view) + "\n" +
+                       settings_text(plan.settings);
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
     text += request.exr.full_float ? "float\n" : "half\n";
     text += scene_text(scene) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
@@ -167,7 +198,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     attributes["tyndall:settings"] = settings_text(stats.integrator ? stats.integrator->settings : plan.settings);
     attributes["tyndall:seed"] = std::to_string(request.seed);
     attributes["tyndall:isa"] = request.isa;
-    attributes["tyndall:command"] = command_text(request, plan, view);
+    attributes["tyndall:command"] = command_text(names_of(request), request, plan, view);
     attributes["tyndall:hash"] = hash;
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");

@@ -27,7 +27,7 @@ std::string frame_hash(const Scene& scene, const RenderRequest& request, const R
 // a camera moved by hand.
 std::string command_line(const RenderRequest& request);
 
-// How to make the frame again.
+// How to make the frame again: files are named without the folders above those of scene and output.
 Provenance provenance_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                          const std::string& hash, const FrameStats& stats);
 

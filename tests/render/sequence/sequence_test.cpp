@@ -81,6 +81,34 @@ TEST(Sequence, SaysHowItWasMade) {
     for (const auto& [name, text] : attributes) EXPECT_EQ(text.find(out.path().string()), text.npos) << name;
 }
 
+TEST(Sequence, TheCommandInTheHeaderNamesFoldersAndOutput) {
+    const Scratch folder, elsewhere;
+    std::filesystem::create_directories(folder.path() / "a b/out");
+    std::filesystem::create_directories(elsewhere.path() / "x");
+    const Scene scene = moving_scene(folder);
+    RenderRequest job = job_for(scene, folder.file("a b/out/f.####.exr"), {12});
+    job.mode = "march";
+    const auto command = [&](const char* scene_file, const std::string& output) {
+        job.scene_file = scene_file[0] == '/' ? folder.path() / (scene_file + 1) : std::filesystem::path(scene_file);
+        job.output = output;
+        const View view = view_of(scene, job, job.settings, 12);
+        std::string text = provenance_of(scene, job, plan_as_asked(job), view, "", {}).attributes["tyndall:command"];
+        return text.substr(0, text.find(" --mode"));
+    };
+    // From the deepest folder that holds both, where that is not the working one.
+    EXPECT_EQ(command("/a b/scene.json", folder.file("a b/out/f.####.exr")),
+              "tyndall render scene.json -o 'out/f.####.exr' --frames 12");
+    EXPECT_EQ(command("/scene.json", folder.file("a b/out/f.####.exr")),
+              "tyndall render scene.json -o 'a b/out/f.####.exr' --frames 12");
+    // From the working folder, however the names were given.
+    const std::string here = std::filesystem::current_path().string();
+    EXPECT_EQ(command("shots/./scene.json", here + "/out/f.exr"),
+              "tyndall render shots/scene.json -o out/f.exr --frames 12");
+    // Nothing in common: folder and name.
+    EXPECT_EQ(command("scenes/scene.json", "/mnt/farm/7/shot/f.exr"),
+              "tyndall render scenes/scene.json -o shot/f.exr --frames 12");
+}
+
 TEST(Sequence, CountsSamplesThatAreNotFinite) {
     const Scratch in, out;
     const Scene scene = moving_scene(in);
