@@ -60,7 +60,7 @@ class Docs(ProgramTest):
     def test_long_commands_have_their_times_beside_them(self):
         for page, words, stated in commands():
             command = " ".join(words)
-            if re.search(r"--target-error|--quality (final|reference)|--samples [0-9]{3}|tyndall (chart|stress|verify|plan)", command):
+            if re.search(r"--target-error|--quality (final|reference)|--samples [0-9]{3}|tyndall (chart|stress|verify|plan)", command) and "--resume" not in command:
                 self.assertIsNotNone(stated, f"{page}: {command}")
 
     def test_files_that_commands_read_are_there(self):
@@ -118,6 +118,16 @@ class Docs(ProgramTest):
 
     def test_the_architecture_is_that_of_the_includes(self):
         self.check_written(SOURCE / "docs/make_architecture.py")
+
+    def test_the_quoted_ray_is_what_explain_prints(self):
+        text = (SOURCE / "docs/measuring.md").read_text()
+        words = shlex.split(re.search(r"^    tyndall (explain .*?)\s+#", text, re.M)[1])
+        printed = self.succeed(words[0], SOURCE / words[1], *words[2:4]).stdout.splitlines()
+        quoted = re.search(r"^    Where each light comes in\n.*?\n\n", text, re.M | re.S)[0].splitlines()
+        self.assertGreater(len(quoted), 8)
+        for line in quoted:
+            if line.strip() not in ("", "..."):
+                self.assertIn(line[4:], printed)
 
     def test_links_and_pictures_are_there(self):
         for page in pages():
