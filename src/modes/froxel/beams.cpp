@@ -66,7 +66,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 NearLight near_light(const FroxelGrid& grid, const Light& light) {
-    constexpr float froxels = 10; // across: from half of that on they show a light's 1/r² as it is
+    constexpr float froxels = 7; // across: from half of that on they show a light's 1/r² as it is
     if (is_distant(light)) return {};
     if (has_cone(light)) return {infinity};
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
