@@ -54,11 +54,11 @@ void draw_open(const ViewState& state, FilesMemory& memory, const Act& act) {
 
 void draw_picture_file(const ViewState& state, FilesMemory& memory, const Act& act) {
     draw_name("##picture", usual_file_name(state), memory.picture);
-    if (ImGui::Button("Write picture")) {
+    if (ImGui::Button("Write image")) {
         act({Verb::snapshot, {memory.picture.name}, {}, {}});
         memory.picture.edited = false;
     }
-    tooltip("The whole picture with " + std::to_string(state.settings.pixel.samples) +
+    tooltip("The whole image with " + std::to_string(state.settings.pixel.samples) +
             " samples a pixel, as tyndall render writes it: .exr for light, .png for looking at");
 }
 

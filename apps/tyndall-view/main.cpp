@@ -29,34 +29,34 @@ void add_options(const CommandLine& program, Texts& texts) {
     };
     quality("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
     quality("--stand-in", texts.stand_in, "NAME",
-            "technique of quick pictures while march and path move (default:\nfroxel), or none: the same");
+            "technique of quick images while march and path move (default:\nfroxel), or none: the same");
     quality("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
     program
         .options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
                  "NAME=VALUE")
         .group("Quality");
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
-    option("--res", texts.resolution, "WxH", "picture size in pixels (default: the scene's)");
+    option("--res", texts.resolution, "WxH", "image size in pixels (default: the scene's)");
     option("--exposure", texts.exposure, "EV",
-           "how much brighter (+) or darker (-) than light the picture is shown, in\nstops, or auto: measured "
+           "how much brighter (+) or darker (-) than light the image is shown, in\nstops, or auto: measured "
            "(default: the scene's, auto where it states none)");
     option("--view-transform", texts.view_transform, "NAME",
            "how what is brighter than a screen is shown: filmic (AgX; default) or srgb");
-    quality("--samples", texts.samples, "N", "samples per pixel at which a picture is good enough (default: 64)");
+    quality("--samples", texts.samples, "N", "samples per pixel at which an image is good enough (default: 64)");
     quality("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
     option("--light-units", texts.units, "UNITS",
            "what a glTF's light intensities mean: spec (default), unitless, raw");
     option("--missing", texts.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
-    option("--fps", texts.rate, "N", "pictures per second wanted while things move (default: 30)");
+    option("--fps", texts.rate, "N", "images per second wanted while things move (default: 30)");
     option("--window", texts.window, "WxH", "size of the window (default: 1280x800)");
     option("--threads", texts.threads, "N", "threads to use, 1 to 1024 (default: every core)");
     option("--script", texts.script, "FILE",
            "actions to do, one a line; the window stays open unless the last is quit");
-    program.flag("--stats", texts.stats, "at the end, times of interface and pictures on stdout");
+    program.flag("--stats", texts.stats, "at the end, times of interface and images on stdout");
 }
 
 std::string footer() {
-    std::string text = "Example: light a scene with quick pictures; P writes one as tyndall render does\n"
+    std::string text = "Example: light a scene with quick images; P writes one as tyndall render does\n"
                        "  tyndall view scenes/window.json --mode froxel\n"
                        "Without a display: xvfb-run -a tyndall view SCENE --script FILE\n"
                        "Actions of a script:\n";

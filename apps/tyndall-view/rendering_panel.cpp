@@ -70,7 +70,7 @@ void draw_exposure(const ViewState& state, const Act& act) {
     ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemSpacing.x);
     if (ImGui::DragFloat("##exposure", &exposure, 0.02f, -100, 100, "%+.1f EV"))
         act({Verb::exposure, {formatted("%.9g", exposure)}, {}, {}});
-    tooltip("Stops by which the picture is brightened: drag, or ctrl + click to type. [ and ] are half a stop.");
+    tooltip("Stops by which the image is brightened: drag, or ctrl + click to type. [ and ] are half a stop.");
     ImGui::SameLine();
     ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(measured ? ImGuiCol_Header : ImGuiCol_Button));
     if (ImGui::Button("auto", {button, 0})) act({Verb::exposure, {"auto"}, {}, {}});
@@ -79,7 +79,7 @@ void draw_exposure(const ViewState& state, const Act& act) {
 }
 
 void draw_shown(const ViewState& state, const Act& act) {
-    heading("Picture");
+    heading("Image");
     labelled("show");
     const auto& names = shown_layer_names();
     if (ImGui::BeginCombo("##show", names[static_cast<size_t>(state.shown.layer)].c_str())) {
@@ -112,7 +112,7 @@ void draw_looking_into(const ViewState& state, const Act& act) {
         const std::vector<double> middle{0.5 * size.x, 0.5 * size.y};
         act({Verb::explain, {}, ray ? middle : std::vector<double>(), {}});
     }
-    tooltip("what happens on the ray of a pixel: shift + click on the picture says which");
+    tooltip("what happens on the ray of a pixel: shift + click on the image says which");
 }
 
 void draw_cameras(const ViewState& state, const Act& act) {
@@ -160,7 +160,7 @@ void draw_remarks(const ViewState& state, const PanelResources& resources) {
 }
 
 void draw_times(const PanelResources& resources) {
-    if (!resources.picture || !ImGui::CollapsingHeader("time of the last picture")) return;
+    if (!resources.picture || !ImGui::CollapsingHeader("time of the last image")) return;
     const StageTimes& times = resources.picture->times;
     const auto row = [](const char* name, double seconds) {
         ImGui::TextUnformatted(name);

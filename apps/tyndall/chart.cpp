@@ -114,24 +114,24 @@ Run add_chart(const Command& program) {
     auto texts = std::make_shared<Options>();
     command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command
-        .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\npictures",
+        .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\nimages",
                 "DIR")
         .required();
     command.option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
-    command.flag("--quick", texts->quick, "small pictures, without the settings that take longest: under a minute");
+    command.flag("--quick", texts->quick, "small images, without the settings that take longest: under a minute");
     command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--res", texts->resolution,
-                   "picture size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
+                   "image size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
     command.option("--reference-noise", texts->noise,
                    "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
                    "SHARE");
     command.option("--reference-seconds", texts->reference_seconds,
                    "at most so long for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
     command.option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
-    command.option("--runs", texts->runs, "times each picture is rendered at least (default: 3; 2 with --quick)", "N");
+    command.option("--runs", texts->runs, "times each image is rendered at least (default: 3; 2 with --quick)", "N");
     command.option("--longest", texts->longest,
-                   "leave out settings whose picture would take more seconds than this\n"
+                   "leave out settings whose image would take more seconds than this\n"
                    "(default: 60; 0.7 with --quick)",
                    "SECONDS");
     command.options("--set", texts->settings,

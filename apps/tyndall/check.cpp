@@ -162,7 +162,7 @@ int run_check(const Options& texts, const Globals& globals) {
 }
 
 Run add_check(const Command& program) {
-    const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and pictures");
+    const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and images");
     auto texts = std::make_shared<Options>();
     command
         .options("FILES", texts->files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence", "")
@@ -173,7 +173,7 @@ Run add_check(const Command& program) {
                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
                    "After one: are all frames there, and whole?\n"
                    "  tyndall check 'out/shot.####.exr' --frames 1-24\n"
-                   "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and pictures are read whole.\n"
+                   "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and images are read whole.\n"
                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
                    "missing or cannot be read.");
     return [texts](const Globals& globals) { return run_check(*texts, globals); };

@@ -39,7 +39,7 @@ struct Job {
 std::vector<Pair> make_pairs(const Options& texts) {
     const bool sequence = has_frame_token(texts.test);
     if (!sequence && has_frame_token(texts.reference))
-        fail(ExitCode::usage, texts.test, "one picture against a sequence: give one reference");
+        fail(ExitCode::usage, texts.test, "one image against a sequence: give one reference");
     if (!sequence && !texts.frames.empty())
         fail(ExitCode::usage, "--frames",
              "is for sequences, like a.####.exr; " + printable(texts.test) + " is one file");
@@ -116,7 +116,7 @@ CompareResult compare_all(const Job& job, Progress* progress) {
         const Picture& reference = references.read(pair.reference);
         check_same_frame(test, reference);
         if (!result.frames.empty() && test.beauty.size != result.size)
-            refuse(pair.test, "the frames before it have another size");
+            refuse(pair.test, "the earlier frames have another size");
         result.size = test.beauty.size;
 
         Image<float> map;
@@ -177,7 +177,7 @@ int run_compare(const Options& texts, const Globals& globals) {
     const uint64_t bad = result.overall.non_finite();
     if (bad == 0) return 0;
     fail(ExitCode::non_finite, printable(texts.test) + " against " + printable(texts.reference),
-         count_text(bad, "pixel") + " of pictures and layers not finite; the rest was compared");
+         count_text(bad, "pixel") + " of images and layers not finite; the rest was compared");
 }
 
 std::string metric_help() {
@@ -188,9 +188,9 @@ std::string metric_help() {
 }
 
 Run add_compare(const Command& program) {
-    const Command command = program.command("compare", "measure how far pictures are from a reference");
+    const Command command = program.command("compare", "measure how far images are from a reference");
     auto texts = std::make_shared<Options>();
-    command.option("A.exr", texts->test, "the picture, or a sequence: a.####.exr", "").required();
+    command.option("A.exr", texts->test, "the image, or a sequence: a.####.exr", "").required();
     command.option("B.exr", texts->reference, "the reference: what A should look like; a sequence or one file", "")
         .required();
     command.option("--frames", texts->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9", "RANGE");
@@ -199,7 +199,7 @@ Run add_compare(const Command& program) {
                     "VALUE; may be repeated",
                     "METRIC=VALUE");
     command.option("--heatmap", texts->heatmap,
-                   "a picture of where the differences are; the strip below it is the\n"
+                   "an image of where the differences are; the strip below it is the\n"
                    "scale",
                    "FILE.png");
     command.option("--map", texts->map,
@@ -217,7 +217,7 @@ Run add_compare(const Command& program) {
         "left out. Against a black reference relative values are 0 or infinite; JSON has null for infinite or\n"
         "undefined.\n" +
         metric_help() +
-        "Exit code 0: compared; 1: a metric is above its limit (or undefined); 3: the pictures cannot be\n"
+        "Exit code 0: compared; 1: a metric is above its limit (or undefined); 3: the images cannot be\n"
         "compared; 4: missing or unreadable; 6: compared, but some pixels are not finite numbers.");
     return [texts](const Globals& globals) { return run_compare(*texts, globals); };
 }

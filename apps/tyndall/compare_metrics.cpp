@@ -13,7 +13,7 @@ double share(const CompareResult& r, double error) { return relative(error, r.ov
 
 const std::vector<Metric>& metrics() {
     static const std::vector<Metric> table{
-        {"E", "rmse_rel of the picture or of its fog light (inscatter), the worse of both",
+        {"E", "rmse_rel of the image or of its fog light (inscatter), the worse of both",
          [](const CompareResult& r) -> Value { return r.overall.worst_rmse(); }},
         {"rmse_rel", "root of the mean squared difference / mean of the reference",
          [](const CompareResult& r) -> Value { return share(r, r.overall.beauty.rmse); }},
@@ -27,7 +27,7 @@ const std::vector<Metric>& metrics() {
          [](const CompareResult& r) -> Value { return share(r, r.overall.beauty.p99_9); }},
         {"max_rel", "largest difference / mean of the reference",
          [](const CompareResult& r) -> Value { return share(r, r.overall.beauty.most); }},
-        {"rmse", "as rmse_rel, in units of the picture; so are the next five",
+        {"rmse", "as rmse_rel, in units of the image; so are the next five",
          [](const CompareResult& r) -> Value { return r.overall.beauty.rmse; }},
         {"bias", "mean difference", [](const CompareResult& r) -> Value { return r.overall.beauty.bias; }},
         {"mae", "mean absolute difference", [](const CompareResult& r) -> Value { return r.overall.beauty.mae; }},
@@ -42,9 +42,9 @@ const std::vector<Metric>& metrics() {
          [](const CompareResult& r) -> Value { return 1 - r.overall.ssim; }},
         {"flip", "mean HDR-FLIP: what an eye notices flipping between both, 0 to 1",
          [](const CompareResult& r) -> Value { return r.overall.flip; }},
-        {"flip_ldr", "mean LDR-FLIP: of the pictures as stored, clamped to 0..1",
+        {"flip_ldr", "mean LDR-FLIP: of the images as stored, clamped to 0..1",
          [](const CompareResult& r) -> Value { return r.overall.flip_ldr; }},
-        {"noise_rel", "standard error of the picture, when it has a layer Variance / mean of the reference",
+        {"noise_rel", "standard error of the image, when it has a layer Variance / mean of the reference",
          [](const CompareResult& r) { return r.overall.noise ? Value(share(r, *r.overall.noise)) : Value(); }},
         {"flicker", "changes between frames that the reference lacks / mean of the reference",
          [](const CompareResult& r) { return r.frames.size() > 1 ? Value(r.flicker) : Value(); }},

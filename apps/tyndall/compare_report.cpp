@@ -102,8 +102,8 @@ std::string compare_text(const CompareResult& result) {
                       result.viewing.pixels_per_degree);
     text += formatted("  %-16s %12.6f   as stored, clamped to 0..1\n", "LDR-FLIP", all.flip_ldr);
     if (all.noise)
-        text += formatted("  %-16s %12.4g   %s: what of rmse is the picture's own noise\n", "standard error",
-                          *all.noise, percent(*all.noise, all.beauty.mean_reference).c_str());
+        text += formatted("  %-16s %12.4g   %s: what of rmse is the image's own noise\n", "standard error", *all.noise,
+                          percent(*all.noise, all.beauty.mean_reference).c_str());
     if (result.frames.size() > 1)
         text += formatted("  %-16s %12.4g   of the reference's mean\n", "flicker", result.flicker);
     if (all.mse)
@@ -112,7 +112,7 @@ std::string compare_text(const CompareResult& result) {
     if (all.bias_squared)
         text += formatted("  %-16s %12.4g   ± %.2g\n", "bias squared", all.bias_squared->value,
                           all.bias_squared->standard_error);
-    text += formatted("  %-16s %12.4g   rmse_rel, the worse of the picture and its fog light\n", "E", all.worst_rmse());
+    text += formatted("  %-16s %12.4g   rmse_rel, the worse of the image and its fog light\n", "E", all.worst_rmse());
     text += layers_table(result);
     if (result.sequence) text += frames_table(result);
     return text;

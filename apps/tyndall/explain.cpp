@@ -36,7 +36,7 @@ ivec2 pixel_option(const std::string& text) {
 void check_inside(ivec2 pixel, ivec2 size) {
     if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y)
         fail(ExitCode::usage, "--pixel",
-             formatted("%d,%d lies outside the picture of %dx%d pixels: 0,0 is the upper left, %d,%d the lower right",
+             formatted("%d,%d lies outside the image of %dx%d pixels: 0,0 is the upper left, %d,%d the lower right",
                        pixel.x, pixel.y, size.x, size.y, size.x - 1, size.y - 1));
 }
 
@@ -117,7 +117,7 @@ Run add_explain(const Command& program) {
         .required();
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    command.option("--res", texts->resolution, "size of the picture the pixel is counted in (default: the scene's)",
+    command.option("--res", texts->resolution, "size of the image the pixel is counted in (default: the scene's)",
                    "WxH");
     command.option("--quality", texts->quality, "of the modes: draft, preview (default), final or reference", "NAME");
     command.options("--set", texts->settings,

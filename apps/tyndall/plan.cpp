@@ -112,7 +112,7 @@ int run_plan(const Options& texts, const Globals& globals) {
     if (!globals.quiet)
         say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");
     if (plan.chosen.gets_there()) return 0;
-    fail(ExitCode::differs, request.scene_file.string(), "no mode gets there; the one named comes closest");
+    fail(ExitCode::differs, request.scene_file.string(), "no mode reaches the goal; the one named comes closest");
 }
 }
 
@@ -123,10 +123,10 @@ Run add_plan(const Command& program) {
     render.mode = automatic, render.output = "out.####.exr";
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("--target-error", render.target_error,
-                   "error wanted (rmse), as a share of the picture's mean (default: by quality,\n"
+                   "error wanted (rmse), as a share of the image's mean (default: by quality,\n"
                    "0.05 for preview)",
                    "E");
-    command.option("--time-budget", render.time_budget, "seconds a picture may take instead", "SECONDS");
+    command.option("--time-budget", render.time_budget, "seconds an image may take instead", "SECONDS");
     command.option("--quality", render.quality, "where other settings come from (default: preview)", "NAME");
     command.options("--set", render.settings, "a setting that is to stay as it is; may be repeated", "NAME=VALUE");
     command.option("--orders", render.orders,
@@ -135,7 +135,7 @@ Run add_plan(const Command& program) {
                    "N");
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--camera", render.camera, "which camera (default: the scene's)", "NAME");
-    command.option("--res", render.resolution, "size of the picture (default: the scene's)", "WxH");
+    command.option("--res", render.resolution, "size of the image (default: the scene's)", "WxH");
     command.footer("Example: tyndall plan scenes/window.json --target-error 0.02\n"
                    "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
                    "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"

@@ -90,7 +90,7 @@ void say_summary(const RenderReport& report, const RenderRequest& request) {
     for (const FrameReport& frame : report.frames) kept += frame.kept;
     const int rendered = static_cast<int>(report.frames.size()) - kept;
     std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(report.seconds);
-    if (rendered > 0) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
+    if (rendered > 1) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
     if (kept > 0) line += formatted(", %d kept", kept);
     say(line + ", " + printable(request.output));
 }
@@ -101,7 +101,7 @@ void say_look(const RenderRequest& request) {
     if (request.png)
         say("look: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
     else
-        say("look: add --png for pictures any program shows; the .exr opens in tev, Blender, Nuke and others");
+        say("look: add --png for images that any program shows; the .exr opens in tev, Blender, Nuke and others");
 }
 
 // What was asked for, decided and made.
@@ -244,7 +244,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     const bool several = requests.size() > 1;
     const LoadOptions options = load_options(texts);
     if (!several && !texts.sheet_reference.empty())
-        fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one picture");
+        fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
     set_stop_remark("; finished frames are kept, --resume continues");
     OutputPlaces places;
     for (RenderRequest& request : requests) {

@@ -64,7 +64,7 @@ void add_what(const Command& command, RenderOptions& texts) {
                    "(default: the scene's range)",
                    "RANGE");
     command.option("--camera", texts.camera, "camera by name (default: the scene's)", "NAME");
-    command.option("--res", texts.resolution, "picture size in pixels (default: the scene's)", "WxH");
+    command.option("--res", texts.resolution, "image size in pixels (default: the scene's)", "WxH");
     command.option("--crop", texts.crop, "only the pixels from X0,Y0 (upper left, included) to X1,Y1 (excluded)",
                    "X0,Y0,X1,Y1");
     command.option("--missing", texts.missing,
@@ -87,17 +87,17 @@ void add_how(const Command& command, RenderOptions& texts) {
            "as many for path)",
            "N");
     option("--target-error", texts.target_error,
-           "go on until the error (rmse) is below this share of the picture's mean,\n"
+           "go on until the error (rmse) is below this share of the image's mean,\n"
            "0.01 for instance; not for billboard and radial-blur. A mode's error is\n"
            "measured on a few pixels against exact single scattering, and its steps,\n"
            "maps and grids are picked by it, those of --set apart; path has no error\n"
            "but noise. Exit code 1 when the error stays larger",
            "E");
     option("--time-budget", texts.time_budget,
-           "the best picture in so many seconds for each frame, but one ray per pixel\n"
+           "the best image in so many seconds for each frame, but one ray per pixel\n"
            "at least; not for billboard and radial-blur. It is the time of the whole process,\n"
            "loading, measuring and writing included: N frames take N times as long at most, and\n"
-           "what one leaves the next may use. Exit code 1 when that is not enough. The picture\n"
+           "what one leaves the next may use. Exit code 1 when that is not enough. The image\n"
            "depends on the machine; with --target-error what comes first ends it",
            "SECONDS");
     option("--orders", texts.orders,
@@ -134,21 +134,21 @@ void add_results(const Command& command, RenderOptions& texts) {
     const char* group = "Results";
     command
         .option("--aov", texts.aov,
-                "layers beside the picture: Z, inscatter, transmittance (these by default),\n"
-                "surface and background, which with inscatter add up to the picture; lights\n"
+                "layers beside the image: Z, inscatter, transmittance (these by default),\n"
+                "surface and background, which with inscatter add up to the image; lights\n"
                 "(one layer per light), ambient, emission and multiple, which add up to\n"
                 "inscatter; validity, variance (of the mean), halves (two independent\n"
-                "pictures); none for the picture alone",
+                "images); none for the image alone",
                 "NAMES")
         .group(group);
     command
         .option("--background", texts.background,
                 "on (default), or off to leave the background out of colour and alpha, for\n"
-                "pictures that go over others",
+                "images that go over others",
                 "WHAT")
         .group(group);
     command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
-    command.flag("--png", texts.png, "also write pictures for looking at (8-bit sRGB)").group(group);
+    command.flag("--png", texts.png, "also write images for looking at (8-bit sRGB)").group(group);
     command
         .option("--exposure", texts.exposure,
                 "how much brighter (+) or darker (-) than the EXRs the PNGs are, in stops,\n"
@@ -186,7 +186,7 @@ void add_render_options(const Command& command, RenderOptions& texts) {
 
 void check_crop(const RenderRequest& request, ivec2 picture) {
     if (request.crop_high.x > picture.x || request.crop_high.y > picture.y)
-        fail(ExitCode::usage, "--crop", formatted("reaches beyond the picture of %dx%d pixels", picture.x, picture.y));
+        fail(ExitCode::usage, "--crop", formatted("reaches beyond the image of %dx%d pixels", picture.x, picture.y));
 }
 
 std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text) {

@@ -87,12 +87,12 @@ int run_verify(const Options& texts, const Globals& globals) {
 }
 
 Run add_verify(const Command& program) {
-    const Command command = program.command("verify", "prove this program right, or a scene's picture");
+    const Command command = program.command("verify", "prove this program right, or a scene's image");
     auto texts = std::make_shared<Options>();
     command.option("SCENE", texts->scene, "a scene to check on its own data; without, the program alone", "");
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--camera", texts->camera, "which camera (default: the scene's)", "NAME");
-    command.option("--res", texts->resolution, "size of the pictures compared (default: 160x90)", "WxH");
+    command.option("--res", texts->resolution, "size of the images compared (default: 160x90)", "WxH");
     command.option("--samples", texts->samples,
                    "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
                    "more of them find smaller differences",

@@ -49,8 +49,8 @@ std::string_view name_of(Severity severity) {
 std::string where_of(const Limitation& limitation) {
     const std::string name = printable(limitation.name, max_name);
     const std::string word(word_of(limitation.subject));
-    if (limitation.subject == Subject::setting || name.starts_with(word + " "))
-        return name; // "medium 1" has no other name
+    if (limitation.subject == Subject::setting || name == word || name.starts_with(word + " "))
+        return name; // "medium 1", "camera": the name says it
     return name.empty() ? word : word + " " + name;
 }
 

@@ -10,9 +10,8 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind coarse_texels{
-    "coarse_texels",
-    "texels of its shadow map are up to {} pixels wide ({} m) at the end of the view: shadow edges are "
-    "no finer, and thinner occluders and gaps can be missed"};
+    "coarse_texels", "shadow-map texels are up to {} pixels ({} m) wide at the far end of the view: shadow edges are "
+                     "no sharper, and thinner occluders and gaps can be missed"};
 inline constexpr LimitationKind no_partial_shadows{
     "no_partial_shadows",
     "shadow maps hold no partial shadows: BLEND surfaces of alpha 1/2 and more block all light in "

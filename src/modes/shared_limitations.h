@@ -11,31 +11,28 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind single_scattering_only{
-    "single_scattering_only",
-    "single scattering only: with up to {} optical depths of scattering, real fog is brighter and softer (march and "
-    "froxel add it with --orders all)"};
+    "single_scattering_only", "single scattering only: with up to {} optical depths of scattering, real fog is "
+                              "brighter and softer (--orders all adds multiple scattering in march and froxel)"};
 inline constexpr LimitationKind float_precision{
     "float_precision", "float precision at this distance from the origin is {} m: edges and shadows are no finer"};
 inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
                                                    "ambient light is not shadowed by surfaces or fog"};
 inline constexpr LimitationKind light_grid_cells{
-    "light_grid_cells",
-    "cells of the light grid are up to {} optical depths deep: light in its dense parts is blurred"};
+    "light_grid_cells", "cells of the light grid are up to {} optical depths deep: light in dense parts is blurred"};
 inline constexpr LimitationKind long_steps{
-    "long_steps", "steps of about {} m are longer than its voxels, {} m: their detail is blurred or noisy; more steps "
-                  "resolve it"};
-inline constexpr LimitationKind deep_steps{
-    "deep_steps", "steps are up to {} optical depths deep (about {} m): how light fades within a step is lost; more "
-                  "steps resolve it"};
-inline constexpr LimitationKind cached_fluence{
-    "cached_fluence",
-    "multiple scattering is cached in cells of {} m: its detail is no finer, and within a cell it may "
-    "leak around corners"};
+    "long_steps",
+    "steps of about {} m are longer than a voxel ({} m): fine detail is blurred or noisy; more steps resolve it"};
+inline constexpr LimitationKind deep_steps{"deep_steps",
+                                           "steps are up to {} optical depths deep (about {} m): how light fades "
+                                           "within a step is not resolved; more steps resolve it"};
+inline constexpr LimitationKind cached_fluence{"cached_fluence",
+                                               "multiple scattering is cached in cells of {} m: it has no finer "
+                                               "detail, and may leak around corners within a cell"};
 inline constexpr LimitationKind fog_scatters_alone{
-    "fog_scatters_alone", "light that has scattered before is added to the fog only: surfaces show direct light, and "
-                          "ambient light and emission are not scattered again"};
+    "fog_scatters_alone", "multiple scattering is computed for the fog and its lights only: surfaces get direct light "
+                          "alone, and ambient light and emission are not scattered further"};
 inline constexpr LimitationKind unbounded_fluence{
-    "unbounded_fluence", "of unbounded fog only what lies in and around the scene scatters light again"};
+    "unbounded_fluence", "in unbounded fog, multiple scattering is computed in and around the scene only"};
 inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are left out"};
 inline constexpr LimitationKind drawn_as_homogeneous{"drawn_as_homogeneous",
                                                      "drawn as homogeneous fog of its mean density"};
@@ -43,9 +40,8 @@ inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is 
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
 inline constexpr LimitationKind average_light{
-    "average_light", "light-side transmittance is average: the light is dimmed alike everywhere"};
-inline constexpr LimitationKind hard_shadows{"hard_shadows",
-                                             "its size is ignored: its shadows have hard edges in the fog"};
+    "average_light", "light-side transmittance is average: light is dimmed equally everywhere"};
+inline constexpr LimitationKind hard_shadows{"hard_shadows", "size ignored: shadows in the fog have hard edges"};
 }
 
 // Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places

@@ -16,7 +16,7 @@ void append_pixel_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(pixel.lamp_samples)));
     rows.push_back(number_row("pixel.edge_samples", "", 1, 64,
                               "most times as many rays where 4x4 pixels differ: at edges of surfaces and shafts; for "
-                              "pictures of 4 rays per pixel or more; 1 = none more; with --target-error, as measured "
+                              "images of 4 rays per pixel or more; 1 = none more; with --target-error, as measured "
                               "instead",
                               TYNDALL_FIELD(pixel.edge_samples)));
     rows.push_back(
@@ -34,7 +34,7 @@ void append_term_rows(std::vector<SettingRow>& rows) {
                               "froxel; others take grid), marched = exact at every point, average = alike everywhere",
                               TYNDALL_FIELD(terms.light)));
     rows.push_back(number_row("terms.light_resolution", "cells", 4, 1024,
-                              "cells across the fog in the light's grid; with froxel, across the picture and in depth",
+                              "cells across the fog in the light's grid; with froxel, across the image and in depth",
                               TYNDALL_FIELD(terms.light_resolution)));
     rows.push_back(number_row("terms.light_points", "", 1, 256,
                               "points of a soft light that shadows are asked for, by each ray (intervals, exact) or "

@@ -128,7 +128,7 @@ class Orders(ProgramTest):
             amount, mean = found[0]["amounts"]
             self.assertGreater(amount, 0)
             self.assertGreaterEqual(amount, abs(mean) - 0.5)
-            self.assertEqual(found[0]["severity"] != "info", "beside path tracing" in result.stderr)
+            self.assertEqual(found[0]["severity"] != "info", "against path tracing" in result.stderr)
         result = self.render("--mode", "path", "--samples", "1")
         self.assertNotIn("approximate_orders", result.stdout)
 

@@ -65,7 +65,7 @@ class Plan(ProgramTest):
         self.assertLessEqual(plan["modes"][0]["seconds"], 0.5)
 
     def test_exit_code_one_when_no_mode_gets_there(self):
-        self.refuse(1, ["no mode gets there"], "plan", self.scene, "--target-error", "0.00001",
+        self.refuse(1, ["no mode reaches the goal"], "plan", self.scene, "--target-error", "0.00001",
                     "--time-budget", "0.01", "-q")
 
     def test_auto_renders_as_planned_and_says_so_in_the_header(self):

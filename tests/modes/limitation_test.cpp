@@ -44,6 +44,7 @@ TEST(Limitations, WhereIsWordAndName) {
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::medium, "medium 1"}), "medium 1");
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::medium, "mediumistic"}), "medium mediumistic");
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::camera}), "camera");
+    EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::camera, "camera"}), "camera");
     EXPECT_EQ(where_of(Limitation{Severity::info, &dark, Subject::setting, "froxel.tile"}), "froxel.tile");
     const std::string broken =
         where_of(Limitation{Severity::info, &dark, Subject::light, "a\nb" + std::string(500, 'x')});

@@ -109,9 +109,9 @@ std::string content_text(const Scene& scene) {
                 seconds_text(double{totals.last_key}) + "\n";
     for (const CameraSource& camera : scene.cameras)
         text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
-                (camera.ortho_height > 0
-                     ? ", orthographic\n"
-                     : formatted(", %.1f degrees high\n", glm::degrees(double{camera.vertical_fov.at(0)})));
+                (camera.ortho_height > 0 ? ", orthographic\n"
+                                         : formatted(", vertical field of view %.1f degrees\n",
+                                                     glm::degrees(double{camera.vertical_fov.at(0)})));
     for (const LightSource& light : scene.lights)
         text += formatted("  light         %s, %s, %g %s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),

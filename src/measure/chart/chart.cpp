@@ -198,7 +198,7 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
         }
         chart.left_out.push_back({std::string(rung.mode->name), rows_of(settings_of(rung)), rung.place, task.seconds});
         if (control.remark && !goes_on)
-            control.remark(formatted("%s.%d and what follows it are left out: a picture would take about %.2g s",
+            control.remark(formatted("%s.%d and what follows it are left out: an image would take about %.2g s",
                                      std::string(rung.mode->name).c_str(), rung.place, task.seconds));
     }
     return tasks;

@@ -162,7 +162,7 @@ std::string method(const Chart& chart) {
             reference_words(job.reference) + "; their noise (" + share_words(chart.reference_noise) +
             " of the mean) is taken out of the errors. FLIP still sees it: " + number_words(chart.reference_flip) +
             " between the halves.",
-        "Error E: root of the mean squared difference / mean of the reference, of the picture or of the light of its "
+        "Error E: root of the mean squared difference / mean of the reference, of the image or of the light of its "
         "fog alone, whichever is larger. 100 % is an error as large as the mean.",
         "Times: wall clock, median of at least " + std::to_string(job.runs) +
             " runs. Set-up is what the first frame takes to prepare on top of what the next one takes, which keeps "
@@ -202,8 +202,8 @@ std::string chart_html(const Chart& chart) {
                 "rays a pixel in every mode, do not count here.") +
         chart_svg(chart, FrameTime::single, ErrorOf::fog);
     html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence, ErrorOf::worse);
-    html += element("h2", "Pictures and where they are wrong") +
-            element("p class=\"quiet\"", "Below each picture its error at every pixel, as a share of the mean: black "
+    html += element("h2", "Images and where they are wrong") +
+            element("p class=\"quiet\"", "Below each image its error at every pixel, as a share of the mean: black "
                                          "0.1 % or less, white 1000 %.") +
             gallery(chart);
     html += element("h2", "All numbers") + number_table(chart);

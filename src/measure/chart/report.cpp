@@ -138,7 +138,7 @@ std::string chart_json(const Chart& chart) {
 
 std::string left_out_reason(const Chart& chart) {
     if (chart.left_out.empty()) return {};
-    std::string text = count_text(chart.left_out.size(), "setting") + " left out: a picture would take more than " +
+    std::string text = count_text(chart.left_out.size(), "setting") + " left out: an image would take more than " +
                        seconds_words(chart.job.longest) + " (--longest)";
     if (was_loaded(chart))
         text += formatted("; other work was running (load %.1f on %d threads), without it more of them may fit",

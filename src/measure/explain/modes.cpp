@@ -90,7 +90,7 @@ void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& a
     answer.inscatter = layers.inscatter.at(p.x, p.y), answer.color = layers.color.at(p.x, p.y);
     answer.transmittance = layers.transmittance.at(p.x, p.y), answer.validity = layers.validity.at(p.x, p.y);
     answer.picture = view.size;
-    answer.remark = formatted("taken from a whole picture of %dx%d", view.size.x, view.size.y);
+    answer.remark = formatted("taken from a whole image of %dx%d", view.size.x, view.size.y);
     answer.finite = is_finite(answer.inscatter) && is_finite(answer.color);
 }
 

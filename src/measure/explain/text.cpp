@@ -24,7 +24,7 @@ std::string ray_text(const RayStory& story) {
     text +=
         "  from " + place_text(story.origin, story.world_origin) + " m towards " + color_text(story.direction) + "\n";
     if (story.steps.empty()) {
-        text += "  no fog on its way\n";
+        text += "  no fog along it\n";
     } else {
         std::string media;
         for (const MediumOnRay& medium : story.media)
@@ -32,7 +32,7 @@ std::string ray_text(const RayStory& story) {
                 media += (media.empty() ? "" : " + ") + printable(medium.name, 40) + " " + digits(medium.depth);
         text += wrapped("  fog from " + digits(story.steps.front().low) + " to " + digits(story.steps.back().high) +
                             " m, optical depth " + digits(story.depth) + " (" + media +
-                            "): " + percent(story.reference.transmittance) + " of the light behind it comes through",
+                            "): " + percent(story.reference.transmittance) + " of the light behind it gets through",
                         6);
     }
     for (const SurfaceOnRay& surface : story.surfaces) text += surface_text(surface);
@@ -51,7 +51,7 @@ double length_of(const LightOnRay& light, Lighting state) {
 }
 
 std::string lights_text(const RayStory& story) {
-    std::string text = "Light that arrives, nits (other: ambient light, emission, background)\n";
+    std::string text = "Light that reaches the camera, nits (other: ambient light, emission, background)\n";
     text += formatted("  %-16s %-5s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
     text += formatted("  %-16s %-5s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
     const auto row = [&](const std::string& name, std::string_view kind, vec3 fog, vec3 surfaces,
@@ -72,20 +72,20 @@ std::string lights_text(const RayStory& story) {
 }
 
 std::string stretches_text(const RayStory& story) {
-    std::string text = "Where each light comes in\n";
+    std::string text = "Where each light shines on the ray\n";
     for (const LightOnRay& light : story.lights) {
         std::string name = cut(printable(light.name, 40), 16);
         for (const LightStretch& stretch : light.stretches) {
             std::string line = formatted("  %-16s %9.3f %9.3f m   ", name.c_str(), stretch.low, stretch.high);
             line += name_of(stretch.state);
             if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
-            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " comes in";
+            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " lit";
             text += wrapped(line, 45);
             name.clear();
         }
     }
     if (!story.steps.empty() && std::ranges::any_of(story.lights, &LightOnRay::sampled))
-        text += "  (shadows of MASK and BLEND surfaces are as the steps see them)\n";
+        text += "  (shadows of MASK and BLEND surfaces are sampled, as in the steps)\n";
     return text;
 }
 }

@@ -35,11 +35,11 @@ std::string limitations_text(const RayStory& story) {
         }
     std::string text;
     for (const Said& said : all) text += wrapped("  " + joined(said.modes, ", ") + ": " + line_of(said.group), 6);
-    return text.empty() ? text : "What modes say of themselves here\n" + text;
+    return text.empty() ? text : "Limitations of the modes on this ray\n" + text;
 }
 
 std::string modes_text(const RayStory& story) {
-    std::string text = "What each mode makes of it: fog light of one sample at the pixel's centre, nits\n";
+    std::string text = "What each mode gives: fog light of one sample at the pixel's centre, nits\n";
     text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "off", "through", "valid", "steps");
     text += answer_text(story.reference, nullptr);
     for (const Answer& answer : story.answers) text += answer_text(answer, &story.reference);

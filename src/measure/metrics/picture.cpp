@@ -73,7 +73,7 @@ Picture read_picture(const std::filesystem::path& file) {
 void check_same_frame(const Picture& test, const Picture& reference) {
     const std::string other = "the reference " + printable(reference.file, 120);
     if (test.display != reference.display)
-        refuse(test.file, "is a picture of " + size_text(test.display) + " pixels, " + other + " one of " +
+        refuse(test.file, "is an image of " + size_text(test.display) + " pixels, " + other + " one of " +
                               size_text(reference.display));
     if (test.low != reference.low || test.beauty.size != reference.beauty.size)
         refuse(test.file, "holds the crop " + window_text(test) + ", " + other + " " + window_text(reference) +

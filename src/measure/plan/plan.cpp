@@ -13,7 +13,7 @@ namespace {
 // Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
 Term history_term(const View& view, const Snapshot& snapshot, const Contender& chosen, double error,
                   const TermControl& control) {
-    Term term{"frames before", "", "left out"};
+    Term term{"earlier frames", "", "left out"};
     View centers = view;
     centers.filter = PixelFilter::center;
     const Settings& settings = chosen.choice.candidate.settings;
@@ -23,7 +23,7 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * max_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
-    term.why = percent_text(term.error) + " noise of the fog itself with " + formatted("%.0f", samples) +
+    term.why = percent_text(term.error) + " noise in the fog with " + formatted("%.0f", samples) +
                (samples < 2 ? " sample" : " samples") + " per pixel";
     return term;
 }
@@ -42,13 +42,13 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
     if (best.gets_there() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
-        return "gets there in " + seconds_text(best.seconds) +
+        return "reaches it in " + seconds_text(best.seconds) +
                (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));
     }
     std::string text =
         goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
-        text = "too noisy: needs more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples a pixel";
+        text = "too noisy: takes more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples per pixel";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
@@ -63,13 +63,13 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
     for (const Mode& mode : modes) {
         Standing standing{&mode, {}, "artistic: no error bound"};
         if (mode.accuracy == Accuracy::multiple_scattering)
-            standing.why = many_orders
-                               ? "takes no part: multiple scattering from a grid is near enough"
-                               : "takes no part: errors here are of light scattered once, it traces all (--mode path)";
+            standing.why =
+                many_orders ? "not tried: multiple scattering from a grid is close enough"
+                            : "not tried: errors here are of single scattering, and it traces all orders (--mode path)";
         else if (mode.accuracy != Accuracy::artistic)
             standing.why = contest.best().mode->accuracy == Accuracy::multiple_scattering
-                               ? "takes no part: its multiple scattering is further off than is asked for"
-                               : "takes no part: it has no light scattered again, which is asked for";
+                               ? "not tried: its multiple scattering is further off than the error asked for"
+                               : "not tried: it has no multiple scattering, which is asked for";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;

@@ -140,7 +140,7 @@ void add_dimming(Terms& terms, double thickest) {
     if (terms.snapshot.lights.empty()) return;
     for (const auto& [way, name] : ways) {
         const double bound = way == LightTransmittance::off ? std::expm1(thickest) : infinity;
-        terms.add({"dimming of light on its way", "", name}, bound, &Terms::with_marched_light, [&, way = way] {
+        terms.add({"light-side transmittance", "", name}, bound, &Terms::with_marched_light, [&, way = way] {
             Variant variant = terms.changed();
             variant.settings.terms.light = way;
             return variant;
@@ -172,10 +172,9 @@ void add_switches(Terms& terms) {
         };
     };
     const bool bricks = any_medium([](const Medium& medium) { return medium.density.kind == DensityKind::bricks; });
-    terms.add({"changing density", "", "homogeneous fog"}, bricks ? infinity : 0, &Terms::usual,
+    terms.add({"varying density", "", "homogeneous fog"}, bricks ? infinity : 0, &Terms::usual,
               without(&TermSettings::heterogeneity));
-    terms.add({"direction of scattering", "", "isotropic"}, phase_bound(snapshot), &Terms::usual,
-              without(&TermSettings::phase));
+    terms.add({"phase function", "", "isotropic"}, phase_bound(snapshot), &Terms::usual, without(&TermSettings::phase));
     const bool glows =
         any_medium([](const Medium& medium) { return max_component(medium.optics.emission.radiance) > 0; });
     terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&TermSettings::emission));
@@ -186,7 +185,7 @@ void add_switches(Terms& terms) {
 
 void add_surfaces(Terms& terms, double thickest) {
     const Mode undimmed = undimmed_march();
-    terms.add({"fog before surfaces", "", "left out"}, std::expm1(thickest), &Terms::usual, [&] {
+    terms.add({"fog in front of surfaces", "", "left out"}, std::expm1(thickest), &Terms::usual, [&] {
         Variant variant = terms.changed();
         variant.mode = &undimmed;
         return variant;
@@ -198,11 +197,11 @@ namespace {
 // The power that fog scatters again, over what it scatters once: as an error, since it is what the picture lacks.
 void add_orders(Terms& terms) {
     const ScatteringRatio found = measured_ratio(terms.snapshot);
-    Term term{"light scattered again", "", "left out", found.ratio, found.high};
+    Term term{"multiple scattering", "", "left out", found.ratio, found.high};
     term.needed = term.bound > term_share * terms.error;
     term.why =
-        formatted("light scattered more than once is %s of that scattered once (%s to %s)",
-                  percent_text(found.ratio).c_str(), percent_text(found.low).c_str(), percent_text(found.high).c_str());
+        formatted("multiple scattering adds %s to single scattering (%s to %s)", percent_text(found.ratio).c_str(),
+                  percent_text(found.low).c_str(), percent_text(found.high).c_str());
     const double bound = truncation_bound(terms.snapshot, 1);
     if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent_text(bound).c_str());
     if (terms.base.fluence.orders < 2) term.why += "; left out without --orders all";
@@ -244,14 +243,14 @@ Settings without_needless(const std::vector<Term>& terms, Settings settings) {
     bool shadows = false, needless = false;
     for (const Term& term : terms) {
         if (term.name == "shadows") (term.needed ? shadows : needless) |= term.bound > 0;
-        if (term.name == "light scattered again" && !term.needed) settings.fluence.orders = 1;
+        if (term.name == "multiple scattering" && !term.needed) settings.fluence.orders = 1;
         if (term.needed || term.bound == 0) continue; // switching off what is not there changes nothing
-        if (term.name == "dimming of light on its way" && term.simpler == "left out")
+        if (term.name == "light-side transmittance" && term.simpler == "left out")
             switches.light = LightTransmittance::off;
-        if (term.name == "dimming of light on its way" && term.simpler == "average")
+        if (term.name == "light-side transmittance" && term.simpler == "average")
             switches.light = LightTransmittance::average;
-        if (term.name == "changing density") switches.heterogeneity = false;
-        if (term.name == "direction of scattering") switches.phase = false;
+        if (term.name == "varying density") switches.heterogeneity = false;
+        if (term.name == "phase function") switches.phase = false;
         if (term.name == "emission") switches.emission = false;
         if (term.name == "ambient light in fog") switches.ambient = false;
     }

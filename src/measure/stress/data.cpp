@@ -162,7 +162,7 @@ std::vector<StressCase> stress_data() {
                    {1e-6, "relative RMSE against the usual size", size_off}),
         StressCase("small-grid", group, "a grid of few voxels, and of one", "side", "voxels", {7, 1}, seen_modes, {},
                    small_block,
-                   {0.01, "error of the optical depth over the picture", mass_off, 1e-4, "shadow-map shadow-volume"}),
+                   {0.01, "error of the optical depth over the image", mass_off, 1e-4, "shadow-map shadow-volume"}),
         StressCase("flat-grid", group, "a sheet of few voxels seen from all sides", "thickness", "voxels", {4, 2, 1},
                    Claim::density, detail, flat_block, {0.1}),
         StressCase("ramp", group, "a ramp of density over the faces of leaves", "side", "voxels", {8, 32, 64},

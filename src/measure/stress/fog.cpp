@@ -217,7 +217,7 @@ std::vector<StressCase> stress_fog() {
         StressCase("albedo", group, "fog from white to black", "albedo", "", {1, 0.5, 1e-3, 0}, Claim::physical, {},
                    white),
         StressCase("bright-behind", group, "a sky of 100 000 nits behind fog", "optical depth", "", {1, 4, 8, 12},
-                   Claim::noise_free, {}, bright_behind, {0.002, "relative RMSE of the picture", sky_off}),
+                   Claim::noise_free, {}, bright_behind, {0.002, "relative RMSE of the image", sky_off}),
         StressCase("pattern", group, "the pattern of the jitter goes away over 16 frames", "steps", "", {32, 16, 8},
                    "shadow-map", {}, jittered, {-1, to_truth, pattern_left}),
     };

@@ -99,7 +99,7 @@ StressScene under_sloping_floor(double degrees) { return under_floor(0.02f, stat
 }
 
 std::vector<StressCase> stress_orders() {
-    constexpr std::string_view group = "light scattered again";
+    constexpr std::string_view group = "multiple scattering";
     const StressMeasure mean{0.05, "error of the fog's mean light against all orders", orders_off};
     const StressMeasure dark{0.01, "light below by light without a floor", leak};
     return {

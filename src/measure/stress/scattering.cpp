@@ -105,9 +105,9 @@ std::vector<StressCase> stress_scattering() {
         StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8},
                    Claim::noise_free, {}, in_even_light,
                    {0.005, "error of the mean against the closed form", even_light_off}),
-        StressCase("linear", group, "twice the light is twice the picture", "sun", "times", {2, 1e-6, 1e6, 1e12},
+        StressCase("linear", group, "twice the light is twice the image", "sun", "times", {2, 1e-6, 1e6, 1e12},
                    Claim::noise_free, {}, dim_or_bright,
-                   {1e-4, "relative RMSE of the picture by the light's strength", not_linear}),
+                   {1e-4, "relative RMSE of the image by the light's strength", not_linear}),
         StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0}, Claim::all, {}, two_colours,
                    {1e-5, "relative RMSE of the sum", sum_off}),
     };

@@ -19,7 +19,7 @@ struct Trial; // both of measure/stress/trial.h
 // How an error is measured, and how large it may be.
 struct StressMeasure {
     double allowed = -1; // below 0: what the mode promises at preview
-    std::string_view criterion = "relative RMSE of picture or fog light against the exact march";
+    std::string_view criterion = "relative RMSE of image or fog light against the exact march";
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
     double exact = -1;                       // what is allowed to modes that are exact here
     std::string_view exact_modes{};          // names between spaces

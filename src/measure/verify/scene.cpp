@@ -199,7 +199,7 @@ std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, con
     assert(!scene.media.empty());
     std::vector<CheckGroup> groups = scene_checks(scene, proof, control);
     groups.push_back({"finite", 0, [](Checks& checks) {
-                          checks.add("samples of all these pictures that were not finite numbers",
+                          checks.add("samples of all these images that were not finite numbers",
                                      static_cast<double>(checks.non_finite), 0, 0, "none");
                       }});
     return run_checks(groups, control);

@@ -9,17 +9,18 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind sun_without_shadows{"sun_without_shadows",
-                                                    "a sun has no cone, and its shadows are ignored: no shafts"};
+                                                    "shadows of surfaces are ignored: no shafts of sunlight"};
 inline constexpr LimitationKind no_shadows{"no_shadows", "shadows of surfaces are ignored"};
 inline constexpr LimitationKind point_light_only{"point_light_only",
-                                                 "a point light here; its radius only caps the brightness"};
+                                                 "treated as a point light; the radius only caps the brightness"};
 inline constexpr LimitationKind unphysical_attenuation{"unphysical_attenuation",
                                                        "cone.attenuation is not the inverse square: not physical"};
 inline constexpr LimitationKind inner_cone_ignored{"inner_cone_ignored",
-                                                   "cone.edge is soft: its own inner cone is ignored"};
-inline constexpr LimitationKind cut_near_light{"cut_near_light", "cone.near_radius cuts away the light next to it"};
+                                                   "cone.edge is soft: the light's own inner cone is ignored"};
+inline constexpr LimitationKind cut_near_light{"cut_near_light",
+                                               "cone.near_radius removes the light close to the lamp"};
 inline constexpr LimitationKind artistic_noise{"artistic_noise",
-                                               "cone.noise modulates its light: artistic, not physical"};
+                                               "cone.noise modulates the light: artistic, not physical"};
 }
 
 Limitations cone_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

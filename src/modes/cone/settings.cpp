@@ -28,7 +28,7 @@ void append_cone_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("cone.noise_speed", "m/s", -1e9, 1e9, "how fast the noise rises",
                               TYNDALL_FIELD(of<ConeSettings>().noise_speed)));
     rows.push_back(choice_row("cone.resolution", resolutions,
-                              "resolution of the fog's light along each side; it is spread over the whole picture with "
+                              "resolution of the fog's light along each side; it is spread over the whole image with "
                               "regard to depth",
                               TYNDALL_FIELD(of<ConeSettings>().resolution)));
     mark_advanced(rows, {"near_radius", "attenuation", "edge", "inner", "noise", "noise_size", "noise_speed"});

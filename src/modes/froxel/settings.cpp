@@ -5,7 +5,7 @@
 
 namespace tyndall {
 void append_froxel_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(number_row("froxel.tile", "pixels", 1, 64, "width and height of a froxel in the picture",
+    rows.push_back(number_row("froxel.tile", "pixels", 1, 64, "width and height of a froxel in the image",
                               TYNDALL_FIELD(of<FroxelSettings>().tile)));
     rows.push_back(number_row("froxel.depth_slices", "", 1, 4096,
                               "froxels in depth, from the nearest fog in view to "
@@ -26,7 +26,7 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
                               "how pixels are found between froxels; tricubic = smoother, jittered = grain instead of "
                               "cells",
                               TYNDALL_FIELD(of<FroxelSettings>().lookup)));
-    rows.push_back(number_row("froxel.history", "", 0, 0.99, "weight of the frames before, where there are any",
+    rows.push_back(number_row("froxel.history", "", 0, 0.99, "weight of earlier frames, where there are any",
                               TYNDALL_FIELD(of<FroxelSettings>().history)));
     rows.push_back(choice_row("froxel.amortise", switches,
                               "with a history, light only a quarter of the froxels anew "

@@ -9,11 +9,11 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind screen_space{
-    "screen_space", "rays are blurred brightness, not light: fog, distance and what is off screen play no part"};
+    "screen_space", "rays are a blur of the image: fog, distance and anything off screen have no effect on them"};
 inline constexpr LimitationKind homogeneous_dimming{
     "homogeneous_dimming", "dims what is behind it as homogeneous fog of its mean density (radial_blur.fog)"};
 inline constexpr LimitationKind light_off_screen{"light_off_screen", "behind the camera or far off screen: no rays"};
-inline constexpr LimitationKind light_leaving_screen{"light_leaving_screen", "off screen: its rays are fading out"};
+inline constexpr LimitationKind light_leaving_screen{"light_leaving_screen", "off screen: rays fade out"};
 }
 
 Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

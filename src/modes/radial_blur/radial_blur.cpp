@@ -64,7 +64,7 @@ PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const 
 
 Mode radial_blur_mode() {
     return {.name = "radial-blur",
-            .summary = "brightness smeared away from the lights in the finished picture",
+            .summary = "brightness smeared away from the lights in the finished image",
             .use = "a quick effect over a finished image, with the light in or near the frame",
             .accuracy = Accuracy::artistic,
             .surfaces = Surfaces::post,

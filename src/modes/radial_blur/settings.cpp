@@ -7,7 +7,7 @@ namespace tyndall {
 void append_radial_blur_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("radial_blur.source", {"occlusion", "highlights"},
                               "what is blurred: the sky around the light with everything in front of it black, or what "
-                              "is bright in the finished picture",
+                              "is bright in the finished image",
                               TYNDALL_FIELD(of<RadialBlurSettings>().source)));
     rows.push_back(number_row("radial_blur.samples", "", 1, 1024, "samples along the line to the light",
                               TYNDALL_FIELD(of<RadialBlurSettings>().samples)));
@@ -21,13 +21,13 @@ void append_radial_blur_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<RadialBlurSettings>().exposure)));
     rows.push_back(number_row("radial_blur.threshold", "", 0, 1e6, "luminance above which highlights are blurred",
                               TYNDALL_FIELD(of<RadialBlurSettings>().threshold)));
-    rows.push_back(number_row("radial_blur.size", "picture heights", 0.01, 100,
+    rows.push_back(number_row("radial_blur.size", "image heights", 0.01, 100,
                               "radius at which the bright sky around a sun has faded",
                               TYNDALL_FIELD(of<RadialBlurSettings>().size)));
     rows.push_back(number_row("radial_blur.lamp_size", "m", 1e-6, 1e9, "radius of the bright disc of other lights",
                               TYNDALL_FIELD(of<RadialBlurSettings>().lamp_size)));
-    rows.push_back(number_row("radial_blur.fade", "half pictures", 0.01, 100,
-                              "how far outside the picture a light is when its rays have faded",
+    rows.push_back(number_row("radial_blur.fade", "half images", 0.01, 100,
+                              "how far outside the image a light is when its rays have faded",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fade)));
     rows.push_back(choice_row("radial_blur.resolution", resolutions, "resolution of the blur along each side",
                               TYNDALL_FIELD(of<RadialBlurSettings>().resolution)));

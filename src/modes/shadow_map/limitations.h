@@ -9,9 +9,10 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind grainy_edges{
-    "grainy_edges", "shafts begin and end within one of {n} steps per ray: their edges are noisy (shadow_map.steps)"};
+    "grainy_edges",
+    "edges of shafts are noisy, as {n} steps per ray miss where exactly they begin and end (shadow_map.steps)"};
 inline constexpr LimitationKind few_steps_for_glow{
-    "few_steps_for_glow", "is in the image: {n} steps per ray are few for the light around it (shadow_map.steps)"};
+    "few_steps_for_glow", "in view: {n} steps per ray are too few for the glow around a lamp (shadow_map.steps)"};
 }
 
 Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

@@ -24,7 +24,7 @@ void append_shadow_map_rows(std::vector<SettingRow>& rows) {
                               "moves surfaces away from the light; fog needs none, and light leaks by as much",
                               TYNDALL_FIELD(of<ShadowMapSettings>().bias)));
     rows.push_back(choice_row("shadow_map.fog_resolution", resolutions,
-                              "resolution of the fog's light along each side; it is spread over the whole picture with "
+                              "resolution of the fog's light along each side; it is spread over the whole image with "
                               "regard to depth",
                               TYNDALL_FIELD(of<ShadowMapSettings>().fog_resolution)));
     rows.push_back(choice_row("shadow_map.blur", switches,

@@ -19,9 +19,8 @@ std::optional<double> error_beside(const OrdersError& orders, double error);
 
 namespace limitation {
 inline constexpr LimitationKind approximate_orders{
-    "approximate_orders",
-    "multiple scattering comes from a grid: beside path tracing, means of 8x8 pixels are off by up "
-    "to {} % (rms), that of the image by {} %"};
+    "approximate_orders", "multiple scattering is approximated on a grid: against path tracing, averages of 8x8 pixels "
+                          "are up to {} % off (RMS), that of the whole image {} %"};
 }
 Limitation limitation_of(const OrdersError& orders);
 }

@@ -83,21 +83,21 @@ void check_flags(Cursor& cursor) {
     if (cursor.left.size() < 8 || cursor.integer() != 20000630) refuse(cursor.file, "this is not an OpenEXR file");
     const uint32_t version = static_cast<uint32_t>(cursor.integer());
     if ((version & 0xff) != 2) refuse(cursor.file, "an OpenEXR version other than 2");
-    if (version & deep_flag) refuse(cursor.file, "deep pictures are not read");
+    if (version & deep_flag) refuse(cursor.file, "deep images are not read");
     if (version & multipart_flag) refuse(cursor.file, "files of several parts are not read");
-    if (version & tiled_flag) refuse(cursor.file, "tiled pictures are not read");
+    if (version & tiled_flag) refuse(cursor.file, "tiled images are not read");
     if (version & ~(0xffu | long_names_flag)) refuse(cursor.file, "the header has unknown flags");
 }
 
 // The pixels must fit in memory, and no compression may have made the file as small as it is if it is too small.
 void check_amount(const ExrClaims& claims, uint64_t file_bytes, const std::string& file) {
     const ivec2 size = claims.high - claims.low + 1;
-    if (size.x > largest_side || size.y > largest_side) refuse(file, "the picture is larger than 16384 x 16384 pixels");
+    if (size.x > largest_side || size.y > largest_side) refuse(file, "the image is larger than 16384 x 16384 pixels");
     const uint64_t pixels = static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
     if (pixels * static_cast<uint64_t>(claims.channels) * sizeof(float) > max_decoded_bytes)
-        refuse(file, "the picture would need more than 4 GiB of memory");
+        refuse(file, "the image would need more than 4 GiB of memory");
     if (pixels * claims.bytes_per_pixel / best_ratio > file_bytes)
-        refuse(file, "the file is too short for its picture: cut off or damaged");
+        refuse(file, "the file is too short for its image: cut off or damaged");
 }
 
 // Bytes that run lengths stand for (OpenEXR's RLE: a count of -n is followed by n bytes, of n by one to repeat n + 1
@@ -174,7 +174,7 @@ ExrClaims check_exr_claims(std::string_view bytes, const std::string& file) {
             expect_type(name, type, "compression", compression, file);
             read_compression(value, claims);
         } else if (name == "type" && value.left != "scanlineimage") {
-            refuse(file, "only scanline pictures are read");
+            refuse(file, "only scanline images are read");
         }
     }
     if (!channels || !window || !display || !compression)

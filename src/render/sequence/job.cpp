@@ -25,7 +25,7 @@ void check_picture(const Scene& scene, const RenderRequest& request) {
     const ivec2 low = request.crop_low, high = request.crop_high;
     if (low == high) return;
     if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
-        fail(ExitCode::usage, "crop", "it has to lie inside the picture and hold a pixel");
+        fail(ExitCode::usage, "crop", "it has to lie inside the image and hold a pixel");
 }
 
 // Names, directories and leftovers.
@@ -69,7 +69,7 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
     if (request.target_error > 0) check_target(mode);
     if (mode.surfaces == Surfaces::post && measures_noise(request))
         fail(ExitCode::usage, "--aov",
-             std::string(mode.name) + " works on the finished picture: it has no variance and no halves");
+             std::string(mode.name) + " works on the finished image: it has no variance and no halves");
     check_outputs(scene, request);
 }
 

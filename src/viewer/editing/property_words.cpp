@@ -56,13 +56,13 @@ const Row rows[] = {
     {Part::medium, "bounds/high", {"bounds high", "Upper corner of the box that the fog fills, metres."}},
 
     {Part::camera, "position", {"position", "Where the eye is, metres."}},
-    {Part::camera, "target", {"target", "The point in the middle of the picture, metres."}},
-    {Part::camera, "vertical_fov", {"vertical fov", "Angle between lower and upper edge of the picture."}},
+    {Part::camera, "target", {"target", "The point in the middle of the image, metres."}},
+    {Part::camera, "vertical_fov", {"vertical fov", "Angle between lower and upper edge of the image."}},
 
     {Part::scene,
      "exposure",
      {"exposure",
-      "Stops by which the scene's pictures are brightened; light itself stays. Automatic until a value is set."}},
+      "Stops by which the scene's images are brightened; light itself stays. Automatic until a value is set."}},
     {Part::scene, "ambient", {"ambient", "Even light from everywhere, which nothing shadows."}},
     {Part::scene, "background/color", {"background", "Light behind everything."}},
     {Part::scene, "background/sky/zenith", {"sky zenith", "Colour of the sky straight up."}},

@@ -73,7 +73,7 @@ void explain_pixel(ViewState& state, const Action& action) {
         const double x = std::floor(action.numbers[0]), y = std::floor(action.numbers[1]);
         if (!(x >= 0 && y >= 0 && x < size.x && y < size.y))
             fail(ExitCode::usage, "explain",
-                 formatted("%g %g lies outside the picture of %d x %d pixels", x, y, size.x, size.y));
+                 formatted("%g %g lies outside the image of %d x %d pixels", x, y, size.x, size.y));
         asked = ivec2(static_cast<int>(x), static_cast<int>(y));
     }
     state.explain = asked;

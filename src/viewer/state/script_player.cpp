@@ -19,7 +19,7 @@ void check_end(const Action& wait, const ViewState& state) {
     const std::string& what = wait.words[0];
     if (what == "samples" && wait.numbers[0] > state.max_samples)
         fail(ExitCode::usage, "wait samples",
-             formatted("a picture is finished after %d: --samples says how many", state.max_samples));
+             formatted("an image is finished after %d: --samples says how many", state.max_samples));
     if ((what == "idle" || what == "samples") && state.playing)
         fail(ExitCode::usage, "wait " + what, "playing does not end: play N frames, or stop");
 }

@@ -40,8 +40,7 @@ TEST(Terms, WhatIsNotThereIsLeftOutForCertain) {
     const Snapshot snapshot =
         snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.01);
-    for (const char* name :
-         {"shadows", "changing density", "direction of scattering", "emission", "ambient light in fog"}) {
+    for (const char* name : {"shadows", "varying density", "phase function", "emission", "ambient light in fog"}) {
         const Term& term = term_named(terms, name);
         EXPECT_TRUE(term.rigorous) << name;
         EXPECT_FALSE(term.needed) << name;
@@ -56,7 +55,7 @@ TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
         snapshot_of({homogeneous_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     EXPECT_NEAR(thickest_line(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.05);
-    for (const char* name : {"dimming of light on its way", "fog before surfaces"}) {
+    for (const char* name : {"light-side transmittance", "fog in front of surfaces"}) {
         const Term& term = term_named(terms, name);
         EXPECT_TRUE(term.rigorous) << name;
         EXPECT_FALSE(term.needed) << name;
@@ -73,7 +72,7 @@ TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
                                                  snapshot_of({homogeneous_medium(extinction, room)},
                                                              {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}),
                                                  all, 0.05);
-        const Term& term = term_named(terms, "light scattered again");
+        const Term& term = term_named(terms, "multiple scattering");
         EXPECT_EQ(term.needed, extinction > 0.1f);
         EXPECT_EQ(without_needless(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
     }
@@ -91,7 +90,7 @@ TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
         stage_of({homogeneous_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
                  {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const std::vector<Term> terms = terms_of(small_view(), stage.snapshot, Settings{}, 0.02);
-    for (const char* name : {"shadows", "dimming of light on its way", "direction of scattering"}) {
+    for (const char* name : {"shadows", "light-side transmittance", "phase function"}) {
         const Term& term = term_named(terms, name);
         EXPECT_TRUE(term.needed) << name;
         EXPECT_GT(term.error, 0.1) << name;
@@ -113,7 +112,7 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
     const std::vector<Term> terms = terms_of(view, snapshot, Settings{}, 1e-3);
     const double seen = phase_value_of<double>(phase, glm::dot(glm::normalize(vec3(1, 0, -1)), vec3(0, 0, 1)));
     const double expected = std::abs(1 / (4 * std::numbers::pi * seen) - 1);
-    EXPECT_NEAR(term_named(terms, "direction of scattering").error, expected, 2e-3 * expected);
+    EXPECT_NEAR(term_named(terms, "phase function").error, expected, 2e-3 * expected);
 }
 
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
