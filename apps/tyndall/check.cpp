@@ -6,6 +6,7 @@
 #include "base/io/frames.h"
 #include "render/image/exr.h"
 #include "scene/gltf/gltf.h"
+#include "trace/enclosed_lights.h"
 #include "volume/vdb/vdb.h"
 
 #include <algorithm>
@@ -66,9 +67,17 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
     }
 }
 
+// Lights that light nothing.
+void check_lights(const std::string& file, const Scene& scene, Problems& problems) {
+    guarded(file, problems, [&] {
+        for (const std::string& line : enclosed_lights(scene)) problems.push_back({file, line});
+    });
+}
+
 void check_scene(const std::string& file, Problems& problems) {
     const Scene scene = load_scene(file);
     for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
+    check_lights(file, scene, problems);
     check_media(file, scene, problems);
 }
 
@@ -78,6 +87,7 @@ void check_gltf(const std::string& file, Problems& problems) {
     scene.file = file;
     load_gltf(file, {}, scene);
     for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
+    check_lights(file, scene, problems);
 }
 
 // A numbered name stands for `frames`, or without them for all its files and the gaps between them. Returns how many.

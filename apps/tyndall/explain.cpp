@@ -9,6 +9,7 @@
 #include "render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "trace/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -92,6 +93,8 @@ int run_explain(const Options& texts, const Globals& globals) {
     stop_if_cancelled();
     if (!globals.quiet)
         for (const std::string& note : snapshot.notes) say("note: " + printable(note, 460));
+    if (!globals.quiet)
+        for (const std::string& line : enclosed_lights(snapshot)) say("warning: " + printable(line, 460));
     options.cancel = &cancel_flag();
     options.progress = [&](double done) { progress.set(done); };
     const RayStory story = explain_ray(view, snapshot, request.settings, pixel, options);

@@ -17,6 +17,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "sheet.h"
+#include "trace/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 
@@ -50,11 +51,13 @@ void add_orders(const Scene& scene, const RenderRequest& request, const RenderPl
 }
 
 // What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
-void say_limitations(const Scene& scene, const Limitations& limitations, const Globals& globals) {
+void say_limitations(const Scene& scene, const Snapshot& first, const Limitations& limitations,
+                     const Globals& globals) {
     if (globals.quiet) return;
     if (globals.verbose)
         for (const auto& input : scene.inputs) say("reads " + printable(input.path.string(), 460));
     for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
+    for (const std::string& line : enclosed_lights(first)) say("warning: " + printable(line, 460));
     for (const LimitationGroup& group : groups_of(limitations))
         if (globals.verbose || group.worst.severity != Severity::info) say(line_of(group));
 }
@@ -111,12 +114,12 @@ struct Rendered {
     RenderReport report;
 };
 
-void say_before(const Scene& scene, const Limitations& limitations, const RenderOptions& texts, const Rendered& one,
-                const Globals& globals) {
+void say_before(const Scene& scene, const Snapshot& first, const Limitations& limitations, const RenderOptions& texts,
+                const Rendered& one, const Globals& globals) {
     say_idle_settings(texts.settings, *one.plan.mode, globals);
     if (one.request.history > 0 && !one.plan.mode->remembers && !globals.quiet)
         say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
-    say_limitations(scene, limitations, globals);
+    say_limitations(scene, first, limitations, globals);
 }
 
 std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
@@ -162,7 +165,7 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
     if (!globals.quiet || globals.json || !texts.stats.empty())
         add_orders(scene, request, result.plan, first.snapshot, limitations);
-    say_before(scene, limitations, texts, result, globals);
+    say_before(scene, first.snapshot, limitations, texts, result, globals);
 
     Progress progress(globals.progress, several ? request.mode : "render", static_cast<double>(request.frames.size()),
                       globals.json);

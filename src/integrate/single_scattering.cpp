@@ -33,9 +33,10 @@ void add_lights(const View& view, LightTransmittance method, int light_resolutio
         frame.depths.back().scale = frame.style.light_depth;
         frame.cones.push_back(cone_falloff(light));
         LightShadows& shadows = frame.shadows.emplace_back();
-        if (!casts(light, frame.snapshot)) continue;
+        const auto& casters = shadow_casters(light, frame.snapshot);
+        if (!casters) continue;
         shadows.by = by(light);
-        if (shadows.by == ShadowsBy::slices) frame.slices = frame.snapshot.occluders->shadow_slices();
+        if (shadows.by == ShadowsBy::slices) shadows.slices = &casters->shadow_slices();
         if (shadows.by != ShadowsBy::volumes) continue;
         shadows.volumes = cached_shadow_volumes(frame.snapshot, light);
         shadows.view = cached_shadow_view(frame.snapshot, light, view, frame.margin);

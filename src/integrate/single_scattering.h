@@ -26,6 +26,7 @@ struct LightShadows {
     std::shared_ptr<const ShadowView> view; // with `volumes`, and as the camera sees them
     std::shared_ptr<const ShadowVolumes> volumes;
     std::shared_ptr<const ShadowMap> map; // with `maps`
+    const ShadowSlices* slices = nullptr; // with `slices`; the snapshot's
 };
 
 // The sides of the volumes as bright sheets instead of the light between them.
@@ -50,7 +51,6 @@ struct SingleScattering {
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
     std::vector<LightShadows> shadows;          // one per light
-    ShadowSlices slices;                        // for the lights that need them
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 };
 

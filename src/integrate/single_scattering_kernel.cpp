@@ -70,8 +70,8 @@ void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[
             rays[i].t_max = reached[i].empty() ? 0 : static_cast<float>(reached[i].high);
             picked[i] = light_point(packet.batch, i, light, index, k, points);
         }
-        find_lit(coherent_slices(frame.slices, {rays, count}, {picked, count}), {rays, count}, {picked, count},
-                 packet.scratch.lit);
+        find_lit(coherent_slices(*frame.shadows[index].slices, {rays, count}, {picked, count}), {rays, count},
+                 {picked, count}, packet.scratch.lit);
         push_all(packet, index, reached);
     }
     packet.light_share = 1;

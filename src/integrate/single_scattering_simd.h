@@ -85,8 +85,8 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
             return hash(id, static_cast<uint32_t>(nodes.cut[lane]), static_cast<uint32_t>(index));
         };
         const Mask16 wanted = (amount > 0.0f) & (load(nodes.weight) > 0.0f);
-        amount = amount *
-                 share_by_rays(*frame.snapshot.occluders, light, position, light_at, wanted, frame.light_points, key);
+        amount = amount * share_by_rays(*shadow_casters(light, frame.snapshot), light, position, light_at, wanted,
+                                        frame.light_points, key);
     }
     const std::vector<Medium>& media = frame.snapshot.media;
     const Vec3s towards = scattering(media, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {

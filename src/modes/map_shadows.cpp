@@ -56,12 +56,12 @@ void add_map_shadows(const View& view, const Snapshot& snapshot, const Settings&
     const std::vector<Ray> rays = probing_rays(view, snapshot);
     const ShadowMapOptions options = shadow_map_options(settings.of<ShadowMapSettings>());
     for (const Light& light : snapshot.lights) {
-        if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) continue;
+        if (!shadow_casters(light, snapshot)) continue;
         if (is_soft(light))
             limitations.push_back({Severity::degraded, &limitation::hard_shadows, Subject::light, light.name});
         add_texels(view, fitted_shadow_map(view, snapshot, light, options), light, rays, limitations);
     }
-    if (snapshot.occluders && snapshot.occluders->has_alpha() && has_blend(snapshot))
+    if (has_alpha_shadows(snapshot) && has_blend(snapshot))
         limitations.push_back({Severity::degraded, &limitation::no_partial_shadows, Subject::surfaces});
 }
 }

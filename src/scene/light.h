@@ -20,6 +20,7 @@ struct Light {
     float core = 1e-4f;                        // metres; 1/r² is capped inside of this in any case
     float angle = 0;                           // radians, half angle of the sun's disc
     bool shadows = true;
+    int casters = -1, lit = -1; // surfaces that shadow it, and that it lights: sets of the snapshot; -1 = all
 };
 
 // Whether its shadows have soft edges: each shadow ray then goes to another point of the light.

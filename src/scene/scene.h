@@ -29,6 +29,7 @@ struct Node {
 
 struct Instance {
     int node = -1, mesh = -1;
+    bool casts_shadows = true; // else it shadows no light; it is seen and lit as ever
 };
 
 struct CameraSource {
@@ -52,6 +53,7 @@ struct LightSource {
     Keyed<float> radius{0.0f}, angle{0.0f};
     float range = infinity;
     bool shadows = true;
+    std::vector<bool> lit, casters;    // of each instance: whether it is lit by it, and shadows it; empty = all
     std::optional<Keyed<vec3>> target; // what `direction` was made from
     std::string entry;                 // as of a camera
 };

@@ -7,6 +7,7 @@
 #include "scene/scene.h"
 #include "trace/fog.h"
 #include "trace/frame_cache.h"
+#include "trace/light_links.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
@@ -121,8 +122,11 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         snapshot.anchor = previous->anchor, snapshot.extent = previous->extent;
     else
         set_extent(scene, snapshot);
-    for (const LightSource& source : scene.lights) {
-        Light light = light_at(scene, source, moment.seconds);
+    LightLinks links = light_links(scene, moment.seconds, previous);
+    snapshot.casters = std::move(links.casters), snapshot.lit = std::move(links.lit);
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        Light light = light_at(scene, scene.lights[i], moment.seconds);
+        if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
         light.core = core_share * snapshot.extent;
         if (shines(light)) snapshot.lights.push_back(std::move(light));
     }
@@ -171,8 +175,4 @@ int find_camera(const Scene& scene, const std::string& name) {
 }
 
 Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
-
-bool casts(const Light& light, const Snapshot& snapshot) {
-    return light.shadows && snapshot.occluders && !snapshot.occluders->empty();
-}
 }

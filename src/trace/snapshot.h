@@ -35,6 +35,12 @@ struct FogSource {
     mat4 matrix{1}; // the medium's transform
 };
 
+// Some of the scene's instances, and their surfaces.
+struct CasterSet {
+    std::vector<bool> instances;
+    std::shared_ptr<const Occluders> occluders;
+};
+
 struct Snapshot {
     const Scene* scene = nullptr;
     double seconds = 0;
@@ -43,14 +49,16 @@ struct Snapshot {
     std::vector<Medium> media; // that dim light or emit it; of non-zero extinction
     vec3 ambient{0};
     BackgroundNow background;
-    std::shared_ptr<const Occluders> occluders;
-    vec3 anchor{0};                           // the middle of the scene, the same in every frame
-    float extent = 10;                        // metres: how large it is, the same in every frame
-    Box bounds;                               // of meshes, local lights and bounded media
-    std::vector<std::string> notes;           // what was mended in the files of this frame; say once
-    std::vector<FogSource> fog_sources;       // one per medium of the scene: what the next frame can use again
-    std::shared_ptr<FrameCache> cache;        // made for this frame so far; null in snapshots made by hand
-    std::shared_ptr<FrameCache> cache_before; // for the frame before; null of the first
+    std::shared_ptr<const Occluders> occluders; // of all surfaces
+    std::vector<CasterSet> casters;             // of lights that some surfaces alone shadow
+    std::vector<std::vector<bool>> lit;         // instances, of lights that shine on some alone
+    vec3 anchor{0};                             // the middle of the scene, the same in every frame
+    float extent = 10;                          // metres: how large it is, the same in every frame
+    Box bounds;                                 // of meshes, local lights and bounded media
+    std::vector<std::string> notes;             // what was mended in the files of this frame; say once
+    std::vector<FogSource> fog_sources;         // one per medium of the scene: what the next frame can use again
+    std::shared_ptr<FrameCache> cache;          // made for this frame so far; null in snapshots made by hand
+    std::shared_ptr<FrameCache> cache_before;   // for the frame before; null of the first
 
     // Not inline: who only holds a snapshot needs neither lights nor media.
     Snapshot();
@@ -67,8 +75,15 @@ struct Snapshot {
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error);
 
-// Whether surfaces shadow the light.
-bool casts(const Light& light, const Snapshot& snapshot);
+// The surfaces that shadow the light; null = none does.
+const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot);
+
+// Whether an instance of the scene shadows the light, and whether the light shines on it.
+bool shadows_light(const Light& light, const Snapshot& snapshot, int instance);
+bool is_lit(const Light& light, const Snapshot& snapshot, int instance);
+
+// Whether light gets through a surface that shadows one of the lights.
+bool has_alpha_shadows(const Snapshot& snapshot);
 
 // Whether there is one: where the scene says nothing of it, it is black and nothing.
 bool has_background(const BackgroundNow& background);

@@ -17,11 +17,11 @@ struct Packet {
 };
 
 // What the light brings to each point with nothing in the way, on the side that is seen.
-bool gather_light(const Light& light, std::span<const SurfacePoint> points, Packet& packet) {
+bool gather_light(const Light& light, const Snapshot& snapshot, std::span<const SurfacePoint> points, Packet& packet) {
     bool any = false;
     for (size_t i = 0; i < 16; ++i) {
         packet.active[i] = 0, packet.irradiance[i] = vec3(0);
-        if (i >= points.size()) continue;
+        if (i >= points.size() || !is_lit(light, snapshot, points[i].instance)) continue;
         const LightSample arriving = arrival(light, points[i].position);
         const float cosine = dot(points[i].normal, arriving.to_light);
         const vec3 irradiance = arriving.irradiance * (std::max(cosine, 0.0f) * light.surface_scale);
@@ -84,11 +84,10 @@ void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths
     for (size_t i = 0; i < points.size(); ++i)
         radiance[i] = points[i].base_color * snapshot.ambient + points[i].emission;
 
-    const bool occluded = snapshot.occluders && !snapshot.occluders->empty();
     for (size_t l = 0; l < lights; ++l) {
         const Light& light = snapshot.lights[l];
-        if (!gather_light(light, points, packet)) continue;
-        if (occluded && light.shadows) cast_shadows(*snapshot.occluders, light, points, u, packet);
+        if (!gather_light(light, snapshot, points, packet)) continue;
+        if (const auto& occluders = shadow_casters(light, snapshot)) cast_shadows(*occluders, light, points, u, packet);
         if (l < depths.size()) dim(depths[l], packet);
         for (size_t i = 0; i < points.size(); ++i) {
             const vec3 added = points[i].base_color * packet.irradiance[i] / pi;

@@ -2,9 +2,11 @@
 import json
 import os
 import resource
+import struct
 import unittest
 
-from program import SANITIZED, TRIANGLE, ProgramTest, corpus, glb, gltf, recipe, run, scene
+import exr
+from program import SANITIZED, TRIANGLE, ProgramTest, corpus, glb, gltf, lit_scene, recipe, run, scene
 
 
 class Render(ProgramTest):
@@ -42,6 +44,45 @@ class Render(ProgramTest):
         self.assertEqual(result.returncode, 1, result.stdout)
         self.assertIn("medium haze fills all space, so that no light of sun gets through", result.stdout)
         self.assertEqual(run("check", self.write("lit.json", scene())).returncode, 0)
+
+    def test_a_lamp_enclosed_by_its_bulb_is_told_and_mended(self):
+        corners = [(x, y, z) for x in (-0.02, 0.02) for y in (-0.02, 0.02) for z in (-0.02, 0.02)]
+        faces = [0, 1, 3, 0, 3, 2, 4, 6, 7, 4, 7, 5, 0, 4, 5, 0, 5, 1, 2, 3, 7, 2, 7, 6, 0, 2, 6, 0, 6, 4, 1, 5, 7, 1, 7, 3]
+        binary = b"".join(struct.pack("<3f", *corner) for corner in corners) + struct.pack("<36H", *faces)
+        self.write("bulb.glb", glb(gltf(
+            nodes=[{"name": "Bulb", "mesh": 0, "translation": [0, 1, 0]}],
+            meshes=[{"name": "Globe", "primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            accessors=[{"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3",
+                        "min": [-0.02] * 3, "max": [0.02] * 3},
+                       {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"}],
+            bufferViews=[{"buffer": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
+            buffers=[{"byteLength": 168}]), binary))
+        lamp = {"name": "lamp", "type": "point", "position": [0, 1, 0], "intensity": 5}
+        box = {"low": [-1, 0, -1], "high": [1, 2, 1]}
+        content = lit_scene(gltf="bulb.glb", lights=[lamp], resolution=[32, 18],
+                            media=[{"type": "homogeneous", "extinction": 0.2, "bounds": box}])
+        dark = self.write("dark.json", content)
+        words = 'light lamp is enclosed by the object "Bulb": 100 % of its light ends within 0.03'
+        result = run("check", dark)
+        self.assertEqual(result.returncode, 1, result.stdout)
+        self.assertIn(words, result.stdout)
+        for mode in ["march", "path"]:
+            told = self.succeed("render", dark, "-o", self.path("dark.exr"), "--mode", mode).stderr
+            self.assertIn("warning: " + words, told)
+
+        # Either way of mending it gives the same picture, with light in it.
+        self.write("free.json", {**content, "objects": [{"name": "Bulb", "casts_shadows": False}]})
+        self.write("linked.json", {**content, "lights": [{**lamp, "shadow_link": {"exclude": ["Globe"]}}]})
+        pictures = []
+        for name in ["free", "linked"]:
+            self.succeed("check", self.path(name + ".json"))
+            self.succeed("render", self.path(name + ".json"), "-o", self.path(name + ".exr"), "--float")
+            pictures.append(exr.read_channels(self.path(name + ".exr"))["R"])
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertGreater(max(pictures[0]), 0)
+
+        wrong = {**content, "objects": [{"name": "Blub", "casts_shadows": False}]}
+        self.refuse_scene(3, ["/objects/0/name", "Blub", "did you mean Bulb"], wrong)
 
     def test_unknown_keys_get_a_hint(self):
         self.refuse_scene(3, ["lihgts", "lights"], scene(lihgts=[]))

@@ -40,12 +40,12 @@ void add_depths(RayScene& scene) {
 
 void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
     story.pixel = pixel, story.size = scene.view.size;
-    const Occluders* occluders = scene.occluders();
     for (const Light& light : scene.snapshot.lights) {
         LightOnRay on;
         on.name = light.name, on.kind = light.kind, on.shadows = light.shadows;
         on.points = static_cast<int>(scene.points_of(light));
-        on.sampled = light.shadows && occluders && occluders->has_alpha();
+        const auto& casters = shadow_casters(light, scene.snapshot);
+        on.sampled = casters && casters->has_alpha();
         story.lights.push_back(std::move(on));
     }
     for (const Medium& medium : scene.snapshot.media) story.media.push_back({medium.name, 0});

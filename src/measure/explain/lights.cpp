@@ -91,13 +91,14 @@ LightOnPart light_on(const RayScene& scene, const RayPart& part, size_t index) {
     const Light& light = scene.fog.lights[index];
     const uint32_t count = scene.points_of(light);
     LightOnPart on;
+    on.light = index;
     for (uint32_t k = 0; k < count; ++k) on.points.push_back(light_point(part.batch, 0, light, index, k, count));
 
     std::vector<Change> changes{{0, 0, 0}, {part.ray.t_max, 0, 0}};
     find_light(light, on.points[0], part.ray, nullptr, scene.fog.media, on.along);
     for (const Interval<double>& reached : on.along.lit)
         changes.push_back({reached.low, 0, 1}), changes.push_back({reached.high, 0, -1});
-    const ShadowSlices* slices = scene.occluders() ? &scene.occluders()->shadow_slices() : nullptr;
+    const ShadowSlices* slices = scene.casters(index) ? &scene.casters(index)->shadow_slices() : nullptr;
     LightAlong along;
     for (const LightPoint& point : on.points) {
         find_light(light, point, part.ray, slices, scene.fog.media, along);
@@ -130,7 +131,7 @@ void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_
         const size_t points = std::min(on.points.size(), blocker_points);
         float through = 0;
         for (size_t p = 0; p < points; ++p)
-            through += scene.occluders()->transmission(
+            through += scene.casters(on.light)->transmission(
                 ray_to(on.points[p], point_at(part.ray, step.middle() - part.start)), 0);
         through /= static_cast<float>(points);
         if (!(through < 1)) continue;
@@ -155,7 +156,8 @@ void name_blockers(const RayScene& scene, const RayPart& part, LightOnPart& on) 
         for (int i = 0; i < blocker_places; ++i) {
             const double t = stretch.low + (stretch.high - stretch.low) * (i + 0.5) / blocker_places;
             for (size_t p = 0; p < std::min(on.points.size(), blocker_points); ++p) {
-                const int instance = blocking_instance(*scene.occluders(), ray_to(on.points[p], point_at(part.ray, t)));
+                const int instance =
+                    blocking_instance(*scene.casters(on.light), ray_to(on.points[p], point_at(part.ray, t)));
                 if (instance < 0) continue;
                 const std::string name = name_of_instance(scene.snapshot, instance);
                 const auto known = std::ranges::find(counts, name, &std::pair<int, std::string>::second);

@@ -16,7 +16,7 @@ struct RayScene {
     std::vector<LightDepth> depths; // of every light, in that fog
     const ExplainOptions& options;
 
-    const Occluders* occluders() const { return snapshot.occluders.get(); }
+    const Occluders* casters(size_t light) const { return shadow_casters(snapshot.lights[light], snapshot).get(); }
     // Points of a light that are asked for its shadows.
     uint32_t points_of(const Light& light) const {
         return is_soft(light) ? static_cast<uint32_t>(truth.terms.light_points) : 1;
@@ -34,6 +34,7 @@ struct RayPart {
 
 // A light along one part of the ray.
 struct LightOnPart {
+    size_t light = 0;                 // of the snapshot
     LightAlong along;                 // of its first point
     std::vector<LightPoint> points;   // that cast its shadows
     std::vector<LightStretch> shares; // exact: of how many of its points the light comes

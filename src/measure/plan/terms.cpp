@@ -115,15 +115,15 @@ struct Terms {
 };
 
 void add_shadows(Terms& terms) {
-    const bool blocked = terms.snapshot.occluders && !terms.snapshot.occluders->empty();
     for (size_t i = 0; i < terms.snapshot.lights.size(); ++i) {
         const Light& light = terms.snapshot.lights[i];
         Term term{"shadows", light.name, "left out"};
+        const bool blocked = shadow_casters(light, terms.snapshot) != nullptr;
         if (!light.shadows)
             term.why = "the scene says it casts none";
         else if (!blocked)
             term.why = "there is nothing that could cast them";
-        terms.add(term, light.shadows && blocked ? infinity : 0, &Terms::usual, [&] {
+        terms.add(term, blocked ? infinity : 0, &Terms::usual, [&] {
             Variant variant = terms.changed();
             variant.snapshot.lights[i].shadows = false;
             return variant;

@@ -84,7 +84,7 @@ BeamCard cone_card(const LightView& view, const std::vector<Cell>& cells) {
 void place_for(const Snapshot& snapshot, int index, const BillboardSettings& settings, std::vector<BeamCard>& cards,
                float& open) {
     const Light& light = snapshot.lights[index];
-    const bool blocked = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+    const bool blocked = shadow_casters(light, snapshot) != nullptr;
     if (settings.cards == 0 || (!blocked && !has_cone(light))) return;
     const Openings openings = find_openings(light, snapshot);
     open = openings.open;
@@ -147,7 +147,7 @@ CacheKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
     CacheKey key;
     key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.extent).add(snapshot.lights.size());
     for (const Light& light : snapshot.lights) {
-        key.add(light).add(light.name.size());
+        key.add(light).add(light.name.size()).add(shadow_casters(light, snapshot));
         key.bits += light.name;
     }
     for (const Medium& medium : snapshot.media) key.add(medium.world_bounds);

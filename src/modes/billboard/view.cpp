@@ -16,8 +16,14 @@ vec3 octahedral_direction(float x, float y) {
     return glm::normalize(d);
 }
 
-Box shown(const Snapshot& snapshot) {
-    Box box = snapshot.occluders && !snapshot.occluders->empty() ? snapshot.occluders->bounds() : snapshot.bounds;
+// What ends the beams of a light: what shadows it, or all surfaces.
+const Occluders* ends_of(const Light& light, const Snapshot& snapshot) {
+    return (light.shadows ? shadow_casters(light, snapshot) : snapshot.occluders).get();
+}
+
+Box shown(const Light& light, const Snapshot& snapshot) {
+    const Occluders* ends = ends_of(light, snapshot);
+    Box box = ends && !ends->empty() ? ends->bounds() : snapshot.bounds;
     Box fog;
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     if (!fog.empty()) box.low = glm::max(box.low, fog.low), box.high = glm::min(box.high, fog.high);
@@ -58,7 +64,7 @@ int LightView::neighbour(int cell, int dx, int dy) const {
 
 LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level) {
     LightView view{&light, n};
-    const Box box = shown(snapshot);
+    const Box box = shown(light, snapshot);
     view.reach = 2 * glm::length(snapshot.bounds.size()) + 0.1f * snapshot.extent;
     vec3 u, v;
     make_frame(light.direction, u, v);
@@ -85,6 +91,7 @@ LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool l
 
 std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
     std::vector<Cell> cells(static_cast<size_t>(view.n) * view.n);
+    const Occluders* ends = ends_of(*view.light, snapshot);
     const int packets = static_cast<int>((cells.size() + 15) / 16);
     parallel_for(packets, [&](int64_t packet) {
         Ray rays[16];
@@ -92,10 +99,10 @@ std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
         const int first = static_cast<int>(packet) * 16;
         const int count = std::min(16, static_cast<int>(cells.size()) - first);
         for (int i = 0; i < count; ++i) rays[i] = view.ray(first + i);
-        if (snapshot.occluders) snapshot.occluders->closest({rays, size_t(count)}, 0, hits);
+        if (ends) ends->closest({rays, size_t(count)}, 0, hits);
         for (int i = 0; i < count; ++i) {
             Cell& cell = cells[first + i];
-            cell.hit = snapshot.occluders ? std::min(hits.t[i], view.reach) : view.reach;
+            cell.hit = ends ? std::min(hits.t[i], view.reach) : view.reach;
             cell.from = cell.hit;
             for (const Medium& medium : snapshot.media) {
                 const Interval<float> in = clip(medium.world_bounds, rays[i].origin, rays[i].direction, {0, cell.hit});

@@ -21,7 +21,7 @@ bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light)
             const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
             const LightSample at = arrival(light, point);
             if (max_component(at.irradiance) <= 0) continue;
-            if (snapshot.occluders->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
+            if (shadow_casters(light, snapshot)->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
         }
     }
     return false;
@@ -33,7 +33,7 @@ void add_light(const View& view, const Snapshot& snapshot, const Light& light, c
         limitations.push_back({severity, &kind, Subject::light, light.name});
     };
     const bool sun = is_distant(light), spot = has_cone(light);
-    const bool shadows = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+    const bool shadows = shadow_casters(light, snapshot) != nullptr;
     if (shadows && sun && is_shadowed(view, snapshot, light))
         add(Severity::wrong, limitation::sun_without_shadows);
     else if (shadows)

@@ -27,7 +27,7 @@ struct FroxelScene {
     // With FroxelVisibility::intervals: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
-    ShadowSlices slices;
+    std::vector<const ShadowSlices*> slices;    // null where there are none; the snapshot's
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 
     NearLight near(size_t light) const { return light < nears.size() ? nears[light] : NearLight{}; }

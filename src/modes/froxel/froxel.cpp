@@ -53,8 +53,8 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
         scene.cones.push_back(cone_falloff(light));
     }
     scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
-    if (scene.settings.visibility != FroxelVisibility::intervals || !snapshot.occluders) return;
-    if (snapshot.occluders->has_alpha()) scene.settings.visibility = FroxelVisibility::rays;
+    if (scene.settings.visibility == FroxelVisibility::intervals && has_alpha_shadows(snapshot))
+        scene.settings.visibility = FroxelVisibility::rays;
 }
 
 // The tiles as the pixels of a picture of their own.
@@ -82,10 +82,11 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
     constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
     for (const Light& light : scene.snapshot.lights) {
-        scene.views.emplace_back();
-        if (!light.shadows) continue;
+        scene.views.emplace_back(), scene.slices.push_back(nullptr);
+        const auto& casters = shadow_casters(light, scene.snapshot);
+        if (!casters) continue;
         if (is_soft(light) && spread) {
-            scene.slices = occluders->shadow_slices();
+            scene.slices.back() = &casters->shadow_slices();
             continue;
         }
         const std::shared_ptr<const ShadowVolumes> volumes = cached_shadow_volumes(scene.snapshot, light);

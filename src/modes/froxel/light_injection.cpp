@@ -97,8 +97,7 @@ using PathPacket = std::vector<Interval<double>>[16];
 void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, PathPacket& lit) {
     for (std::vector<Interval<double>>& stretches : lit) stretches.clear();
     if (!lines.active) return;
-    const bool shadows = scene.snapshot.lights[light].shadows;
-    if (shadows && light < scene.views.size() && scene.views[light]) {
+    if (light < scene.views.size() && scene.views[light]) {
         static thread_local std::vector<ShadowCrossing> crossings;
         ShadowViewRays rays;
         Interval<double> ranges[16];
@@ -119,7 +118,8 @@ void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, 
     rays.clear(), points.clear();
     for (size_t lane = 0; lane < 16; ++lane)
         if (lines.active >> lane & 1) rays.push_back(lines.rays[lane]), points.push_back(lines.points[lane]);
-    const ShadowSlices near = shadows ? coherent_slices(scene.slices, rays, points) : ShadowSlices{};
+    const ShadowSlices* slices = light < scene.slices.size() ? scene.slices[light] : nullptr;
+    const ShadowSlices near = slices ? coherent_slices(*slices, rays, points) : ShadowSlices{};
     static thread_local PathPacket found;
     find_lit(near, rays, points, found);
     for (size_t lane = 0, i = 0; lane < 16; ++lane)

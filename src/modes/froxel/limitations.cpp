@@ -58,7 +58,7 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
         limitations.push_back({severity, &kind, Subject::light, light.name, amounts});
     };
     const bool fine = settings.tile == 1 && settings.depth_slices >= 256;
-    const bool shadows = light.shadows && snapshot.occluders && !snapshot.occluders->empty();
+    const bool shadows = shadow_casters(light, snapshot) != nullptr;
     if (settings.visibility == FroxelVisibility::off && light.shadows)
         add(Severity::wrong, limitation::visibility_off);
     else if (shadows)
@@ -101,7 +101,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
     if (std::ranges::any_of(snapshot.media, unbounded))
         limitations.push_back({Severity::info, &limitation::few_far_slices, Subject::setting, "froxel.depth_slices"});
-    if (froxel.visibility == FroxelVisibility::intervals && snapshot.occluders && snapshot.occluders->has_alpha())
+    if (froxel.visibility == FroxelVisibility::intervals && has_alpha_shadows(snapshot))
         limitations.push_back({Severity::info, &limitation::rays_for_alpha, Subject::setting, "froxel.visibility"});
     return limitations;
 }

@@ -79,9 +79,8 @@ FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid,
         shadow.t_min[i] = 0, shadow.t_max[i] = ray.t_max;
         shadow.active[i] = weight[i] > 0 ? -1 : 0, visible[i] = 1;
     }
-    const Occluders* occluders = scene.snapshot.occluders.get();
-    if (light.shadows && occluders && !occluders->empty() && scene.settings.visibility != FroxelVisibility::off)
-        occluders->transmission(shadow, visible);
+    const auto& occluders = shadow_casters(light, scene.snapshot);
+    if (occluders && scene.settings.visibility != FroxelVisibility::off) occluders->transmission(shadow, visible);
 
     FroxelLightSample result;
     for (size_t i = 0; i < 16; ++i) {

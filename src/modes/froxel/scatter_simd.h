@@ -81,8 +81,8 @@ Mask16 near_lanes(const Fill& fill, size_t index, const FroxelLanes& lanes, cons
 Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const LightSamples& plain,
                     const Mask16& by_rays) {
     const Light& light = fill.scene.snapshot.lights[index];
-    const Occluders* occluders = fill.scene.snapshot.occluders.get();
-    if (!light.shadows || !occluders || occluders->empty()) return 1.0f;
+    const auto& occluders = shadow_casters(light, fill.scene.snapshot);
+    if (!occluders) return 1.0f;
     if (fill.scene.settings.visibility == FroxelVisibility::off) return 1.0f;
     Sample2 places[16];
     const bool soft = is_soft(light) && fill.spreads();

@@ -148,7 +148,7 @@ void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& 
         rays.dx[i] = float(direction.x), rays.dy[i] = float(direction.y), rays.dz[i] = float(direction.z);
         rays.t_min[i] = 0, rays.t_max[i] = static_cast<float>(end * 0.9999);
     }
-    on.frame.snapshot.occluders->transmission(rays, share);
+    shadow_casters(*on.scratch.along.light, on.frame.snapshot)->transmission(rays, share);
 }
 
 // Adds the pending points to the sum, dimmed by the fog between them and the light.
@@ -157,8 +157,8 @@ void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum)
     alignas(64) float depth[16] = {}, share[16];
     for (int i = 0; i < 16; ++i) pending.active[i] = i < pending.count ? -1 : 0, share[i] = 1;
     const LightAlong& along = on.scratch.along;
-    const Occluders* occluders = on.frame.snapshot.occluders.get();
-    if (along.light->shadows && occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
+    const auto& occluders = shadow_casters(*along.light, on.frame.snapshot);
+    if (occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
     light_depths(on.frame.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
     for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
     on.nodes += pending.count;
@@ -233,16 +233,18 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
 dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
     const SingleScattering& frame = on.frame;
     const Light& light = frame.snapshot.lights[light_index];
-    const Occluders* occluders = frame.snapshot.occluders.get();
-    const bool apart = light.shadows && occluders && occluders->has_alpha();
+    const auto& occluders = shadow_casters(light, frame.snapshot);
+    const bool apart = occluders && occluders->has_alpha();
+    static const ShadowSlices none;
+    const ShadowSlices* slices = occluders ? &occluders->shadow_slices() : &none;
     const uint32_t count = is_soft(light) ? static_cast<uint32_t>(frame.light_points) : 1;
     std::vector<LitPart>& lit = on.scratch.lit;
     std::vector<LitEnd>& ends = on.scratch.ends;
     dvec3 sum(0);
     ends.clear();
     for (uint32_t k = 0; k < count; ++k) {
-        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, &frame.slices,
-                   frame.snapshot.media, on.scratch.along);
+        find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, slices, frame.snapshot.media,
+                   on.scratch.along);
         lit.clear();
         for (const Interval<double>& stretch : on.scratch.along.lit) {
             lit.push_back({stretch, 1.0 / count});

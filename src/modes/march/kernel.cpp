@@ -81,7 +81,8 @@ Floats visible_share(const SingleScattering& frame, const Light& light, const Po
     const auto key = [&](size_t lane) {
         return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
     };
-    return share_by_rays(*frame.snapshot.occluders, light, points.position, light_at, wanted, frame.light_points, key);
+    return share_by_rays(*shadow_casters(light, frame.snapshot), light, points.position, light_at, wanted,
+                         frame.light_points, key);
 }
 
 // Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.

@@ -15,7 +15,7 @@ namespace {
 // Lights whose shadows a setting leaves out, or finds otherwise than it says.
 void add_visibility(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     const Visibility visibility = settings.march.visibility;
-    const bool alpha = snapshot.occluders && snapshot.occluders->has_alpha();
+    const bool alpha = has_alpha_shadows(snapshot);
     if (visibility == Visibility::off)
         for (const Light& light : snapshot.lights)
             if (light.shadows)
@@ -25,12 +25,13 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
             {Severity::info, &limitation::sampled_alpha_shadows, Subject::setting, "march.visibility"});
     if (visibility == Visibility::intervals && !alpha)
         for (const Light& light : snapshot.lights)
-            if (casts(light, snapshot) && exact_shadows(light, *snapshot.occluders) == ShadowsBy::rays)
+            if (const auto& casters = shadow_casters(light, snapshot);
+                casters && exact_shadows(light, *casters) == ShadowsBy::rays)
                 limitations.push_back({Severity::info,
                                        &limitation::sampled_shadows,
                                        Subject::light,
                                        light.name,
-                                       {static_cast<double>(snapshot.occluders->triangle_count())}});
+                                       {static_cast<double>(casters->triangle_count())}});
     if (visibility == Visibility::maps) add_map_shadows(view, snapshot, settings, limitations);
 }
 }

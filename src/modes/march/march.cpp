@@ -47,7 +47,9 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
-    const auto by = [&](const Light& light) { return shadows_by(march.visibility, light, *snapshot.occluders); };
+    const auto by = [&](const Light& light) {
+        return shadows_by(march.visibility, light, *shadow_casters(light, snapshot));
+    };
     add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
     add_steps(march, !intervals && !exact, *fog);
     if (march.visibility == Visibility::maps) {

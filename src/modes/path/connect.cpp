@@ -8,6 +8,27 @@
 
 namespace tyndall {
 namespace {
+// Shadow rays through the surfaces that shadow each light: all, or for some lights a set of them.
+void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connections, Occluders::ShadowRays& rays,
+                   float* shares) {
+    const auto set_of = [&](size_t i) {
+        const int light = i < connections.size() ? connections[i].light_index : -1;
+        return light < 0 ? -1 : snapshot.lights[static_cast<size_t>(light)].casters;
+    };
+    int32_t wanted[16];
+    std::copy_n(rays.active, 16, wanted);
+    for (int set = -1; set < static_cast<int>(snapshot.casters.size()); ++set) {
+        const Occluders* surfaces =
+            set < 0 ? snapshot.occluders.get() : snapshot.casters[static_cast<size_t>(set)].occluders.get();
+        bool any = false;
+        for (size_t i = 0; i < 16; ++i) {
+            rays.active[i] = set_of(i) == set ? wanted[i] : 0;
+            any |= rays.active[i] != 0;
+        }
+        if (any && surfaces && !surfaces->empty()) surfaces->transmission(rays, shares);
+    }
+}
+
 void connect_packet(const PathTracer& tracer, std::span<Connection> connections, const RayBatch& batch,
                     std::span<Scatter> results) {
     float visibility[16];
@@ -30,7 +51,6 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
 }
 
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility) {
-    const Occluders* occluders = tracer.snapshot.occluders.get();
     alignas(64) float shares[16];
     Occluders::ShadowRays rays{};
     bool any = false;
@@ -45,7 +65,7 @@ void find_visibility(const PathTracer& tracer, std::span<const Connection> conne
         rays.dx[i] = c.shadow.x, rays.dy[i] = c.shadow.y, rays.dz[i] = c.shadow.z;
         rays.t_max[i] = c.shadow_length;
     }
-    if (any && occluders && !occluders->empty()) occluders->transmission(rays, shares);
+    if (any) pass_surfaces(tracer.snapshot, connections, rays, shares);
     std::copy_n(shares, connections.size(), visibility);
 }
 

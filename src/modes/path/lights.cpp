@@ -3,6 +3,7 @@
 
 #include "scene/light.h"
 #include "scene/light_reach.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
@@ -90,10 +91,12 @@ LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
     });
 }
 
-LightPick pick_light(const Snapshot& snapshot, vec3 point, vec3 normal, float u) {
+LightPick pick_light(const Snapshot& snapshot, const SurfacePoint& surface, float u) {
     return pick(snapshot.lights.size(), u, [&](size_t i) {
-        LightSample arriving = arrival(snapshot.lights[i], point);
-        arriving.irradiance *= snapshot.lights[i].surface_scale * std::max(0.0f, glm::dot(normal, arriving.to_light));
+        const Light& light = snapshot.lights[i];
+        LightSample arriving = arrival(light, surface.position);
+        const float cosine = std::max(0.0f, glm::dot(surface.normal, arriving.to_light));
+        arriving.irradiance *= is_lit(light, snapshot, surface.instance) ? light.surface_scale * cosine : 0.0f;
         return arriving;
     });
 }

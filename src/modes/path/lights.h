@@ -9,6 +9,7 @@
 namespace tyndall {
 struct Light;
 struct Snapshot;
+struct SurfacePoint;
 
 // One light along a line: distances are picked even in angle around a local light, even in
 // length under the sun.
@@ -32,7 +33,7 @@ struct LightPick {
     vec3 irradiance{0}; // volume_scale or surface_scale and cosine included
     vec3 to_light{0};
 };
-LightPick pick_light(const Snapshot& snapshot, vec3 point, float u);              // in fog
-LightPick pick_light(const Snapshot& snapshot, vec3 point, vec3 normal, float u); // on a surface
-float pick_chance(const Snapshot& snapshot, vec3 point, int light);               // in fog
+LightPick pick_light(const Snapshot& snapshot, vec3 point, float u);                  // in fog
+LightPick pick_light(const Snapshot& snapshot, const SurfacePoint& surface, float u); // on a surface
+float pick_chance(const Snapshot& snapshot, vec3 point, int light);                   // in fog
 }

@@ -31,8 +31,7 @@ float target_density(const PathTracer& tracer, const Segment& line, const Surfac
 
 void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, float share) {
     const vec3 reflected = surface.base_color * (share / pi);
-    const LightPick pick =
-        pick_light(walk.snapshot, surface.position, surface.normal, line.numbers(use_surface_light).x);
+    const LightPick pick = pick_light(walk.snapshot, surface, line.numbers(use_surface_light).x);
     if (pick.chance > 0) {
         Connection connection = connection_to_light(walk.tracer, surface.position, pick.light, pick.to_light,
                                                     line.numbers(use_surface_soft));

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/shrink.h"
+#include "scene/light.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -28,8 +29,9 @@ void set_ray(Occluders::ShadowRays& rays, int i, const Camera& camera, const Ray
     rays.active[i] = -1;
 }
 
-void see_through(const Snapshot& snapshot, const Occluders::ShadowRays& rays, float share[16]) {
-    const Occluders* occluders = snapshot.occluders.get();
+// `light`: what shadows it hides its glow; a light without shadows is hidden by all surfaces.
+void see_through(const Snapshot& snapshot, const Light& light, const Occluders::ShadowRays& rays, float share[16]) {
+    const auto& occluders = light.shadows ? shadow_casters(light, snapshot) : snapshot.occluders;
     if (occluders && !occluders->empty()) return occluders->transmission(rays, share);
     std::fill_n(share, 16, 1.0f);
 }
@@ -53,7 +55,7 @@ BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurL
                 set_ray(rays, i, view.camera, camera_ray(view.camera, size, position), light.depth);
             }
             if (!any) continue;
-            see_through(snapshot, rays, share);
+            see_through(snapshot, snapshot.lights[light.index], rays, share);
             for (int i = 0; i < std::min(16, size.x - x0); ++i)
                 glow.row(0, y)[x0 + i] = rays.active[i] ? share[i] * falloff[i] : 0;
         }

@@ -19,7 +19,7 @@ void add_few_steps(const View& view, const Snapshot& snapshot, int steps, Limita
         const auto add = [&](const LimitationKind& kind) {
             limitations.push_back({Severity::degraded, &kind, Subject::light, light.name, {double(steps)}});
         };
-        if (casts(light, snapshot)) add(limitation::grainy_edges);
+        if (shadow_casters(light, snapshot)) add(limitation::grainy_edges);
         if (is_distant(light)) continue;
         const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
         if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))

@@ -30,10 +30,8 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
 
 void add_shadows(const Snapshot& snapshot, Limitations& limitations) {
     constexpr size_t many_edges = 20000;
-    bool shadows = false;
     for (const Light& light : snapshot.lights) {
-        if (!casts(light, snapshot)) continue;
-        shadows = true;
+        if (!shadow_casters(light, snapshot)) continue;
         if (is_soft(light))
             limitations.push_back({Severity::degraded, &limitation::hard_shadows, Subject::light, light.name});
         const size_t edges = cached_shadow_volumes(snapshot, light)->sides.size();
@@ -44,7 +42,7 @@ void add_shadows(const Snapshot& snapshot, Limitations& limitations) {
                                    light.name,
                                    {static_cast<double>(edges)}});
     }
-    if (shadows && snapshot.occluders->has_alpha())
+    if (has_alpha_shadows(snapshot))
         limitations.push_back({Severity::wrong, &limitation::no_alpha_shadows, Subject::surfaces});
 }
 }

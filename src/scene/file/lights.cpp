@@ -48,7 +48,7 @@ void read_placement(const Field& field, dvec3 origin, LightSource& light) {
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
 }
 
-void read_fields(const Field& field, LightSource& light) {
+void read_fields(const Field& field, const Scene& scene, LightSource& light) {
     const auto number = [&](const char* name, Keyed<float>& value, Keyed<float> (*read)(const Field&)) {
         if (const Field given = field.member(name)) value = read(given);
     };
@@ -62,6 +62,8 @@ void read_fields(const Field& field, LightSource& light) {
     number("angle", light.angle, keyed_degrees);
     if (const Field range = field.member("range")) light.range = read_number(range);
     light.shadows = field.json->boolean_or("shadows", light.shadows);
+    if (const Field link = field.member("light_link")) light.lit = read_link(link, scene);
+    if (const Field link = field.member("shadow_link")) light.casters = read_link(link, scene);
     if (has_cone(light) && !cones_fit(light))
         refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
                "outer_cone must not be less than inner_cone, at any moment");
@@ -117,7 +119,7 @@ void read_lights(const Field& root, Scene& scene) {
         check_fields(field, traits_of(light.kind));
         light.entry = field.pointer;
         read_placement(field, scene.origin, light);
-        read_fields(field, light);
+        read_fields(field, scene, light);
         if (known)
             *known = light;
         else

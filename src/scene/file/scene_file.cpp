@@ -78,6 +78,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
     }
     scene.origin = far_origin(root, scene);
     read_cameras(root, scene);
+    read_objects(root, scene);
     read_lights(root, scene);
     read_media(root, scene);
     read_background(root, scene);

@@ -8,10 +8,17 @@
 
 namespace tyndall {
 void read_cameras(const Field& root, Scene& scene);
-void read_lights(const Field& root, Scene& scene); // after the glTF: entries may change its lights
+void read_objects(const Field& root, Scene& scene); // after the glTF
+void read_lights(const Field& root, Scene& scene);  // after the glTF: entries may change its lights
 void read_media(const Field& root, Scene& scene);
 void read_background(const Field& root, Scene& scene);
 void read_billboards(const Field& root, Scene& scene); // after the lights: each names one
+
+// The instances of an object: of a node and all below it, or else of a mesh; empty for names of neither.
+std::vector<int> instances_named(const Scene& scene, const std::string& name);
+
+// Reads a link of a light: of each instance, whether it belongs to it.
+std::vector<bool> read_link(const Field& field, const Scene& scene);
 
 // Whether the inner cone never exceeds the outer one, at their keys.
 bool cones_fit(const LightSource& light);

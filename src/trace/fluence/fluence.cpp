@@ -146,13 +146,22 @@ RayStrata strata_by_pilot(const Snapshot& snapshot, const LightPathRules& rules,
     return strata;
 }
 
+// Which surfaces a light shines on and is shadowed by.
+void add_links(const Light& light, const Snapshot& snapshot, CacheKey& key) {
+    key.add(light.lit), key.add(light.casters);
+    if (light.casters >= 0) key.add(snapshot.casters[static_cast<size_t>(light.casters)].occluders);
+    if (light.lit < 0) return;
+    for (const bool instance : snapshot.lit[static_cast<size_t>(light.lit)]) key.add(instance);
+}
+
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     CacheKey key;
     key.add(seed);
     key.add(snapshot.occluders).add(snapshot.bounds);
     key.add(settings.orders).add(settings.resolution).add(settings.paths);
     for (const Light& light : snapshot.lights)
-        key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale);
+        add_links(light, snapshot,
+                  key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale));
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
         key.add(medium.density.kind)

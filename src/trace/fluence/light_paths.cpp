@@ -109,17 +109,20 @@ void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float d
     turn(walk, walker, {point, sample_phase(optics.phase, walker.ray.direction, walker.pair())}, share);
 }
 
-// Lambert. Light that a surface does not cut off passes and is reflected as well, in half of the paths each.
+// Lambert. Light that a surface does not cut off passes and is reflected as well, in half of the paths each; what does
+// not shine on a surface is not reflected.
 void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, float distance) {
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
-    const bool through = walker.order == 0 && !light.shadows;
-    const float reflecting = through ? 0.5f : surface.alpha;
+    const bool lit = walker.order > 0 || is_lit(light, walk.snapshot, surface.instance);
+    const bool through = walker.order == 0 && !shadows_light(light, walk.snapshot, surface.instance);
+    const float reflecting = !through ? surface.alpha : lit ? 0.5f : 0.0f;
     if (walker.random.next() >= reflecting) {
-        if (through) walker.share *= 2.0f;
+        if (through && lit) walker.share *= 2.0f;
         const vec3 point = walker.ray.at(distance);
         walker.ray.origin = point + walker.ray.direction * std::max(shadow_offset(point), 4e-6f * distance);
         return;
     }
+    if (!lit) return void(walker.walking = false);
     const float facing = std::abs(glm::dot(surface.face_normal, walker.ray.direction));
     const float shaded = std::max(0.0f, -glm::dot(surface.normal, walker.ray.direction));
     vec3 share = facing > 0 ? surface.base_color * (shaded / facing) : vec3(0);

@@ -26,10 +26,11 @@ std::shared_ptr<const OccluderSet> shared_or_made(const Scene& scene, std::vecto
 Occluders::Occluders() : impl_(std::make_unique<Impl>()) {}
 Occluders::~Occluders() = default;
 
-std::shared_ptr<const Occluders> Occluders::make(const Scene& scene, double seconds, const Occluders* previous) {
+std::shared_ptr<const Occluders> Occluders::make(const Scene& scene, double seconds, const Occluders* previous,
+                                                 const std::vector<bool>* only) {
     std::vector<int> still, moving;
     for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i)
-        if (has_triangles(scene, scene.instances[i]))
+        if (has_triangles(scene, scene.instances[i]) && (!only || (*only)[static_cast<size_t>(i)]))
             (is_moving(scene, scene.instances[i].node) ? moving : still).push_back(i);
     const Impl* before = previous && previous->impl_->scene == &scene ? previous->impl_.get() : nullptr;
     std::shared_ptr<Occluders> result(new Occluders);
@@ -80,6 +81,7 @@ SurfacePoint Occluders::surface(const Ray& ray, const Hits& hits, int lane) cons
 
     // Both normals turn to the viewer: every surface is two-sided.
     SurfacePoint point;
+    point.instance = geometry.instance;
     point.position = (1 - u - v) * a + u * b + v * c;
     point.face_normal = vec3(glm::normalize(glm::cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a))));
     if (glm::dot(point.face_normal, ray.direction) > 0) point.face_normal = -point.face_normal;

@@ -28,6 +28,7 @@ struct SurfacePoint {
     vec3 base_color{1};
     vec3 emission{0};
     float alpha = 1;
+    int instance = -1; // of the scene
 };
 
 // A triangle that casts shadows, in world space.
@@ -47,8 +48,10 @@ class Occluders {
 public:
     // World-space triangles of every instance at a moment. Non-finite and degenerate triangles are left out and
     // counted. Shares geometry that does not move with `previous`, which must be of the same, unchanged Scene. The
-    // Scene must outlive the result. Throws Error (out_of_memory, internal).
-    static std::shared_ptr<const Occluders> make(const Scene& scene, double seconds, const Occluders* previous);
+    // Scene must outlive the result. With `only`, a flag for every instance, of those alone. Throws Error
+    // (out_of_memory, internal).
+    static std::shared_ptr<const Occluders> make(const Scene& scene, double seconds, const Occluders* previous,
+                                                 const std::vector<bool>* only = nullptr);
     ~Occluders();
 
     bool empty() const;

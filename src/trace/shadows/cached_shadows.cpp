@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 CacheKey shadow_key(const Snapshot& snapshot, const Light& light) {
     CacheKey key;
-    key.add(snapshot.occluders).add(light);
+    key.add(shadow_casters(light, snapshot)).add(light);
     return key;
 }
 }
@@ -24,8 +24,9 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
 }
 
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light) {
-    return cached(snapshot, shadow_key(snapshot, light),
-                  [&] { return make_shadow_volumes(snapshot.occluders->shadow_mesh(), center_of(light)); });
+    return cached(snapshot, shadow_key(snapshot, light), [&] {
+        return make_shadow_volumes(shadow_casters(light, snapshot)->shadow_mesh(), center_of(light));
+    });
 }
 
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,

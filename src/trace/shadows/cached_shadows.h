@@ -10,7 +10,7 @@ using ShadowMaps = std::vector<std::shared_ptr<const ShadowMap>>;
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
                                                    const ShadowMapOptions& options);
 
-// Of the light's centre. The snapshot has occluders.
+// Of the light's centre. Surfaces shadow the light.
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light);
 
 // The same as the view's camera sees them; see view_from().

@@ -5,6 +5,7 @@
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
+#include "trace/enclosed_lights.h"
 #include "trace/frame_cache.h"
 #include "viewer/painting/painter_show.h"
 
@@ -38,6 +39,8 @@ void load(Painter& painter, const Request& request) {
     }
     painter.picture.times.load = steady_seconds() - start + ahead_seconds;
     painter.picture.notes = painter.snapshot.notes;
+    if (!same_scene)
+        for (std::string& line : enclosed_lights(painter.snapshot)) painter.picture.notes.push_back(std::move(line));
 }
 
 void note_times(Painter& painter, const FrameStats& stats) {

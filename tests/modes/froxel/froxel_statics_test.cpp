@@ -26,7 +26,7 @@ FroxelScene scene_of(const Snapshot& snapshot, bool amortise = false) {
         scene.depths.push_back(make_light_depth(scene.snapshot, light, LightTransmittance::grid, 32));
         scene.cones.push_back(cone_falloff(light)), scene.columns.emplace_back();
     }
-    scene.slices = make_shadow_slices(snapshot.occluders->shadow_triangles());
+    scene.slices.assign(snapshot.lights.size(), &snapshot.occluders->shadow_slices());
     return scene;
 }
 

@@ -91,6 +91,18 @@ const Mistake mistakes[] = {
      "/lights/1/name", "already"},
     {R"("lights": [{"type": "spot", "intensity": 1, "position": {"keys": [[0, [0, 1, 0]], [1, [1, 1, 0]]], "loop": true}, "target": {"keys": [[0, [0, 0, 0]], [2, [1, 0, 0]]], "loop": true}}])",
      "/lights/0/target", "same time"},
+    // Objects and links.
+    {R"("objects": [{"name": "bulb", "casts_shadows": false}])", "/objects", "glTF"},
+    {R"("objects": [{"name": "bulb"}])", "/objects/0", "casts_shadows"},
+    {R"("objects": [{"name": "bulb", "casts_shadow": false}])", "/objects/0", "casts_shadows"},
+    {R"("lights": [{"type": "point", "intensity": 1, "position": [0, 0, 0], "shadow_link": {"include": ["a"]}}])",
+     "/lights/0/shadow_link/include/0", "no object"},
+    {R"("lights": [{"type": "point", "intensity": 1, "position": [0, 0, 0], "light_link": {}}])",
+     "/lights/0/light_link", "either"},
+    {R"("lights": [{"type": "point", "intensity": 1, "position": [0, 0, 0], "light_link": ["a"]}])",
+     "/lights/0/light_link", ""},
+    {R"("lights": [{"type": "point", "intensity": 1, "position": [0, 0, 0], "light_link": {"include": ["a"], "exclude": ["b"]}}])",
+     "/lights/0/light_link", "either"},
     // Fog.
     {R"("media": [{"extinction": 1}])", "/media/0", "type"},
     {R"("media": [{"type": "smoke"}])", "/media/0/type", "homogeneous"},

@@ -1,5 +1,4 @@
 // Where the orthographic pictures of a sun lie.
-#include "trace/occlusion/occluders.h"
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/snapshot.h"
 #include "trace/view_frustum.h"
@@ -102,13 +101,14 @@ ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snaps
 }
 }
 
-void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOptions& options, ShadowMap& map) {
+void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters, const ShadowMapOptions& options,
+                  ShadowMap& map) {
     // Beside what casts shadows all is lit, and only fog in front of the camera is asked for.
     Box fog;
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     if (fog.empty()) return;
-    map.position = snapshot.occluders->bounds().center();
-    Across region = across(map, snapshot.occluders->bounds());
+    map.position = casters.center();
+    Across region = across(map, casters);
     region.cut(across(map, fog));
     const bool bounded = is_finite(fog.low) && is_finite(fog.high);
     Interval<double> range = bounded ? depths(view.camera, fog) : Interval<double>{0, endless};
@@ -116,7 +116,7 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOpt
     if (range.empty()) return;
 
     // Ranges half logarithmic, half even; fog without end is divided where the scene is.
-    Box scene = snapshot.occluders->bounds();
+    Box scene = casters;
     scene.grow(snapshot.bounds);
     const double end =
         std::min(range.high, std::max(depths(view.camera, scene).high, range.low + 0.1 * snapshot.extent));

@@ -93,7 +93,7 @@ void fill_block(const Filling& filling, const ShadowPicture& picture, size_t fac
 }
 
 void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& light, ShadowMap& map) {
-    const Occluders& occluders = *snapshot.occluders;
+    const Occluders& occluders = *shadow_casters(light, snapshot);
     Filling filling{light, occluders, map, glm::transpose(map.world_to_map), occluders.has_alpha(), {}};
     filling.seen = view_frustum(view, snapshot, map.position);
     filling.smallest_cosine = -2;

@@ -56,7 +56,8 @@ ShadowMap fitted_shadow_map(const View& view, const Snapshot& snapshot, const Li
                             const ShadowMapOptions& options) {
     ShadowMap map;
     map.pcf = options.pcf, map.bias = options.bias;
-    if (!light.shadows || !snapshot.occluders || snapshot.occluders->empty()) return map;
+    const auto& occluders = shadow_casters(light, snapshot);
+    if (!occluders) return map;
     if (!is_distant(light)) {
         fit_tangents(light, options, map);
         return map;
@@ -64,7 +65,7 @@ ShadowMap fitted_shadow_map(const View& view, const Snapshot& snapshot, const Li
     const vec3 upward = std::abs(light.direction.y) < 0.999f ? vec3(0, 1, 0) : vec3(0, 0, 1);
     const vec3 u = glm::normalize(glm::cross(upward, light.direction));
     map.world_to_map = glm::transpose(mat3(u, glm::cross(light.direction, u), light.direction));
-    fit_cascades(view, snapshot, options, map);
+    fit_cascades(view, snapshot, occluders->bounds(), options, map);
     return map;
 }
 

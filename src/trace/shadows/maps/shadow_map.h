@@ -73,7 +73,8 @@ ShadowMap fitted_shadow_map(const View& view, const Snapshot& snapshot, const Li
 // Pictures of a sun: what the camera sees of the fog, in ranges that grow with the distance (Zhang et al. 2006), and
 // where anything can shade it. A finer one that would hardly be finer is left out. Texels keep their places and sizes
 // in the world while the camera moves, but for jumps by a fourth of an octave.
-void fit_cascades(const View& view, const Snapshot& snapshot, const ShadowMapOptions& options, ShadowMap& map);
+void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters, const ShadowMapOptions& options,
+                  ShadowMap& map);
 
 // The depths, as far as the view sees fog.
 void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& light, ShadowMap& map);

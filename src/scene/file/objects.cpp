@@ -1,0 +1,80 @@
+// Objects of the glTF as a scene file names them: which of them cast shadows, and the links of lights to them.
+#include "base/text.h"
+#include "scene/file/scene_file.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+// Whether a node is another or stands below it.
+bool is_below(const Scene& scene, int node, int top) {
+    while (node >= 0 && node != top) node = scene.nodes[static_cast<size_t>(node)].parent;
+    return node == top;
+}
+
+std::vector<int> instances_below(const Scene& scene, int top) {
+    std::vector<int> found;
+    for (size_t i = 0; i < scene.instances.size(); ++i)
+        if (is_below(scene, scene.instances[i].node, top)) found.push_back(static_cast<int>(i));
+    return found;
+}
+
+// Of nodes that hold a mesh, and of meshes.
+std::vector<std::string> object_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Instance& instance : scene.instances) {
+        if (instance.node >= 0) names.push_back(scene.nodes[static_cast<size_t>(instance.node)].name);
+        names.push_back(scene.meshes[static_cast<size_t>(instance.mesh)].name);
+    }
+    std::ranges::sort(names);
+    names.erase(std::ranges::unique(names).begin(), names.end());
+    return names;
+}
+
+std::vector<int> instances_of(const Field& name, const Scene& scene) {
+    std::vector<int> found = instances_named(scene, name.json->string);
+    if (found.empty()) refuse(name, unknown_name("object with a mesh", name.json->string, object_names(scene)));
+    return found;
+}
+}
+
+std::vector<int> instances_named(const Scene& scene, const std::string& name) {
+    std::vector<int> found;
+    for (size_t node = 0; node < scene.nodes.size(); ++node) {
+        if (scene.nodes[node].name != name) continue;
+        const std::vector<int> below = instances_below(scene, static_cast<int>(node));
+        found.insert(found.end(), below.begin(), below.end());
+    }
+    if (!found.empty()) return found;
+    for (size_t i = 0; i < scene.instances.size(); ++i)
+        if (scene.meshes[static_cast<size_t>(scene.instances[i].mesh)].name == name)
+            found.push_back(static_cast<int>(i));
+    return found;
+}
+
+void read_objects(const Field& root, Scene& scene) {
+    const Field objects = root.member("objects");
+    if (!objects) return;
+    if (!root.member("gltf")) refuse(objects, "says nothing without a glTF");
+    std::vector<std::string> known;
+    for (size_t i = 0; i < objects.json->items.size(); ++i) {
+        const Field object = objects.item(i), name = object.member("name");
+        if (std::ranges::count(known, name.json->string)) refuse(name, "another object has this name already");
+        known.push_back(name.json->string);
+        for (const int instance : instances_of(name, scene))
+            scene.instances[static_cast<size_t>(instance)].casts_shadows =
+                object.json->boolean_or("casts_shadows", true);
+    }
+}
+
+std::vector<bool> read_link(const Field& field, const Scene& scene) {
+    const Field include = field.member("include"), exclude = field.member("exclude");
+    if (static_cast<bool>(include) == static_cast<bool>(exclude)) refuse(field, "needs either include or exclude");
+    std::vector<bool> link(scene.instances.size(), !include);
+    const Field names = include ? include : exclude;
+    for (size_t i = 0; i < names.json->items.size(); ++i)
+        for (const int instance : instances_of(names.item(i), scene))
+            link[static_cast<size_t>(instance)] = static_cast<bool>(include);
+    return link;
+}
+}
