@@ -39,23 +39,33 @@ template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, cons
     }
 }
 
-void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule,
-                        std::vector<Span>& spans) {
-    const BrickPool& pool = *medium.density.bricks;
-    const LocalRay local = local_ray(pool, ray);
-    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
-    const size_t first = spans.size();
-
-    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
-    // the few that are empty: a step there costs less than looking for them on every ray.
-    const double highest = extinction * pool.highest;
-    if (pool.crowded && std::max(varied_rate, highest / rule.optical_depth) * rule.length <= 1) {
-        const Interval<double> inside = clip(pool.local_bounds, local, {0, t_end});
-        if (!inside.empty()) spans.push_back({inside.low, inside.high, highest, varied_rate});
-        return;
+// A stretch in the box of a grid, and where on it density has risen from 0 at the face of entry, and begins to fall
+// again to the face of exit: it does so within a voxel.
+struct GridStretch {
+    Interval<double> whole, within;
+};
+GridStretch grid_stretch(const BrickPool& pool, const LocalRay& ray, double t_end) {
+    constexpr double at_face = 0.01; // voxels
+    const Interval<double> whole = clip(pool.local_bounds, ray, {0, t_end});
+    const dvec3 entry = ray.origin + whole.low * ray.direction, exit = ray.origin + whole.high * ray.direction;
+    const dvec3 low(pool.local_bounds.low), high(pool.local_bounds.high);
+    Interval<double> within = whole;
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool up = ray.direction[axis] > 0;
+        const double voxel = 1 / std::abs(ray.direction[axis]);
+        if ((up ? entry[axis] - low[axis] : high[axis] - entry[axis]) < at_face)
+            within.low = std::max(within.low, whole.low + voxel);
+        if ((up ? high[axis] - exit[axis] : exit[axis] - low[axis]) < at_face)
+            within.high = std::min(within.high, whole.high - voxel);
     }
-    walk_bricks(pool, local, {0, t_end}, [&](ivec3, int64_t at, double low, double high) {
-        const Span span{low, high, extinction * pool.maximum[at], pool.index[at] < 0 ? 0 : varied_rate};
+    return {whole, within};
+}
+
+void append_bricks(const BrickPool& pool, const LocalRay& ray, Interval<double> range, double extinction,
+                   double varied_rate, bool apart, std::vector<Span>& spans) {
+    const size_t first = spans.size();
+    walk_bricks(pool, ray, range, [&](ivec3, int64_t at, double low, double high) {
+        const Span span{low, high, extinction * pool.maximum[at], pool.index[at] < 0 ? 0 : varied_rate, apart};
         const bool joins = spans.size() > first && spans.back().high == low &&
                            spans.back().extinction == span.extinction && spans.back().rate == span.rate;
         if (joins)
@@ -63,6 +73,33 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
         else
             spans.push_back(span);
     });
+}
+
+void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, const StepRule& rule,
+                        std::vector<Span>& spans) {
+    const BrickPool& pool = *medium.density.bricks;
+    const LocalRay local = local_ray(pool, ray);
+    const auto [whole, within] = grid_stretch(pool, local, t_end);
+    if (whole.empty()) return;
+    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
+
+    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
+    // the few that are empty: a step there costs less than looking for them on every ray.
+    const double highest = extinction * pool.highest, rate = std::max(varied_rate, highest / rule.optical_depth);
+    const bool even = pool.crowded && rate * rule.length <= 1;
+    const double longest_step = 1 / std::max(rate, 1.0 / rule.length);
+    const auto append = [&](Interval<double> part, bool apart) {
+        if (even && !part.empty())
+            spans.push_back({part.low, part.high, highest, varied_rate, apart});
+        else if (!part.empty())
+            append_bricks(pool, local, part, extinction, varied_rate, apart, spans);
+    };
+    const Interval<double> in{whole.low, within.low}, out{within.high, whole.high};
+    const bool in_apart = !within.empty() && in.length() < longest_step;
+    const bool out_apart = !within.empty() && out.length() < longest_step;
+    if (in_apart) append(in, true);
+    append({in_apart ? within.low : whole.low, out_apart ? within.high : whole.high}, false);
+    if (out_apart) append(out, true);
 }
 }
 
@@ -123,12 +160,12 @@ void overlay(const std::vector<Span>& first, const std::vector<Span>& second, bo
         const double b_end = b == none ? none : b > low ? b : second[j].high;
         const double high = std::min(a_end, b_end);
         if (a == low && b == low)
-            result.push_back(
-                {low, high, first[i].extinction + second[j].extinction, std::max(first[i].rate, second[j].rate)});
+            result.push_back({low, high, first[i].extinction + second[j].extinction,
+                              std::max(first[i].rate, second[j].rate), first[i].apart || second[j].apart});
         else if (a == low)
-            result.push_back({low, high, first[i].extinction, first[i].rate});
+            result.push_back({low, high, first[i].extinction, first[i].rate, first[i].apart});
         else if (keep_second)
-            result.push_back({low, high, second[j].extinction, second[j].rate});
+            result.push_back({low, high, second[j].extinction, second[j].rate, second[j].apart});
         at = high;
         if (i < first.size() && first[i].high <= at) ++i;
         if (j < second.size() && second[j].high <= at) ++j;

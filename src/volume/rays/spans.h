@@ -10,6 +10,7 @@ struct Span {
     double low = 0, high = 0; // metres along the ray
     double extinction = 0;    // no point of the span exceeds it, 1/m
     double rate = 0;          // steps per metre for other reasons, at least
+    bool apart = false;       // steps end where it begins and ends
 };
 
 inline constexpr double opaque_depth = 64; // transmittance 2e-28

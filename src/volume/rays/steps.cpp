@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-// Spans that touch: steps run through them without regard to their borders.
+// Spans that touch and are not apart: steps run through them without regard to their borders.
 struct Run {
     size_t first = 0, end = 0;
     double cost = 0; // steps it takes, a real number
@@ -73,7 +73,8 @@ void find_runs(const Rates& rates, Scratch& scratch) {
     scratch.rates.clear(), scratch.runs.clear();
     for (size_t i = 0; i < scratch.spans.size(); ++i) {
         const Span& span = scratch.spans[i];
-        if (i == 0 || span.low > scratch.spans[i - 1].high) scratch.runs.push_back({i, i, 0});
+        const Span* before = i ? &scratch.spans[i - 1] : nullptr;
+        if (!before || span.low > before->high || span.apart || before->apart) scratch.runs.push_back({i, i, 0});
         scratch.rates.push_back(rates.of(span));
         scratch.runs.back().end = i + 1;
         scratch.runs.back().cost += (span.high - span.low) * scratch.rates.back();

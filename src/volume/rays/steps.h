@@ -25,7 +25,8 @@ struct StepRule {
 };
 
 // Appends the steps of the ray 0..t_max, ascending and disjoint; together they cover all fog. Steps are equal shares of
-// the local bounds added up, so none is a sliver, and halving every bound halves every step. Left out is what nobody
-// can see: behind optical depth 64 of fog in closed form, height fog thinner than 2^-24, anything beyond 1e12 m.
+// the local bounds added up, so none is a sliver, and halving every bound halves every step. The voxel in which density
+// rises from 0 at a face of a grid's box has a step of its own, where others are longer. Left out is what nobody can
+// see: behind optical depth 64 of fog in closed form, height fog thinner than 2^-24, anything beyond 1e12 m.
 void append_steps(const Ray& ray, std::span<const Medium> media, const StepRule& rule, std::vector<Step>& steps);
 }

@@ -101,6 +101,21 @@ TEST(Steps, BrickDepthConverges) {
     EXPECT_NEAR(fine / exact, 1, 2e-4);
 }
 
+// Fog as dense at the faces of its box as inside, but for the voxel in which samples fall to 0.
+TEST(Steps, LongStepsKnowThatFogEndsWithinAVoxel) {
+    const Medium fog = medium_of(volume_of(ivec3(0), ivec3(39, 23, 31), [](int, int, int) { return 1.0f; }), 0.5f);
+    for (const float voxels : {1.5f, 2.0f, 4.0f, 8.0f}) {
+        StepRule rule;
+        rule.voxels = voxels, rule.optical_depth = 10, rule.length = 50;
+        double marched = 0, exact = 0;
+        for (uint32_t i = 0; i < 200; ++i) {
+            const Ray ray = ray_through(fog.density.bricks->bounds, i);
+            marched += marched_depth(fog, ray, rule), exact += optical_depth(fog, ray);
+        }
+        EXPECT_NEAR(marched / exact, 1, 0.004) << "steps of " << voxels;
+    }
+}
+
 TEST(Steps, CoverAllFog) {
     const std::vector<Medium> media{medium_of(islands(), 0.5f),
                                     homogeneous_medium(0.2f, {vec3(-9, 0, 0), vec3(-4, 9, 9)}),
@@ -109,7 +124,9 @@ TEST(Steps, CoverAllFog) {
     box.grow(media[1].density.bounds), box.grow(media[2].density.bounds);
     for (uint32_t i = 0; i < 300; ++i) {
         const Ray ray = ray_through(box, i);
-        const std::vector<Step> steps = steps_of(ray, media);
+        StepRule rule;
+        rule.voxels = 0.9f;
+        const std::vector<Step> steps = steps_of(ray, media, rule);
         ASSERT_TRUE(ascending(ray, steps));
         size_t at = 0;
         for (int k = 0; k < 1000; ++k) {
@@ -263,9 +280,11 @@ TEST(Steps, NeverMoreThanAllowed) {
     for (const int most : {1, 2, 3, 7, 50}) {
         StepRule rule;
         rule.most = most, rule.voxels = 0.01f;
+        StepRule fine;
+        fine.voxels = 0.5f;
         for (uint32_t i = 0; i < 100; ++i) {
             const Ray ray = ray_through(fog.density.bricks->bounds, i);
-            const auto few = steps_of(ray, fog, rule), many = steps_of(ray, fog);
+            const auto few = steps_of(ray, fog, rule), many = steps_of(ray, fog, fine);
             ASSERT_LE(few.size(), size_t(most));
             ASSERT_TRUE(ascending(ray, few));
             if (many.empty()) continue;
