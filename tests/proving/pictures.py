@@ -1,6 +1,7 @@
 """Renders with tyndall, reads what came out, and says how far pictures are from each other."""
 import dataclasses
 import json
+import math
 import resource
 import struct
 import subprocess
@@ -63,14 +64,16 @@ def read_layers(path):
             for layer, prefix in zip(LAYERS, ("", "inscatter."))}
 
 
-def render(program, scene, output, options, threads=2, timeout=600):
+def render(program, scene, output, options, threads=2, timeout=600, processor=None):
+    """Ends without a picture after `timeout` seconds, or after so many of processor time."""
     output.unlink(missing_ok=True)
     stats = output.with_suffix(".stats.json")
     stats.unlink(missing_ok=True)
     command = [program, "render", scene, "-o", output, "--float", "-q", "--threads", threads, "--stats-json", stats, *options]
     before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     try:
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=timeout)
+        limit = processor and (lambda: resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(processor),) * 2))
+        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=timeout, preexec_fn=limit)
         code, said = done.returncode, done.stderr.strip()
     except subprocess.TimeoutExpired:
         code, said = -1, f"took more than {timeout} s"
@@ -143,7 +146,7 @@ class Truths:
 
     def picture(self, options, seed):
         run = render(self.program, self.scene, self.folder / "truth.exr", [*options, "--frames", self.frame, "--seed", seed],
-                     THREADS, max(self.left, 1))
+                     THREADS, max(10 * self.left, 60), max(self.left, 1))
         self.left -= run.processor
         if self.left < 0 or run.layers is None:
             raise TooLong(run.said)
