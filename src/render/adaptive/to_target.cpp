@@ -124,16 +124,14 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
         return false;
     const double pixels = pixel_count(rounds.view);
     const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
-    const double sure = stats.noise->bound / stats.noise->error;
+    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
     Enough enough{0, max_target_samples * pixels};
     if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
     if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
     const Allotment allotment = allot(layers, rounds.done, enough, power, rounds.unit());
 
     // As good with all pixels alike, without beginning anew: in rounds that know nothing of each other.
-    const Noise& noise = *stats.noise;
-    const int taken = static_cast<int>(rounds.done), batches = std::min(rounds.max_batches(), taken);
-    const double alike = samples_needed(noise, taken, sure * std::sqrt(allotment.squared_error), batches) - taken;
+    const double alike = rounds.done * (squared / allotment.squared_error - 1);
     if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
