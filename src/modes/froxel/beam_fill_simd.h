@@ -7,6 +7,7 @@
 #endif
 
 #include "base/simd/reduce_simd.h"
+#include "modes/froxel/near_simd.h"
 #include "modes/froxel/scatter_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -110,7 +111,9 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;
         if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);
-        share = share * exp(-light_depth16(fill.scene.depths[index], point, some));
+        const Vec3s offset = point - splat(light.position);
+        const Floats near = depth_at_lamp(kept.fog[b], sqrt(dot(offset, offset)));
+        share = share * exp(near - light_depth16(fill.scene.depths[index], point, some));
         share = share * style_fade(fill.scene.style, fill.grid.camera, lanes.point);
         store(load(beams.sums[b].data()) + zero_unless(some, share), beams.sums[b].data());
     }

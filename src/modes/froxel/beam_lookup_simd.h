@@ -27,7 +27,11 @@ HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const V
     RaysByLamp rays;
     const Vec3s to_lamp = splat(light.position) - origin;
     rays.nearest = dot(to_lamp, direction);
-    const Vec3s nearest = direction * rays.nearest - to_lamp;
+    // Rounding leaves it askew, which a narrow beam would show.
+    const Vec3s askew = direction * rays.nearest - to_lamp;
+    const Floats off = dot(askew, direction);
+    const Vec3s nearest = askew - direction * off;
+    rays.nearest = rays.nearest - off;
     rays.height2 = dot(nearest, nearest);
     rays.along = dot(direction, splat(light.direction));
     rays.by = dot(nearest, splat(light.direction)) / max(sqrt(rays.height2), 1e-20f);
@@ -41,12 +45,12 @@ HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
     return {-half, half};
 }
 
-// The stretch inside a spot's cone. Seen from the lamp at the angle θ from the point next to it, the ray is off the
-// axis by the cosine by·cos θ + along·sin θ = C cos(θ - φ): the cone cuts out the angles around φ with C cos(θ - φ) at
-// least the cosine of its edge.
-HWY_INLINE Interval<Floats> inside_cone(const Light& light, const RaysByLamp& rays) {
+// The stretch inside a spot's cone, or one around its axis. Seen from the lamp at the angle θ from the point next to
+// it, the ray is off the axis by the cosine by·cos θ + along·sin θ = C cos(θ - φ): the cone cuts out the angles around
+// φ with C cos(θ - φ) at least the cosine of its edge.
+HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays) {
     constexpr float right = 0.5f * pi, far = 1e30f;
-    const float edge = std::max(std::cos(light.outer_cone), 1e-6f);
+    const float edge = std::max(std::cos(half_angle), 1e-6f);
     const Floats c2 = fused(rays.along, rays.along, rays.by * rays.by);
     const Mask16 met = c2 > edge * edge;
     const Floats half = atan(sqrt(max(c2 - edge * edge, 0.0f)) * (1 / edge));
@@ -66,7 +70,7 @@ HWY_INLINE Interval<Floats> inside_cone(const Light& light, const RaysByLamp& ra
 HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
                               const Floats& distance) {
     const float reach = capped_radius(light);
-    const Floats cosine = fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f);
+    const Floats cosine = min(fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f), 1.0f);
     const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
     Floats amount = (has_cone(light) ? edge * edge : Floats(1.0f)) / max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) {
@@ -161,8 +165,9 @@ struct BeamWalk {
     const ConeFalloff& cone;
     NearLight near;
     RaysByLamp by_lamp;
-    Floats depth_before; // optical, of what lies before the rays' starts
-    Floats whole;        // angle of all of the beam on each ray
+    Floats depth_before;   // optical, of what lies before the rays' starts
+    Floats whole;          // angle of all of the beam on each ray
+    Interval<Floats> full; // within a spot's soft edge
 };
 
 // Extinction by medium at lengths along the rays.
@@ -178,11 +183,6 @@ HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, con
     if (of.density.kind != DensityKind::bricks || !any(close)) return extinction;
     const Vec3s point = fused(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
     return select(close, density16(of, point) * grey_extinction(of.optics), extinction);
-}
-
-// How much of its optical depth the fog on a light's way counts for where it is asked for by place.
-float dimming(const LightDepth& depth) {
-    return depth.method == LightTransmittance::off || depth.method == LightTransmittance::average ? 0 : depth.scale;
 }
 
 // Mean of e^-x over a stretch by that in its middle: sinh(d/2) / (d/2) for the depth d of the stretch.
@@ -204,6 +204,9 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
     // Fog dims the light on its way to the points as it does to the middle of the slice, but for what lies between.
     const float dims = dimming(walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]]);
+    const FroxelBeams::LampFog& fog = walk.picture.beams.fog[walk.beam];
+    const auto to_lamp = [&](const Floats& distance)
+                             HWY_ATTR { return here.extinction * distance * dims - depth_at_lamp(fog, distance); };
     const Floats middle =
         (Floats(low + 0.5f * thickness) - walk.places.start) * walk.places.slant - walk.by_lamp.nearest;
     const Floats to_middle = sqrt(fused(middle, middle, walk.by_lamp.height2));
@@ -219,8 +222,8 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Floats place = max(min((z - low) * (1 / thickness), 1.0f), 0.0f);
         const Floats depth = fused(here.across, place, here.before) * walk.places.slant - walk.depth_before;
         const Floats length = angles.length(weight, slope);
-        const Floats dimmed =
-            max(depth, 0.0f) * walk.picture.view_depth + here.extinction * (distance - to_middle) * dims;
+        const Floats dimmed = max(depth, 0.0f) * walk.picture.view_depth + depth_at_lamp(fog, distance) +
+                              (to_lamp(distance) - to_lamp(to_middle));
         const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               near_share(walk.near, distance) * length * exp(-dimmed) * mean_over(change);
@@ -232,25 +235,34 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     return sum * zero_unless(wanted, here.share);
 }
 
-// The same, cut where the rays enter the core inside of which 1/r² is capped, and leave it.
-Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
-                          const Mask16& wanted) {
+// Adds up what `add` gives for the parts of a stretch before, within and behind another.
+template<class Add>
+HWY_INLINE Vec3s cut_by(const Interval<Floats>& within, const Interval<Floats>& part, const Mask16& wanted,
+                        const Add& add) {
     constexpr float far = 1e30f;
-    const float core = capped_radius(walk.light);
-    const Floats half = sqrt(max(core * core - walk.by_lamp.height2, 0.0f));
-    const Mask16 through = wanted & (half > 0.0f) & (part.low < half) & (part.high > -half);
-    const Floats enter = select(through, -half, far), leave = select(through, half, far);
+    const Mask16 cut = wanted & (within.high > within.low) & (part.low < within.high) & (part.high > within.low);
+    const Floats enter = select(cut, within.low, far), leave = select(cut, within.high, far);
     const Interval<Floats> parts[] = {{part.low, min(part.high, enter)},
                                       {max(part.low, enter), min(part.high, leave)},
                                       {max(part.low, leave), part.high}};
     Vec3s sum = splat(vec3(0));
     for (const Interval<Floats>& one : parts) {
         const Mask16 some = wanted & (one.high > one.low);
-        if (!any(some)) continue;
-        const Interval<Floats> held{zero_unless(some, one.low), zero_unless(some, one.high)};
-        sum = sum + light_within(walk, EquiAngular16(held, walk.by_lamp.away), slice, here, some);
+        if (any(some)) sum = sum + add({zero_unless(some, one.low), zero_unless(some, one.high)}, some);
     }
     return sum;
+}
+
+// The same, cut where light has kinks: where the rays enter and leave the full light of a spot, and the core inside of
+// which 1/r² is capped.
+Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
+                          const Mask16& wanted) {
+    const Interval<Floats> core = inside_ball(capped_radius(walk.light), walk.by_lamp);
+    return cut_by(walk.full, part, wanted, [&](const Interval<Floats>& outer, const Mask16& some) HWY_ATTR {
+        return cut_by(core, outer, some, [&](const Interval<Floats>& one, const Mask16& left) HWY_ATTR {
+            return light_within(walk, EquiAngular16(one, walk.by_lamp.away), slice, here, left);
+        });
+    });
 }
 
 // Optical depth per metre of slant up to a face of the slices.
@@ -289,12 +301,14 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   picture.scene->near(index),
                   seen_from(light, rays.origin, rays.direction),
                   depth_before,
-                  0.0f};
+                  0.0f,
+                  {0.0f, 0.0f}};
     const Floats nearest = walk.by_lamp.nearest;
     const float radius = std::min(light.range, walk.near.radius);
     Interval<Floats> chord = inside_ball(std::min(radius, 1e15f), walk.by_lamp);
     if (has_cone(light)) {
-        const Interval<Floats> cone = inside_cone(light, walk.by_lamp);
+        if (light.inner_cone < light.outer_cone) walk.full = inside_cone(light.inner_cone, walk.by_lamp);
+        const Interval<Floats> cone = inside_cone(light.outer_cone, walk.by_lamp);
         chord = {max(chord.low, cone.low), min(chord.high, cone.high)};
     }
     chord.low = max(chord.low, rays.first - nearest), chord.high = min(chord.high, rays.last - nearest);

@@ -7,6 +7,8 @@
 #include "base/parallel.h"
 #include "base/simd/simd.h"
 #include "modes/froxel/fill.h"
+#include "trace/transmittance/light_depth.h"
+#include "volume/medium.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -74,11 +76,29 @@ NearLight near_light(const FroxelGrid& grid, const Light& light) {
     return {froxels * static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x))};
 }
 
+float dimming(const LightDepth& depth) {
+    return depth.method == LightTransmittance::off || depth.method == LightTransmittance::average ? 0 : depth.scale;
+}
+
+namespace {
+FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& grid, size_t index) {
+    constexpr float froxels = 4;
+    const Light& light = scene.snapshot.lights[index];
+    float extinction = 0;
+    for (const Medium& medium : scene.snapshot.media)
+        extinction += density_at(medium, light.position) * grey_extinction(medium.optics);
+    const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
+    const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
+    return {extinction * dimming(scene.depths[index]), froxels * width};
+}
+}
+
 HWY_EXPORT(reaches_kernel);
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) {
     FroxelBeams beams;
     beams.lights = scene.beams;
     if (beams.lights.empty()) return beams;
+    for (const size_t index : beams.lights) beams.fog.push_back(fog_at_lamp(scene, grid, index));
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
     size_t place = 0;

@@ -11,6 +11,7 @@
 
 namespace tyndall {
 struct FroxelScene;
+struct LightDepth;
 
 // The part of a light that look-ups follow ray by ray: all around the lamp, less and less from half a radius on, until
 // froxels have all of it. 0 = none, infinite = all.
@@ -29,10 +30,15 @@ struct FroxelBeams {
         int32_t first = 0, end = 0;
         size_t place = 0; // of the first one's share
     };
-    std::vector<size_t> lights;  // of the scene
-    std::vector<Reach> reaches;  // [tile · lights + light]
-    RecycledFloats shares;       // of the light that would arrive without surfaces and fog: what does
-    size_t media = 0;            // of the scene; 0 where there is only one
+    // What the fog at a lamp takes of its light within a few froxels, over which shares would even out how it begins.
+    struct LampFog {
+        float extinction = 0, reach = 0; // 1/m, of the depth that counts; metres
+    };
+    std::vector<size_t> lights; // of the scene
+    std::vector<LampFog> fog;   // at each of them
+    std::vector<Reach> reaches; // [tile · lights + light]
+    RecycledFloats shares;      // of the light that would arrive without surfaces, and through LampFog alone: what does
+    size_t media = 0;           // of the scene; 0 where there is only one
     RecycledFloats media_shares; // in the extinction [(tile · media + medium) · slices + slice]
 
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
@@ -44,6 +50,9 @@ struct FroxelBeams {
         return (tile * media + medium) * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice);
     }
 };
+
+// How much of its optical depth the fog on a light's way counts for where it is asked for by place.
+float dimming(const LightDepth& depth);
 
 // Finds what the beams of a scene reach, with room for their shares, which fill_froxels() fills in.
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid);
