@@ -40,13 +40,15 @@ void add_missing_light_and_fog(Scene& scene) {
         warn(scene, file + ": there is no light; a sun of 3 lux and some ambient light are used");
     }
 
-    // Haze without an edge that anybody sees. Half of the light gets across its contents and as far again.
+    // Haze without an edge that is seen from among its contents, half of whose light gets across them and as far again.
+    // It ends far away, so that a level sun gets through.
     const float diagonal = std::max(glm::length(bounds.size()), 1e-3f);
     MediumSource fog;
     fog.name = "default fog", fog.kind = MediumKind::height;
     fog.extinction = 0.7f / (2 * diagonal);
     fog.g = 0.3f;
     fog.height_base = bounds.low.y, fog.height_falloff = 0.5f * diagonal;
+    fog.bounds = {bounds.low - 3 * diagonal, bounds.high + 3 * diagonal};
     scene.media.push_back(fog);
     warn(scene, file + ": a glTF has no fog; thin fog of " + formatted("%.3g", fog.extinction.values[0]) +
                     " per metre that thins out upwards is used");

@@ -154,7 +154,8 @@ std::string new_scene_text(Scene& scene) {
         media.push_back("{ \"name\": " + quote_json(fog.name) +
                         ", \"type\": \"height\", \"extinction\": " + json_number(fog.extinction.at(0)) +
                         ", \"g\": " + json_number(fog.g.at(0)) + ", \"base\": " + json_number(fog.height_base.at(0)) +
-                        ", \"falloff\": " + json_number(fog.height_falloff.at(0)) + " }");
+                        ", \"falloff\": " + json_number(fog.height_falloff.at(0)) + ", \"bounds\": { \"low\": " +
+                        list_text(fog.bounds.low) + ", \"high\": " + list_text(fog.bounds.high) + " } }");
     }
     add("media", media);
     return text + "\n}\n";
