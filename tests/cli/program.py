@@ -9,6 +9,8 @@ import tempfile
 import unittest
 import zlib
 
+from exr import without_name
+
 TYNDALL = os.environ.get("TYNDALL", "tyndall")
 SOURCE = pathlib.Path(os.environ.get("TYNDALL_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 CORPORA = [SOURCE / "tests/data", pathlib.Path(os.environ.get("TYNDALL_SHARED_DATA", SOURCE / "../shared/data"))]
@@ -137,9 +139,10 @@ class ProgramTest(unittest.TestCase):
         return sorted(str(path.relative_to(self.directory)) for path in self.directory.rglob("*"))
 
     def content(self, place):
-        """Every file in a directory by name, temporaries too."""
+        """Every file in a directory by name, temporaries too; images without the name of their folder."""
         path = self.path(place)
-        return {file.name: file.read_bytes() for file in path.iterdir()} if path.is_dir() else {}
+        files = {file.name: file.read_bytes() for file in path.iterdir()} if path.is_dir() else {}
+        return {name: without_name(data) if name.endswith(".exr") else data for name, data in files.items()}
 
     def write_triangle(self):
         self.write("triangle.bin", TRIANGLE)

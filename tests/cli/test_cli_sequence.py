@@ -11,7 +11,6 @@ import threading
 import time
 import unittest
 
-from exr import without_name
 from program import TYNDALL, ProgramTest, recipe, run, scene
 
 FRAMES = "1-3"
@@ -28,11 +27,6 @@ class Sequence(ProgramTest):
 
     def render(self, place, *more):
         return ("render", self.scene, "-o", self.path(f"{place}/out.####.exr"), "--frames", FRAMES, *more)
-
-    def content(self, place):
-        """Files by name; images without the name of their folder."""
-        return {name: without_name(data) if name.endswith(".exr") else data
-                for name, data in super().content(place).items()}
 
     def finished(self, place):
         return {name: data for name, data in self.content(place).items() if not name.endswith(".tmp")}

@@ -142,7 +142,7 @@ TEST(Chart, ListsWhatWasLeftOutBesideTheAdvice) {
     chart.left_out = {{"march", "pixel.samples=64", 4, 1.25}, {"march", "pixel.samples=256", 5, 1.25}};
     const std::string text = chart_text(chart), page = chart_html(chart);
     for (const char* words :
-         {"2 settings left out: a picture would take more than 700 ms (--longest); other work was "
+         {"2 settings left out: an image would take more than 700 ms (--longest); other work was "
           "running (load 6.0 on 2 threads)",
           "march 4, 1.2 s or more: pixel.samples=64", "march 5, 1.2 s or more: pixel.samples=256"}) {
         EXPECT_NE(text.find(words), text.npos) << text;
