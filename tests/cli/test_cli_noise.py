@@ -196,7 +196,7 @@ class MarchTarget(ProgramTest):
         self.assertLessEqual(again["frames"][0]["error_bound"], 0.1)
 
     def test_resume_keeps_what_is_reached_or_was_given_its_time(self):
-        for goal in [("--target-error", "0.1"), ("--time-budget", "0.5")]:
+        for goal in [("--target-error", "0.1"), ("--time-budget", "2")]:
             first = self.render(*goal, "--resume")[0]["frames"][0]
             second = self.render(*goal, "--resume")[0]["frames"][0]
             self.assertFalse(first["kept"], goal)
@@ -206,18 +206,18 @@ class MarchTarget(ProgramTest):
             for key in ["error_bound", "integrator_bound", "noise_error"]:
                 self.assertAlmostEqual(second[key], first[key], delta=1e-8 + 1e-6 * first[key])
         self.assertAlmostEqual(second["goal_seconds"], first["goal_seconds"], delta=1e-6)
-        self.assertFalse(self.render("--time-budget", "0.6", "--resume")[0]["frames"][0]["kept"])
+        self.assertFalse(self.render("--time-budget", "2.5", "--resume")[0]["frames"][0]["kept"])
 
     def test_a_time_is_reported_beside_what_it_was_worth(self):
-        report, attributes, said = self.render("--time-budget", "0.3")
+        report, attributes, said = self.render("--time-budget", "2")
         frame = report["frames"][0]
-        self.assertEqual(report["time_budget"], 0.3)
+        self.assertEqual(report["time_budget"], 2)
         self.assertGreaterEqual(frame["samples"], 1)
         self.assertGreater(frame["goal_seconds"], 0)
         self.assertGreater(frame["error_bound"], 0)
-        self.assertEqual(attributes["tyndall:timeBudget"], "0.300000000"[:3])
+        self.assertEqual(attributes["tyndall:timeBudget"], "2")
         self.assertAlmostEqual(float(attributes["tyndall:timeUsed"]), frame["goal_seconds"], delta=1e-6)
-        self.assertIn("of 0.3 s", said)
+        self.assertIn("of 2 s", said)
 
     def test_a_row_that_is_set_too_coarse_is_a_miss(self):
         report, attributes, said = self.render("--target-error", "0.02", "--set", "terms.light=off", code=1)
