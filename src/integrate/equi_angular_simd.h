@@ -19,10 +19,13 @@ struct EquiAngular16 {
     HWY_INLINE EquiAngular16(const Interval<Floats>& stretch, const Floats& away)
         : height(away), from(stretch.low / away), to(stretch.high / away), angle(angle_between(from, to)) {}
 
-    // At a share of the angle, by tan(α + β) = (tan α + tan β) / (1 - tan α tan β).
+    // At a share of the angle, by tan(α + β) = (tan α + tan β) / (1 - tan α tan β) from the nearer end, as β must not be
+    // more than a right angle.
     HWY_INLINE Floats slope(const Floats& share) const {
-        const Floats further = tan(share * angle);
-        return max(min((from + further) / max(1.0f - from * further, 1e-20f), to), from);
+        const Mask16 late = share > 0.5f;
+        const Floats end = select(late, -to, from), further = tan(select(late, 1.0f - share, share) * angle);
+        const Floats turned = (end + further) / max(1.0f - end * further, 1e-20f);
+        return max(min(select(late, -turned, turned), to), from);
     }
     // The length that a weight, in the sum over the shares, stands for there.
     HWY_INLINE Floats length(const Floats& weight, const Floats& at) const {

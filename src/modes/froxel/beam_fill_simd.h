@@ -50,7 +50,7 @@ void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
                 static_cast<uint32_t>(((where.at[i].y & 3) * 4 + (where.at[i].x & 3)) * fill.samples() + sample);
         for (size_t b = 0; b < count; ++b) {
             const size_t first = (static_cast<size_t>(sample) * count + b) * slices;
-            if (beams.all[b].end > 0)
+            if (beams.all[b].end > 0 && !kept.by_rays_alone[b] && !fill.scene.pixel_view(kept.lights[b]))
                 find_beam_lit(fill.scene, fill.grid, fill.tiles, kept.lights[b], where.at, beam_ray(fill, sample),
                               fill.samples() > 1 ? indices : nullptr, beams.reaches.data() + 16 * b,
                               beams.inside.data() + first, beams.lit.data() + first);
@@ -103,21 +103,21 @@ Floats seen_share(const Fill& fill, const PacketBeams& beams, size_t beam, const
 void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, const Floats& here, const Job& job) {
     const FroxelBeams& kept = *fill.pass.beams;
     for (size_t b = 0; b < kept.lights.size(); ++b) {
-        if (job.slice < beams.all[b].first || job.slice >= beams.all[b].end) continue;
+        if (job.slice < beams.all[b].first || job.slice >= beams.all[b].end || kept.by_rays_alone[b]) continue;
         const size_t index = kept.lights[b];
         const Light& light = fill.scene.snapshot.lights[index];
         const Vec3s point = has_cone(light) ? turned_inside(light, lanes.point) : lanes.point;
-        Floats share = seen_share(fill, beams, b, lanes, point, job);
+        Floats share = fill.scene.pixel_view(index) ? 1.0f : seen_share(fill, beams, b, lanes, point, job);
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;
         if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);
         const Vec3s offset = point - splat(light.position);
         const Floats near = depth_at_lamp(kept.fog[b], sqrt(dot(offset, offset)));
-        share = share * exp(near - light_depth16(fill.scene.depths[index], point, some));
+        share = share * exp(near - light_depth16(kept.grids[b], point, some));
         share = share * style_fade(fill.scene.style, fill.grid.camera, lanes.point);
         store(load(beams.sums[b].data()) + zero_unless(some, share), beams.sums[b].data());
     }
-    const Floats inverse = 1.0f / max(here, 1e-30f);
+    const Floats inverse = zero_unless(here > 0.0f, 1.0f / max(here, 1e-30f));
     for (size_t m = 0; m < kept.media; ++m) {
         float* sum = beams.sums[kept.lights.size() + m].data();
         store(fused(load(job.extinction[m]), inverse, load(sum)), sum);

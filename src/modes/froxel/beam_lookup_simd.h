@@ -7,102 +7,12 @@
 #define TYNDALL_MODES_FROXEL_BEAM_LOOKUP_SIMD_H
 #endif
 
-#include "integrate/equi_angular_simd.h"
 #include "integrate/scattering_simd.h"
-#include "modes/froxel/near_simd.h"
-#include "modes/froxel/place_simd.h"
+#include "modes/froxel/closed_beam_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Rays as a lamp sees them. Lengths u along them count from where they pass it.
-struct RaysByLamp {
-    Floats nearest;   // metres from the start of the ray to there
-    Floats height2;   // squared distance there
-    Floats along, by; // the spot's axis along the ray, and along the way from the lamp to the point next to it
-    Floats away;      // height, no less than where 1/r² is capped
-};
-
-HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const Vec3s& direction) {
-    RaysByLamp rays;
-    const Vec3s to_lamp = splat(light.position) - origin;
-    rays.nearest = dot(to_lamp, direction);
-    // Rounding leaves it askew, which a narrow beam would show.
-    const Vec3s askew = direction * rays.nearest - to_lamp;
-    const Floats off = dot(askew, direction);
-    const Vec3s nearest = askew - direction * off;
-    rays.nearest = rays.nearest - off;
-    rays.height2 = dot(nearest, nearest);
-    rays.along = dot(direction, splat(light.direction));
-    rays.by = dot(nearest, splat(light.direction)) / max(sqrt(rays.height2), 1e-20f);
-    rays.away = max(sqrt(rays.height2), capped_radius(light));
-    return rays;
-}
-
-// The stretch within a radius of the lamp.
-HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
-    const Floats half = sqrt(max(Floats(radius * radius) - rays.height2, 0.0f));
-    return {-half, half};
-}
-
-// The stretch inside a spot's cone, or one around its axis. Seen from the lamp at the angle θ from the point next to
-// it, the ray is off the axis by the cosine by·cos θ + along·sin θ = C cos(θ - φ): the cone cuts out the angles around
-// φ with C cos(θ - φ) at least the cosine of its edge.
-HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays) {
-    constexpr float right = 0.5f * pi, far = 1e30f;
-    const float edge = std::max(std::cos(half_angle), 1e-6f);
-    const Floats c2 = fused(rays.along, rays.along, rays.by * rays.by);
-    const Mask16 met = c2 > edge * edge;
-    const Floats half = atan(sqrt(max(c2 - edge * edge, 0.0f)) * (1 / edge));
-    const Floats slope = rays.along / select(abs(rays.by) < 1e-20f, 1e-20f, rays.by);
-    const Floats turned = select(rays.along < 0.0f, -pi, pi);
-    const Floats middle = atan(slope) + zero_unless(rays.by < 0.0f, turned);
-    const Floats from = middle - half, to = middle + half, height = sqrt(rays.height2);
-    const auto length = [&](const Floats& angle) HWY_ATTR {
-        const Floats inside = height * tan(max(min(angle, right), -right));
-        return select(angle >= right, far, select(angle <= -right, -far, inside));
-    };
-    const Mask16 ahead = met & (from < right) & (to > -right);
-    return {select(ahead, length(from), far), select(ahead, length(to), -far)};
-}
-
-// What reaches a length along the rays, as arriving() of trace/light_simd.h.
-HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
-                              const Floats& distance) {
-    const float reach = capped_radius(light);
-    const Floats cosine = min(fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f), 1.0f);
-    const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
-    Floats amount = (has_cone(light) ? edge * edge : Floats(1.0f)) / max(distance * distance, reach * reach);
-    if (!std::isinf(light.range)) {
-        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
-        amount = amount * max(min(1.0f - fourth, 1.0f), 0.0f);
-    }
-    return amount;
-}
-
-// Camera rays as beams need them.
-struct BeamRays {
-    Vec3s origin, direction;
-    Floats first, last; // metres along the rays between which they lie in froxels
-    Ints own;           // tiles they lie in
-};
-
-HWY_INLINE BeamRays beam_rays(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
-    alignas(64) float origin[3][16], direction[3][16];
-    for (size_t i = 0; i < 16; ++i) {
-        const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
-        for (int c = 0; c < 3; ++c) origin[c][i] = ray.origin[c], direction[c][i] = ray.direction[c];
-    }
-    const FroxelGrid& grid = picture.grid;
-    BeamRays rays;
-    rays.origin = {load(origin[0]), load(origin[1]), load(origin[2])};
-    rays.direction = {load(direction[0]), load(direction[1]), load(direction[2])};
-    rays.first = max(Floats(grid.faces.front()) - places.start, 0.0f) * places.slant;
-    rays.last = (min(places.end, grid.faces.back()) - places.start) * places.slant;
-    rays.own = places.own;
-    return rays;
-}
-
 // Slices that a beam may reach on the rays, and on any of them.
 struct RaysReach {
     Floats first, end;
@@ -155,34 +65,23 @@ HWY_INLINE Mask16 close_rays(const FroxelGrid& grid, const Light& light, const R
     return fused(u, u, rays.height2) < near * near * width * width;
 }
 
-// A beam on the rays, under way through the slices.
-struct BeamWalk {
-    const FroxelPicture& picture;
-    const Places& places;
-    const BeamRays& rays;
-    size_t beam;
-    const Light& light;
-    const ConeFalloff& cone;
-    NearLight near;
-    RaysByLamp by_lamp;
-    Floats depth_before;   // optical, of what lies before the rays' starts
-    Floats whole;          // angle of all of the beam on each ray
-    Interval<Floats> full; // within a spot's soft edge
-};
-
-// Extinction by medium at lengths along the rays.
-HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, const Mask16& close, size_t medium,
-                                int slice, const Floats& u) {
+// Extinction of a medium in the froxels of a slice around the rays.
+HWY_INLINE Floats mean_extinction(const BeamWalk& walk, const BeamSlice& here, size_t medium, int slice) {
     const FroxelBeams& beams = walk.picture.beams;
+    if (beams.media == 0) return here.extinction;
+    return here.extinction * between_tiles(walk.places, [&](size_t tile) {
+               return beams.media_shares[beams.media_place(walk.picture.grid, tile, medium, slice)];
+           });
+}
+
+// Extinction of a medium at points of the rays: of grids, where they are close to the lamp.
+HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, const Mask16& close, size_t medium,
+                                int slice, const Vec3s& point) {
     const Medium& of = walk.picture.scene->snapshot.media[medium];
-    Floats extinction = here.extinction;
-    if (beams.media > 0)
-        extinction = extinction * between_tiles(walk.places, [&](size_t tile) {
-                         return beams.media_shares[beams.media_place(walk.picture.grid, tile, medium, slice)];
-                     });
-    if (of.density.kind != DensityKind::bricks || !any(close)) return extinction;
-    const Vec3s point = fused(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
-    return select(close, density16(of, point) * grey_extinction(of.optics), extinction);
+    const bool grid = of.density.kind == DensityKind::bricks;
+    if (grid && !any(close)) return mean_extinction(walk, here, medium, slice);
+    const Floats exact = density16(of, point) * grey_extinction(of.optics);
+    return grid && any(!close) ? select(close, exact, mean_extinction(walk, here, medium, slice)) : exact;
 }
 
 // Mean of e^-x over a stretch by that in its middle: sinh(d/2) / (d/2) for the depth d of the stretch.
@@ -205,8 +104,12 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     // Fog dims the light on its way to the points as it does to the middle of the slice, but for what lies between.
     const float dims = dimming(walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]]);
     const FroxelBeams::LampFog& fog = walk.picture.beams.fog[walk.beam];
+    Floats grids = 0.0f; // extinction of grid fog
+    for (size_t m = 0; m < walk.picture.scene->snapshot.media.size(); ++m)
+        if (walk.picture.scene->snapshot.media[m].density.kind == DensityKind::bricks)
+            grids = grids + mean_extinction(walk, here, m, slice);
     const auto to_lamp = [&](const Floats& distance)
-                             HWY_ATTR { return here.extinction * distance * dims - depth_at_lamp(fog, distance); };
+                             HWY_ATTR { return grids * distance * dims - depth_at_lamp(fog, distance); };
     const Floats middle =
         (Floats(low + 0.5f * thickness) - walk.places.start) * walk.places.slant - walk.by_lamp.nearest;
     const Floats to_middle = sqrt(fused(middle, middle, walk.by_lamp.height2));
@@ -220,48 +123,28 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Floats distance = sqrt(fused(u, u, walk.by_lamp.height2));
         const Floats z = (u + walk.by_lamp.nearest) / walk.places.slant + walk.places.start;
         const Floats place = max(min((z - low) * (1 / thickness), 1.0f), 0.0f);
+        const Vec3s point = fused(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
         const Floats depth = fused(here.across, place, here.before) * walk.places.slant - walk.depth_before;
         const Floats length = angles.length(weight, slope);
         const Floats dimmed = max(depth, 0.0f) * walk.picture.view_depth + depth_at_lamp(fog, distance) +
-                              (to_lamp(distance) - to_lamp(to_middle));
+                              (to_lamp(distance) - to_lamp(to_middle)) +
+                              closed_depth_to_lamp(walk, point, distance) * dims;
         const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               near_share(walk.near, distance) * length * exp(-dimmed) * mean_over(change);
         const Vec3s towards =
             scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
-                       [&](size_t m) HWY_ATTR { return extinction_at(walk, here, close, m, slice, u); });
+                       [&](size_t m) HWY_ATTR { return extinction_at(walk, here, close, m, slice, point); });
         sum = fused(towards, zero_unless(here_too, amount), sum);
     }
     return sum * zero_unless(wanted, here.share);
 }
 
-// Adds up what `add` gives for the parts of a stretch before, within and behind another.
-template<class Add>
-HWY_INLINE Vec3s cut_by(const Interval<Floats>& within, const Interval<Floats>& part, const Mask16& wanted,
-                        const Add& add) {
-    constexpr float far = 1e30f;
-    const Mask16 cut = wanted & (within.high > within.low) & (part.low < within.high) & (part.high > within.low);
-    const Floats enter = select(cut, within.low, far), leave = select(cut, within.high, far);
-    const Interval<Floats> parts[] = {{part.low, min(part.high, enter)},
-                                      {max(part.low, enter), min(part.high, leave)},
-                                      {max(part.low, leave), part.high}};
-    Vec3s sum = splat(vec3(0));
-    for (const Interval<Floats>& one : parts) {
-        const Mask16 some = wanted & (one.high > one.low);
-        if (any(some)) sum = sum + add({zero_unless(some, one.low), zero_unless(some, one.high)}, some);
-    }
-    return sum;
-}
-
-// The same, cut where light has kinks: where the rays enter and leave the full light of a spot, and the core inside of
-// which 1/r² is capped.
+// The same between the light's kinks.
 Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
                           const Mask16& wanted) {
-    const Interval<Floats> core = inside_ball(capped_radius(walk.light), walk.by_lamp);
-    return cut_by(walk.full, part, wanted, [&](const Interval<Floats>& outer, const Mask16& some) HWY_ATTR {
-        return cut_by(core, outer, some, [&](const Interval<Floats>& one, const Mask16& left) HWY_ATTR {
-            return light_within(walk, EquiAngular16(one, walk.by_lamp.away), slice, here, left);
-        });
+    return between_kinks(walk, part, wanted, [&](const Interval<Floats>& one, const Mask16& some) HWY_ATTR {
+        return light_within(walk, EquiAngular16(one, walk.by_lamp.away), slice, here, some);
     });
 }
 
@@ -284,9 +167,39 @@ BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, co
     return here;
 }
 
+// The stretches of the beam that surfaces leave lit; null where froxels know how much of it they do.
+const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& batch, const Interval<Floats>& chord,
+                                       const Mask16& met) {
+    const FroxelScene& scene = *walk.picture.scene;
+    const ShadowView* view = scene.pixel_view(walk.picture.beams.lights[walk.beam]);
+    if (!view) return nullptr;
+    static thread_local LitIntervals lit;
+    alignas(64) float low[16], high[16];
+    store(zero_unless(met, max(chord.low + walk.by_lamp.nearest, 0.0f)), low);
+    store(zero_unless(met, chord.high + walk.by_lamp.nearest), high);
+    find_beam_lit(*view, batch, scene.pixel_margin, low, high, lit);
+    return &lit;
+}
+
+// Light of a beam on what is lit of a part of the rays within a slice.
+Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Floats>& part, int slice,
+               const BeamSlice& here, const Mask16& wanted) {
+    if (!lit) return light_between_kinks(walk, part, slice, here, wanted);
+    Vec3s sum = splat(vec3(0));
+    for (const LitIntervals::Row& row : lit->rows) {
+        Interval<Floats> one{max(part.low, load(row.low) - walk.by_lamp.nearest),
+                             min(part.high, load(row.high) - walk.by_lamp.nearest)};
+        const Mask16 some = wanted & (one.high > one.low);
+        if (!any(some)) continue;
+        one = {zero_unless(some, one.low), zero_unless(some, one.high)};
+        sum = sum + light_between_kinks(walk, one, slice, here, some);
+    }
+    return sum;
+}
+
 // Light of a beam on the rays.
-Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays, const Places& places,
-                 const Floats& depth_before) {
+Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays, const RayBatch& batch,
+                 const Places& places, const Floats& depth_before) {
     Vec3s sum = splat(vec3(0));
     const RaysReach reach = reach_of(picture.beams, beam, rays.own);
     if (reach.all.end == 0) return sum;
@@ -317,6 +230,11 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
     chord.low = zero_unless(met, chord.low), chord.high = zero_unless(met, chord.high);
     walk.whole = max(EquiAngular16(chord, walk.by_lamp.away).angle, 1e-20f);
 
+    const LitIntervals* lit = find_lit_intervals(walk, batch, chord, met);
+    if (lit && lit->rows.empty()) return sum;
+    if (picture.beams.by_rays_alone[beam])
+        return closed_beam_light(walk, lit, chord, met) * splat(light.intensity * light.volume_scale);
+
     const auto length_to = [&](int face) HWY_ATTR {
         return (Floats(picture.grid.faces[static_cast<size_t>(face)]) - places.start) * places.slant - nearest;
     };
@@ -331,8 +249,8 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
         const Floats behind = depth_to(walk, last = k + 1);
         const BeamSlice around = slice_around(walk, k, before, behind);
         before = behind;
-        const Mask16 lit = here & (around.share * around.across > 0.0f);
-        if (any(lit)) sum = sum + light_between_kinks(walk, part, k, around, lit);
+        const Mask16 reached = here & (around.share * around.across > 0.0f);
+        if (any(reached)) sum = sum + lit_part(walk, lit, part, k, around, reached);
     }
     return sum * splat(light.intensity * light.volume_scale);
 }

@@ -67,10 +67,22 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tyndall {
-NearLight near_light(const FroxelGrid& grid, const Light& light) {
+bool has_exact_shadows(const FroxelScene& scene, const Light& light) {
+    if (!shadow_casters(light, scene.snapshot) || scene.settings.visibility == FroxelVisibility::off) return true;
+    const bool spread = is_soft(light) && scene.settings.shadow_rays > 1;
+    return scene.settings.visibility == FroxelVisibility::intervals && !spread;
+}
+
+namespace {
+bool is_grid(const Medium& medium) { return medium.density.kind == DensityKind::bricks; }
+bool is_closed(const FroxelScene& scene) { return std::ranges::none_of(scene.snapshot.media, is_grid); }
+}
+
+NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t index) {
+    const Light& light = scene.snapshot.lights[index];
     constexpr float froxels = 7; // across: from half of that on they show a light's 1/r² as it is
     if (is_distant(light)) return {};
-    if (has_cone(light)) return {infinity};
+    if (has_cone(light) || (is_closed(scene) && has_exact_shadows(scene, light))) return {infinity};
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
     if (!(z > 0)) return {};
     return {froxels * static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x))};
@@ -86,7 +98,7 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
     const Light& light = scene.snapshot.lights[index];
     float extinction = 0;
     for (const Medium& medium : scene.snapshot.media)
-        extinction += density_at(medium, light.position) * grey_extinction(medium.optics);
+        if (is_grid(medium)) extinction += density_at(medium, light.position) * grey_extinction(medium.optics);
     const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
     const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
     return {extinction * dimming(scene.depths[index]), froxels * width};
@@ -98,7 +110,11 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     FroxelBeams beams;
     beams.lights = scene.beams;
     if (beams.lights.empty()) return beams;
-    for (const size_t index : beams.lights) beams.fog.push_back(fog_at_lamp(scene, grid, index));
+    for (const size_t index : beams.lights) {
+        beams.fog.push_back(fog_at_lamp(scene, grid, index));
+        beams.grids.push_back(scene.depths[index]), beams.grids.back().analytic.clear();
+        beams.by_rays_alone.push_back(is_closed(scene) && has_exact_shadows(scene, scene.snapshot.lights[index]));
+    }
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
     size_t place = 0;
@@ -106,7 +122,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
         reach.place = std::exchange(place, place + static_cast<size_t>(reach.end - reach.first));
     beams.shares.resize(place);
     const size_t media = scene.snapshot.media.size();
-    beams.media = media > 1 ? media : 0;
+    beams.media = media > 1 && !is_closed(scene) ? media : 0;
     beams.media_shares.resize(grid.tiles() * beams.media * static_cast<size_t>(grid.slices()));
     return beams;
 }

@@ -5,13 +5,13 @@
 #include "base/recycled.h"
 #include "modes/froxel/grid.h"
 #include "scene/light.h"
+#include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tyndall {
 struct FroxelScene;
-struct LightDepth;
 
 // The part of a light that look-ups follow ray by ray: all around the lamp, less and less from half a radius on, until
 // froxels have all of it. 0 = none, infinite = all.
@@ -22,7 +22,10 @@ struct NearLight {
         return std::isinf(radius) ? 1 : radius > 0 ? x * x * (3 - 2 * x) : 0;
     }
 };
-NearLight near_light(const FroxelGrid& grid, const Light& light);
+NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t light);
+
+// Whether rays find a light's shadows by themselves, exactly, or there are none.
+bool has_exact_shadows(const FroxelScene& scene, const Light& light);
 
 struct FroxelBeams {
     // Slices of a tile that the light may reach in it or in the tiles around it.
@@ -30,15 +33,17 @@ struct FroxelBeams {
         int32_t first = 0, end = 0;
         size_t place = 0; // of the first one's share
     };
-    // What the fog at a lamp takes of its light within a few froxels, over which shares would even out how it begins.
+    // What grid fog at a lamp takes of its light within a few froxels, over which shares would even out how it begins.
     struct LampFog {
         float extinction = 0, reach = 0; // 1/m, of the depth that counts; metres
     };
-    std::vector<size_t> lights; // of the scene
-    std::vector<LampFog> fog;   // at each of them
-    std::vector<Reach> reaches; // [tile · lights + light]
-    RecycledFloats shares;      // of the light that would arrive without surfaces, and through LampFog alone: what does
-    size_t media = 0;           // of the scene; 0 where there is only one
+    std::vector<size_t> lights;      // of the scene
+    std::vector<LampFog> fog;        // at each of them
+    std::vector<LightDepth> grids;   // of each, without fog of closed form: rays know by themselves how that dims it
+    std::vector<bool> by_rays_alone; // whether rays know all of it: fog of closed form and exact shadows
+    std::vector<Reach> reaches;      // [tile · lights + light]
+    RecycledFloats shares; // of the light that would arrive without surfaces, and through LampFog alone: what does
+    size_t media = 0;      // of the scene; 0 where there is only one, or all are closed
     RecycledFloats media_shares; // in the extinction [(tile · media + medium) · slices + slice]
 
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }

@@ -27,9 +27,15 @@ struct FroxelScene {
     // With FroxelVisibility::intervals: of each light that all lines see the same point of, its shadows as the grid's
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
-    std::vector<const ShadowSlices*> slices;    // null where there are none; the snapshot's
+    std::vector<const ShadowSlices*> slices; // null where there are none; the snapshot's
+    // Of each light that rays find the shadows of by themselves, its shadows as they see them; else null.
+    std::vector<std::shared_ptr<const ShadowView>> pixel_views;
+    float pixel_margin = 0;                     // how far a ray may stray from its pixel, pixels
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 
+    const ShadowView* pixel_view(size_t light) const {
+        return light < pixel_views.size() ? pixel_views[light].get() : nullptr;
+    }
     NearLight near(size_t light) const { return light < nears.size() ? nears[light] : NearLight{}; }
     // Whether nothing of a light is in the froxels' light.
     bool is_beam(size_t light) const { return std::isinf(near(light).radius); }

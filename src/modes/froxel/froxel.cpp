@@ -69,7 +69,7 @@ Camera tile_camera(const FroxelGrid& grid) {
 // Which lights rays are to follow themselves. Amortised filling lights few of the froxels anew, beams all of them.
 void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
     for (size_t i = 0; i < scene.snapshot.lights.size(); ++i) {
-        scene.nears.push_back(scene.settings.amortise ? NearLight{} : near_light(grid, scene.snapshot.lights[i]));
+        scene.nears.push_back(scene.settings.amortise ? NearLight{} : near_light(scene, grid, i));
         if (scene.nears.back().radius > 0) scene.beams.push_back(i);
     }
 }
@@ -92,6 +92,19 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
         const std::shared_ptr<const ShadowVolumes> volumes = cached_shadow_volumes(scene.snapshot, light);
         scene.views.back() = std::make_unique<const ShadowView>(
             view_from(*volumes, tile_camera(statics.grid), statics.grid.size, margin));
+    }
+}
+
+// Lamps whose shadows each ray of the picture finds by itself.
+void set_pixel_shadows(const View& view, FroxelScene& scene) {
+    const Occluders* occluders = scene.snapshot.occluders.get();
+    if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
+    scene.pixel_margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
+    scene.pixel_views.resize(scene.snapshot.lights.size());
+    for (const size_t index : scene.beams) {
+        const Light& light = scene.snapshot.lights[index];
+        if (shadow_casters(light, scene.snapshot) && has_exact_shadows(scene, light))
+            scene.pixel_views[index] = cached_shadow_view(scene.snapshot, light, view, scene.pixel_margin);
     }
 }
 
@@ -189,6 +202,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     }
     set_beams(statics.grid, frame->scene);
     set_shadows(*frame, statics);
+    set_pixel_shadows(view, frame->scene);
 
     FroxelPicture& picture = frame->picture;
     picture.lookup = settings.of<FroxelSettings>().lookup, picture.view_depth = settings.style.view_depth;
@@ -220,7 +234,6 @@ Mode froxel_mode() {
             .color = "#E69F00",
             .remembers = true,
             .adds_fluence = true,
-            .interactive = true,
-            .resolves_lamps = false};
+            .interactive = true};
 }
 }

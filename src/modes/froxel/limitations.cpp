@@ -51,6 +51,19 @@ bool is_moving(const Snapshot& snapshot, const Camera& camera) {
     return snapshot.scene && std::ranges::any_of(snapshot.scene->cameras, moves);
 }
 
+// Whether all of a light is that of the frame, followed along each ray; `exact`: its shadows too.
+struct Followed {
+    bool all = false, exact = false;
+};
+Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings) {
+    const auto is_grid = [](const Medium& medium) { return medium.density.kind == DensityKind::bricks; };
+    const bool by_ray = !settings.amortise && !is_distant(light);
+    const bool exact = by_ray && settings.visibility == FroxelVisibility::intervals && !has_alpha_shadows(snapshot) &&
+                       !(is_soft(light) && settings.shadow_rays > 1);
+    const bool all = by_ray && (has_cone(light) || (exact && std::ranges::none_of(snapshot.media, is_grid)));
+    return {all, all && exact};
+}
+
 // Of each light: its shadows, its movement and what is next to it.
 void add_light(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, FroxelSize size,
                Limitations& limitations) {
@@ -58,13 +71,14 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
         limitations.push_back({severity, &kind, Subject::light, light.name, amounts});
     };
     const bool fine = settings.tile == 1 && settings.depth_slices >= 256;
+    const Followed by_rays = followed(light, snapshot, settings);
     const bool shadows = shadow_casters(light, snapshot) != nullptr;
     if (settings.visibility == FroxelVisibility::off && light.shadows)
         add(Severity::wrong, limitation::visibility_off);
-    else if (shadows)
+    else if (shadows && !by_rays.exact)
         add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
     if (shadows && is_soft(light) && settings.shadow_rays == 1) add(Severity::degraded, limitation::hard_shadows);
-    if (has_cone(light) && !settings.amortise) return; // a beam is that of the frame, and of each ray
+    if (by_rays.all) return;
     if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
     if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))
         add(Severity::info, limitation::flat_glow, {size.coarse()});

@@ -142,7 +142,7 @@ Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Place
     const BeamRays rays = beam_rays(picture, batch, places);
     alignas(64) float rgb[3][16];
     for (size_t beam = 0; beam < count; ++beam) {
-        const Vec3s light = beam_light(picture, beam, rays, places, depth_before);
+        const Vec3s light = beam_light(picture, beam, rays, batch, places, depth_before);
         sum = sum + light;
         if (of_beams.empty()) continue;
         store_light(light, rgb);

@@ -107,6 +107,25 @@ TEST(FroxelBeam, ShadowsAndSeveralFogsAreThoseOfTheReference) {
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, fine), rays), truth), 0.02);
 }
 
+// Lamps of any kind in fog of closed form: nothing is left to froxels of 8 pixels, shadows least of all.
+TEST(FroxelBeam, LampsInFogOfClosedFormAreExact) {
+    const Medium mist = homogeneous_medium(0.4f, {vec3(-3), vec3(2)}, Phase{PhaseKind::henyey_greenstein, -0.5f});
+    const Medium cloud = homogeneous_medium(1.5f, {vec3(0.2f, -1, -1), vec3(1, 0.6f, 1)});
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    for (const Light& lamp : {lamp_across(), point_light({-1.2f, 0.1f, -6}, 5)}) { // one of them behind the scene
+        const Stage stage =
+            stage_of({mist, cloud}, {lamp}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0));
+        const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+        const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
+        const auto error = [&](const char* way) {
+            return relative_rmse(scattered(froxels(view, stage.snapshot, with({way})), rays), truth);
+        };
+        EXPECT_LT(error("froxel.lookup=trilinear"), 0.01);
+        EXPECT_LT(error("froxel.lookup=tricubic"), 0.01);
+        EXPECT_GT(error("froxel.visibility=off"), 0.03); // there are shadows
+    }
+}
+
 TEST(FroxelBeam, ARayDoesNotKnowItsNeighboursNorTheThreads) {
     const Stage stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
@@ -126,8 +145,9 @@ TEST(FroxelBeam, StretchesContinueARayAndPartsAddUp) {
     History history;
     for (const bool remembered : {false, true}) {
         const ScatterFunction scatter = froxels(view, stage.snapshot, {}, remembered ? &history : nullptr);
-        for (const float along : {0.4f, 1.2f}) { // before the slab and behind it
-            const vec3 eye = view.camera.position, point = lamp_across().position + along * lamp_across().direction;
+        for (const float along : {0.4f, 1.2f}) { // before the slab, and behind it where light passes it
+            const vec3 eye = view.camera.position, up(0, along > 1 ? 0.12f : 0, 0);
+            const vec3 point = lamp_across().position + along * lamp_across().direction + up;
             Ray whole{eye, glm::normalize(point - eye), 1}, first = whole, second = whole;
             whole.t_max = 8, first.t_max = 4.1f;
             second.origin = whole.at(4.1f), second.t_max = 8 - 4.1f;

@@ -1,0 +1,172 @@
+// Sixteen camera rays as a lamp sees them, and where its light reaches them (see
+// base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
+#else
+#define TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
+#endif
+
+#include "integrate/equi_angular_simd.h"
+#include "modes/froxel/beam_shadows.h"
+#include "modes/froxel/near_simd.h"
+#include "modes/froxel/place_simd.h"
+#include "trace/transmittance/light_depth_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// Rays as a lamp sees them. Lengths u along them count from where they pass it.
+struct RaysByLamp {
+    Floats nearest;   // metres from the start of the ray to there
+    Floats height2;   // squared distance there
+    Floats along, by; // the spot's axis along the ray, and along the way from the lamp to the point next to it
+    Floats away;      // height, no less than where 1/r² is capped
+};
+
+HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const Vec3s& direction) {
+    RaysByLamp rays;
+    const Vec3s to_lamp = splat(light.position) - origin;
+    rays.nearest = dot(to_lamp, direction);
+    // Rounding leaves it askew, which a narrow beam would show.
+    const Vec3s askew = direction * rays.nearest - to_lamp;
+    const Floats off = dot(askew, direction);
+    const Vec3s nearest = askew - direction * off;
+    rays.nearest = rays.nearest - off;
+    rays.height2 = dot(nearest, nearest);
+    rays.along = dot(direction, splat(light.direction));
+    rays.by = dot(nearest, splat(light.direction)) / max(sqrt(rays.height2), 1e-20f);
+    rays.away = max(sqrt(rays.height2), capped_radius(light));
+    return rays;
+}
+
+// The stretch within a radius of the lamp.
+HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
+    const Floats half = sqrt(max(Floats(radius * radius) - rays.height2, 0.0f));
+    return {-half, half};
+}
+
+// The stretch inside a spot's cone, or one around its axis. Seen from the lamp at the angle θ from the point next to
+// it, the ray is off the axis by the cosine by·cos θ + along·sin θ = C cos(θ - φ): the cone cuts out the angles around
+// φ with C cos(θ - φ) at least the cosine of its edge.
+HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays) {
+    constexpr float right = 0.5f * pi, far = 1e30f;
+    const float edge = std::max(std::cos(half_angle), 1e-6f);
+    const Floats c2 = fused(rays.along, rays.along, rays.by * rays.by);
+    const Mask16 met = c2 > edge * edge;
+    const Floats half = atan(sqrt(max(c2 - edge * edge, 0.0f)) * (1 / edge));
+    const Floats slope = rays.along / select(abs(rays.by) < 1e-20f, 1e-20f, rays.by);
+    const Floats turned = select(rays.along < 0.0f, -pi, pi);
+    const Floats middle = atan(slope) + zero_unless(rays.by < 0.0f, turned);
+    const Floats from = middle - half, to = middle + half, height = sqrt(rays.height2);
+    const auto length = [&](const Floats& angle) HWY_ATTR {
+        const Floats inside = height * tan(max(min(angle, right), -right));
+        return select(angle >= right, far, select(angle <= -right, -far, inside));
+    };
+    const Mask16 ahead = met & (from < right) & (to > -right);
+    return {select(ahead, length(from), far), select(ahead, length(to), -far)};
+}
+
+// What reaches a length along the rays, as arriving() of trace/light_simd.h.
+HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
+                              const Floats& distance) {
+    const float reach = capped_radius(light);
+    const Floats cosine = min(fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f), 1.0f);
+    const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+    Floats amount = (has_cone(light) ? edge * edge : Floats(1.0f)) / max(distance * distance, reach * reach);
+    if (!std::isinf(light.range)) {
+        const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
+        amount = amount * max(min(1.0f - fourth, 1.0f), 0.0f);
+    }
+    return amount;
+}
+
+// Camera rays as beams need them.
+struct BeamRays {
+    Vec3s origin, direction;
+    Floats first, last; // metres along the rays between which they lie in froxels
+    Ints own;           // tiles they lie in
+};
+
+HWY_INLINE BeamRays beam_rays(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
+    alignas(64) float origin[3][16], direction[3][16];
+    for (size_t i = 0; i < 16; ++i) {
+        const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
+        for (int c = 0; c < 3; ++c) origin[c][i] = ray.origin[c], direction[c][i] = ray.direction[c];
+    }
+    const FroxelGrid& grid = picture.grid;
+    BeamRays rays;
+    rays.origin = {load(origin[0]), load(origin[1]), load(origin[2])};
+    rays.direction = {load(direction[0]), load(direction[1]), load(direction[2])};
+    rays.first = max(Floats(grid.faces.front()) - places.start, 0.0f) * places.slant;
+    rays.last = (min(places.end, grid.faces.back()) - places.start) * places.slant;
+    rays.own = places.own;
+    return rays;
+}
+
+// A beam on the rays.
+struct BeamWalk {
+    const FroxelPicture& picture;
+    const Places& places;
+    const BeamRays& rays;
+    size_t beam;
+    const Light& light;
+    const ConeFalloff& cone;
+    NearLight near;
+    RaysByLamp by_lamp;
+    Floats depth_before;   // optical, of what lies before the rays' starts
+    Floats whole;          // angle of all of the beam on each ray
+    Interval<Floats> full; // within a spot's soft edge
+};
+
+// Adds up what `add` gives for the parts of a stretch before, within and behind another.
+template<class Add>
+HWY_INLINE Vec3s cut_by(const Interval<Floats>& within, const Interval<Floats>& part, const Mask16& wanted,
+                        const Add& add) {
+    constexpr float far = 1e30f;
+    const Mask16 cut = wanted & (within.high > within.low) & (part.low < within.high) & (part.high > within.low);
+    const Floats enter = select(cut, within.low, far), leave = select(cut, within.high, far);
+    const Interval<Floats> parts[] = {{part.low, min(part.high, enter)},
+                                      {max(part.low, enter), min(part.high, leave)},
+                                      {max(part.low, leave), part.high}};
+    Vec3s sum = splat(vec3(0));
+    for (const Interval<Floats>& one : parts) {
+        const Mask16 some = wanted & (one.high > one.low);
+        if (any(some)) sum = sum + add({zero_unless(some, one.low), zero_unless(some, one.high)}, some);
+    }
+    return sum;
+}
+
+// The parts of a stretch between the kinks of the light: where the rays enter and leave the full light of a spot, and
+// the core inside of which 1/r² is capped.
+template<class Add>
+HWY_INLINE Vec3s between_kinks(const BeamWalk& walk, const Interval<Floats>& part, const Mask16& wanted,
+                               const Add& add) {
+    const Interval<Floats> core = inside_ball(capped_radius(walk.light), walk.by_lamp);
+    return cut_by(walk.full, part, wanted, [&](const Interval<Floats>& outer, const Mask16& some) HWY_ATTR {
+        return cut_by(core, outer, some, add);
+    });
+}
+
+// Optical depth of fog of closed form, from points to the lamp.
+HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point, const Floats& distance) {
+    Floats sum = 0.0f;
+    const Vec3s towards = splat(walk.light.position) - point;
+    const LightPaths paths{point, towards * (1.0f / max(distance, 1e-12f)), max(distance - walk.light.radius, 0.0f)};
+    for (const Medium& medium : walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]].analytic)
+        sum = sum + analytic_depth16(medium, paths);
+    return sum;
+}
+
+// Optical depth of such fog from where the rays start to lengths along them.
+HWY_INLINE Floats closed_depth_before(const BeamWalk& walk, const Floats& u) {
+    Floats sum = 0.0f;
+    const LightPaths paths{walk.rays.origin, walk.rays.direction, max(u + walk.by_lamp.nearest, 0.0f)};
+    for (const Medium& medium : walk.picture.scene->snapshot.media) sum = sum + analytic_depth16(medium, paths);
+    return sum;
+}
+
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif
