@@ -9,6 +9,7 @@
 
 #include "integrate/scattering_simd.h"
 #include "modes/froxel/closed_beam_simd.h"
+#include "trace/transmittance/light_grid_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -54,15 +55,9 @@ struct BeamSlice {
     Floats share;          // of the beam's light that arrives
 };
 
-// Rays that pass a lamp within a few froxels: so much of the light comes from there that the fog's density has to be
-// asked for where it is.
-HWY_INLINE Mask16 close_rays(const FroxelGrid& grid, const Light& light, const RaysByLamp& rays,
-                             const EquiAngular16& angles) {
-    constexpr float near = 4; // froxels
-    const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
-    const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
-    const Floats u = max(max(angles.from, -angles.to), 0.0f) * angles.height;
-    return fused(u, u, rays.height2) < near * near * width * width;
+// What froxels know for rays that pass the lamp far off, and the rays themselves close to it.
+HWY_INLINE Floats nearer(const BeamWalk& walk, const Floats& of_froxels, const Floats& own) {
+    return select(walk.close < 1.0f, of_froxels + (own - of_froxels) * walk.close, own);
 }
 
 // Extinction of a medium in the froxels of a slice around the rays.
@@ -75,13 +70,24 @@ HWY_INLINE Floats mean_extinction(const BeamWalk& walk, const BeamSlice& here, s
 }
 
 // Extinction of a medium at points of the rays: of grids, where they are close to the lamp.
-HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, const Mask16& close, size_t medium,
-                                int slice, const Vec3s& point) {
+HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, size_t medium, int slice,
+                                const Vec3s& point) {
     const Medium& of = walk.picture.scene->snapshot.media[medium];
     const bool grid = of.density.kind == DensityKind::bricks;
-    if (grid && !any(close)) return mean_extinction(walk, here, medium, slice);
+    if (grid && !any(walk.close > 0.0f)) return mean_extinction(walk, here, medium, slice);
     const Floats exact = density16(of, point) * grey_extinction(of.optics);
-    return grid && any(!close) ? select(close, exact, mean_extinction(walk, here, medium, slice)) : exact;
+    if (!grid || !any(walk.close < 1.0f)) return exact;
+    const Floats mean = mean_extinction(walk, here, medium, slice);
+    return nearer(walk, mean, exact);
+}
+
+// Share of a beam's light that grid fog lets through to points of the rays, where they are close to the lamp.
+HWY_INLINE Floats exact_share(const BeamWalk& walk, const Vec3s& point, const Mask16& wanted) {
+    const FroxelScene& scene = *walk.picture.scene;
+    const auto& columns = scene.columns[walk.picture.beams.lights[walk.beam]];
+    if (columns) fill_around(*columns, point, wanted);
+    return exp(-light_depth16(walk.picture.beams.grids[walk.beam], point, wanted)) *
+           style_fade(scene.style, walk.picture.grid.camera, point);
 }
 
 // Mean of e^-x over a stretch by that in its middle: sinh(d/2) / (d/2) for the depth d of the stretch.
@@ -98,7 +104,8 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     const FroxelGrid& grid = walk.picture.grid;
     const float low = grid.faces[static_cast<size_t>(slice)],
                 thickness = grid.faces[static_cast<size_t>(slice) + 1] - low;
-    const Mask16 close = wanted & close_rays(grid, walk.light, walk.by_lamp, angles);
+    const Mask16 close = wanted & (walk.close > 0.0f);
+    const bool exact = walk.picture.beams.exact_shadows[walk.beam] && any(close);
     const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
     // Fog dims the light on its way to the points as it does to the middle of the slice, but for what lies between.
@@ -126,18 +133,18 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Vec3s point = fused(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
         const Floats depth = fused(here.across, place, here.before) * walk.places.slant - walk.depth_before;
         const Floats length = angles.length(weight, slope);
-        const Floats dimmed = max(depth, 0.0f) * walk.picture.view_depth + depth_at_lamp(fog, distance) +
-                              (to_lamp(distance) - to_lamp(to_middle)) +
-                              closed_depth_to_lamp(walk, point, distance) * dims;
+        const Floats dimmed =
+            max(depth, 0.0f) * walk.picture.view_depth + closed_depth_to_lamp(walk, point, distance) * dims;
+        Floats passed = here.share * exp(to_lamp(to_middle) - to_lamp(distance) - depth_at_lamp(fog, distance));
+        if (exact) passed = nearer(walk, passed, exact_share(walk, point, close & here_too));
         const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
-                              near_share(walk.near, distance) * length * exp(-dimmed) * mean_over(change);
-        const Vec3s towards =
-            scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
-                       [&](size_t m) HWY_ATTR { return extinction_at(walk, here, close, m, slice, point); });
+                              near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);
+        const Vec3s towards = scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
+                                         [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, slice, point); });
         sum = fused(towards, zero_unless(here_too, amount), sum);
     }
-    return sum * zero_unless(wanted, here.share);
+    return sum;
 }
 
 // The same between the light's kinks.
@@ -148,10 +155,46 @@ Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, in
     });
 }
 
+// Optical depths from the starts of the rays to the faces of the slices [face · 16 + ray], as far as they were asked
+// for: one look at the density in the middle of each slice.
+struct RayDepths {
+    std::vector<float> depths;
+};
+Floats own_depth_to(const BeamWalk& walk, int face, RayDepths& known) {
+    const FroxelGrid& grid = walk.picture.grid;
+    const auto length_to = [&](size_t k) HWY_ATTR { return max(Floats(grid.faces[k]) - walk.places.start, 0.0f); };
+    if (known.depths.empty()) known.depths.assign(16, 0.0f);
+    for (size_t k = known.depths.size() / 16; k <= static_cast<size_t>(face); ++k) {
+        const Floats low = length_to(k - 1) * walk.places.slant, high = length_to(k) * walk.places.slant;
+        const Vec3s point = fused(walk.rays.direction, (low + high) * 0.5f, walk.rays.origin);
+        Floats extinction = 0.0f;
+        for (const Medium& medium : walk.picture.scene->snapshot.media)
+            extinction = extinction + density16(medium, point) * grey_extinction(medium.optics);
+        known.depths.resize(16 * (k + 1));
+        store(fused(extinction, high - low, load(&known.depths[16 * (k - 1)])), &known.depths[16 * k]);
+    }
+    return load(&known.depths[16 * static_cast<size_t>(face)]);
+}
+
 // Optical depth per metre of slant up to a face of the slices.
-HWY_INLINE Floats depth_to(const BeamWalk& walk, int face) {
-    return between_tiles(walk.places,
-                         [&](size_t tile) { return walk.picture.sums.at(walk.picture.grid, tile, face)[3]; });
+HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
+    const Floats mean =
+        between_tiles(walk.places, [&](size_t tile) { return walk.picture.sums.at(walk.picture.grid, tile, face)[3]; });
+    if (!any(walk.close > 0.0f)) return mean;
+    const Floats own = (own_depth_to(walk, face, known) + walk.depth_before) / walk.places.slant;
+    return nearer(walk, mean, own);
+}
+
+// How close rays pass a lamp, as far as they are in its beam: so much of their light comes from there that the fog has
+// to be asked for where they are.
+Floats closeness(const BeamWalk& walk, const Interval<Floats>& chord, const Mask16& met) {
+    constexpr float froxels = 7; // all of it within half of that
+    const FroxelGrid& grid = walk.picture.grid;
+    const float z =
+        std::max(glm::dot(walk.light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
+    const Floats u = max(max(chord.low, -chord.high), 0.0f);
+    const NearLight within{froxels * froxel_width(grid, z)};
+    return zero_unless(met, near_share(within, sqrt(fused(u, u, walk.by_lamp.height2))));
 }
 
 // The froxels of a slice around the rays, from the depths to its faces.
@@ -199,7 +242,7 @@ Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Flo
 
 // Light of a beam on the rays.
 Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays, const RayBatch& batch,
-                 const Places& places, const Floats& depth_before) {
+                 const Places& places, const Floats& depth_before, RayDepths& depths) {
     Vec3s sum = splat(vec3(0));
     const RaysReach reach = reach_of(picture.beams, beam, rays.own);
     if (reach.all.end == 0) return sum;
@@ -214,6 +257,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   picture.scene->near(index),
                   seen_from(light, rays.origin, rays.direction),
                   depth_before,
+                  0.0f,
                   0.0f,
                   {0.0f, 0.0f}};
     const Floats nearest = walk.by_lamp.nearest;
@@ -235,6 +279,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
     if (picture.beams.by_rays_alone[beam])
         return closed_beam_light(walk, lit, chord, met) * splat(light.intensity * light.volume_scale);
 
+    walk.close = closeness(walk, chord, met);
     const auto length_to = [&](int face) HWY_ATTR {
         return (Floats(picture.grid.faces[static_cast<size_t>(face)]) - places.start) * places.slant - nearest;
     };
@@ -245,8 +290,8 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
         const Mask16 here = met & (part.high > part.low) & (reach.first <= slice) & (reach.end > slice);
         if (!any(here)) continue;
         part.low = zero_unless(here, part.low), part.high = zero_unless(here, part.high);
-        if (last != k) before = depth_to(walk, k);
-        const Floats behind = depth_to(walk, last = k + 1);
+        if (last != k) before = depth_to(walk, k, depths);
+        const Floats behind = depth_to(walk, last = k + 1, depths);
         const BeamSlice around = slice_around(walk, k, before, behind);
         before = behind;
         const Mask16 reached = here & (around.share * around.across > 0.0f);

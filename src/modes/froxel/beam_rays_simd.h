@@ -116,6 +116,7 @@ struct BeamWalk {
     RaysByLamp by_lamp;
     Floats depth_before;   // optical, of what lies before the rays' starts
     Floats whole;          // angle of all of the beam on each ray
+    Floats close;          // 1 for rays that pass the lamp within a few froxels, less further off, then 0
     Interval<Floats> full; // within a spot's soft edge
 };
 

@@ -26,8 +26,7 @@ void find_reaches(const FroxelGrid& grid, const Light& light, float radius, floa
     const float cosine = std::cos(light.outer_cone), sine = std::sin(light.outer_cone);
     for (int k = 0; k < grid.slices(); ++k) {
         const float low = grid.faces[static_cast<size_t>(k)], high = grid.faces[static_cast<size_t>(k) + 1];
-        const float width =
-            static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + high * glm::length(grid.step_x));
+        const float width = froxel_width(grid, high);
         // From the middle of the froxel's line; no point of it is further from there than half its length.
         const Vec3s offset = fused(step, 0.5f * (low + high), start);
         const Floats near = fused(slant, 0.5f * (high - low), margin * width);
@@ -85,7 +84,7 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t in
     if (has_cone(light) || (is_closed(scene) && has_exact_shadows(scene, light))) return {infinity};
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
     if (!(z > 0)) return {};
-    return {froxels * static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x))};
+    return {froxels * froxel_width(grid, z)};
 }
 
 float dimming(const LightDepth& depth) {
@@ -100,7 +99,7 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
     for (const Medium& medium : scene.snapshot.media)
         if (is_grid(medium)) extinction += density_at(medium, light.position) * grey_extinction(medium.optics);
     const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
-    const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
+    const float width = froxel_width(grid, z);
     return {extinction * dimming(scene.depths[index]), froxels * width};
 }
 }
@@ -113,7 +112,8 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     for (const size_t index : beams.lights) {
         beams.fog.push_back(fog_at_lamp(scene, grid, index));
         beams.grids.push_back(scene.depths[index]), beams.grids.back().analytic.clear();
-        beams.by_rays_alone.push_back(is_closed(scene) && has_exact_shadows(scene, scene.snapshot.lights[index]));
+        beams.exact_shadows.push_back(has_exact_shadows(scene, scene.snapshot.lights[index]));
+        beams.by_rays_alone.push_back(is_closed(scene) && beams.exact_shadows.back());
     }
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);

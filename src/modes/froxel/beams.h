@@ -40,6 +40,7 @@ struct FroxelBeams {
     std::vector<size_t> lights;      // of the scene
     std::vector<LampFog> fog;        // at each of them
     std::vector<LightDepth> grids;   // of each, without fog of closed form: rays know by themselves how that dims it
+    std::vector<bool> exact_shadows; // whether rays find them, or there are none
     std::vector<bool> by_rays_alone; // whether rays know all of it: fog of closed form and exact shadows
     std::vector<Reach> reaches;      // [tile · lights + light]
     RecycledFloats shares; // of the light that would arrive without surfaces, and through LampFog alone: what does

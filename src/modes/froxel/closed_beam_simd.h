@@ -15,14 +15,16 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Light on a stretch without kinks, by two Gauss points in each of some equal angles seen from the lamp: there 1/r² is
-// constant. A piece spans half a radian and two optical depths at most, of the way to the lamp and that to the eye.
+// constant. A piece spans 0.3 radians, in cones 0.2, and two optical depths at most, of the way to the lamp and that to
+// the eye.
 Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted) {
-    constexpr float gauss = 0.2113248654f, most = 24, wide = 0.2f; // (1 - 1/√3) / 2
+    constexpr float gauss = 0.2113248654f, most = 24; // (1 - 1/√3) / 2
     const FroxelScene& scene = *walk.picture.scene;
     const size_t index = walk.picture.beams.lights[walk.beam];
     const EquiAngular16 angles(stretch, walk.by_lamp.away);
     const Floats across = closed_depth_before(walk, stretch.high) - closed_depth_before(walk, stretch.low);
-    const float least = has_cone(walk.light) ? 2 : 1; // a soft edge may be narrow
+    // A soft edge may be narrow.
+    const float wide = has_cone(walk.light) ? 0.2f : 0.3f, least = has_cone(walk.light) ? 2 : 1;
     const Floats pieces = min(floor(max(angles.angle * (1 / wide), across)) + least, most);
     const Mask16 single = (angles.angle < (has_cone(walk.light) ? 0.0f : 0.05f)) & (across < 0.1f);
     const Floats points = select(single, 1.0f, pieces * 2.0f), weight = 1.0f / points;

@@ -18,7 +18,7 @@ bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const 
     const float low = grid.faces[static_cast<size_t>(slice)], high = grid.faces[static_cast<size_t>(slice) + 1];
     const float z = 0.5f * (low + high);
     const vec3 center = grid.point(grid.pixel_of(vec2(at)), z);
-    const float width = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
+    const float width = froxel_width(grid, z);
     const float reach = near * std::max(width, high - low);
     return std::ranges::any_of(lights, [&](const Light& light) {
         const vec3 offset = light.position - center;

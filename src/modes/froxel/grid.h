@@ -41,6 +41,11 @@ struct FroxelGrid {
     }
 };
 
+// Width of a froxel at planar depth z, metres.
+inline float froxel_width(const FroxelGrid& grid, float z) {
+    return static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + z * glm::length(grid.step_x));
+}
+
 // As camera_ray(), without its tangent.
 inline Ray line_ray(const FroxelGrid& grid, vec2 pixel) {
     const vec3 step = grid.line_step(pixel);

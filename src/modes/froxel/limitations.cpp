@@ -25,9 +25,8 @@ FroxelSize middle_froxel(const View& view, const Snapshot& snapshot, const Froxe
     const FroxelGrid grid = make_froxel_grid(view.camera, view.size, settings.tile);
     const Box& box = snapshot.bounds;
     const float depth = std::max(glm::dot(box.center() - view.camera.position, view.camera.forward), view.camera.near);
-    const float pixel = glm::length(grid.origin_x) + depth * glm::length(grid.step_x);
     const float extent = box.empty() ? depth : depth + 0.5f * glm::length(box.size());
-    return {pixel * static_cast<float>(settings.tile), extent / static_cast<float>(settings.depth_slices)};
+    return {froxel_width(grid, depth), extent / static_cast<float>(settings.depth_slices)};
 }
 
 bool in_fog(const Snapshot& snapshot, vec3 point) {

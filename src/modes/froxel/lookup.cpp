@@ -140,9 +140,11 @@ Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Place
     const size_t count = picture.beams.lights.size();
     if (count == 0) return sum;
     const BeamRays rays = beam_rays(picture, batch, places);
+    static thread_local RayDepths depths;
+    depths.depths.clear();
     alignas(64) float rgb[3][16];
     for (size_t beam = 0; beam < count; ++beam) {
-        const Vec3s light = beam_light(picture, beam, rays, batch, places, depth_before);
+        const Vec3s light = beam_light(picture, beam, rays, batch, places, depth_before, depths);
         sum = sum + light;
         if (of_beams.empty()) continue;
         store_light(light, rgb);

@@ -31,7 +31,7 @@ size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, in
                           {glm::dot(offset, direction), glm::length(glm::cross(offset, direction))},
                           0};
     }
-    const float side = static_cast<float>(grid.tile) * (glm::length(grid.origin_x) + low * glm::length(grid.step_x));
+    const float side = froxel_width(grid, low);
     for (size_t i = 0; i < count; ++i) {
         NearLine& line = lines[i];
         line.width2 = std::max(side * side / (4 * pi * static_cast<float>(count)), light.core * light.core);
