@@ -187,7 +187,7 @@ Noise single_noise(const Choice& choice) {
 // become.
 bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     if (rounds.freedom > 0)
-        stats.noise = noise_of(result, rounds.freedom);
+        stats.noise = noise_of(result);
     else
         stats.noise = single_noise(*rounds.choice);
     const double target = rounds.goal.error;
@@ -207,7 +207,7 @@ double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
         result = scout.layers, stats.add(scout.stats), stats.samples = scout_samples;
         if (judge(rounds, result, stats)) return 0;
     } else {
-        const Noise noise = noise_of(scout.layers, rounds.freedom);
+        const Noise noise = noise_of(scout.layers);
         const double ratio = std::sqrt(choice.noise_ratio);
         stats.noise = Noise{ratio * noise.error, ratio * noise.bound};
     }

@@ -42,7 +42,10 @@ Layers make_layers(const View& view, bool halves) {
     assert(layers.low.x + layers.size.x <= view.size.x && layers.low.y + layers.size.y <= view.size.y);
     layers.color = layers.inscatter = Image<vec3>(layers.size);
     layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
-    if (view.batches > 1) layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+    if (view.batches > 1) {
+        layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+        layers.variance_error = layers.inscatter_variance_error = Image<float>(layers.size);
+    }
     if (view.surface_parts || view.fog_parts) layers.surface = layers.background = Image<vec3>(layers.size);
     if (view.fog_parts) layers.ambient = layers.emission = layers.multiple = Image<vec3>(layers.size);
     if (halves) layers.half_a = layers.half_b = Image<vec3>(layers.size);
@@ -222,7 +225,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     for (const FrameStats& block : block_stats) stats.add(block);
     stats.add(probed);
     add_up(layers);
-    if (view.batches > 1) stats.noise = noise_of(layers, view.batches - 1);
+    if (view.batches > 1) stats.noise = noise_of(layers);
     return std::move(task.layers);
 }
 

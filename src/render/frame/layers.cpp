@@ -12,12 +12,14 @@ template<class T, class Share> void blend(Image<T>& image, const Image<T>& other
         for (int x = 0; x < image.size.x; ++x) image.at(x, y) += share({x, y}) * (other.at(x, y) - image.at(x, y));
 }
 
-// Variance of the blended mean of independent pictures.
-template<class Share> void blend_variance(Image<vec3>& variance, const Image<vec3>& other, const Share& share) {
-    for (int y = 0; y < variance.size.y; ++y)
-        for (int x = 0; x < variance.size.x; ++x) {
+// What sums of independent pictures add up, with factors that are shares to the second (variances) or fourth power.
+template<class T, class Share> void blend_power(Image<T>& image, const Image<T>& other, const Share& share, int power) {
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = 0; x < image.size.x; ++x) {
             const float added = share({x, y}), kept = 1 - added;
-            variance.at(x, y) = kept * kept * variance.at(x, y) + added * added * other.at(x, y);
+            const float a = kept * kept, b = added * added;
+            image.at(x, y) =
+                power == 2 ? a * image.at(x, y) + b * other.at(x, y) : a * a * image.at(x, y) + b * b * other.at(x, y);
         }
 }
 
@@ -34,8 +36,10 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
          {&Layers::surface, &Layers::background, &Layers::ambient, &Layers::emission, &Layers::multiple})
         blend(layers.*part, other.*part, share);
     add_up(layers);
-    blend_variance(layers.variance, other.variance, share);
-    blend_variance(layers.inscatter_variance, other.inscatter_variance, share);
+    blend_power(layers.variance, other.variance, share, 2);
+    blend_power(layers.inscatter_variance, other.inscatter_variance, share, 2);
+    blend_power(layers.variance_error, other.variance_error, share, 4);
+    blend_power(layers.inscatter_variance_error, other.inscatter_variance_error, share, 4);
 }
 }
 
@@ -64,11 +68,8 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 
 namespace {
 constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
-constexpr int largest_tile = 8, fewest_tiles = 16;
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
-
-int tiles_across(int length, int side) { return (length + side - 1) / side; }
 
 double mean_of(const Image<vec3>& image) {
     double sum = 0;
@@ -76,47 +77,26 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-// Of an image's mean: its standard error, and how much of it comes in one lump, the third moment over the variance.
-struct Spread {
-    double error = 0, lump = 0;
-};
-
-// From the means of its square tiles. What differs between tiles for another reason than chance makes it larger.
-Spread spread_of(const Image<vec3>& image, double mean) {
-    int side = largest_tile;
-    while (side > 1 && tiles_across(image.size.x, side) * tiles_across(image.size.y, side) < fewest_tiles) side /= 2;
-    const ivec2 tiles(tiles_across(image.size.x, side), tiles_across(image.size.y, side));
-    const int count = tiles.x * tiles.y;
-    if (count < 2) return {};
-
-    std::vector<double> excess(static_cast<size_t>(count), 0.0); // of each tile's sum over what the mean makes expect
-    for (int y = 0; y < image.size.y; ++y)
-        for (int x = 0; x < image.size.x; ++x)
-            excess[static_cast<size_t>(y / side * tiles.x + x / side)] += channel_mean(image.at(x, y)) - mean;
-    double squares = 0, cubes = 0;
-    for (const double value : excess) squares += value * value, cubes += value * value * value;
-    const double pixels = static_cast<double>(image.pixels.size());
-    return {std::sqrt(squares * count / (count - 1)) / pixels,
-            squares > 0 ? std::max(cubes / squares, 0.0) / pixels : 0};
-}
-
-Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, int freedom) {
+Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {
     const double mean = mean_of(picture), variance = mean_of(variances);
     if (!(variance > 0)) return {};
     if (!(mean > 0)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
-    // At best the variances are as well known as those of normal distributions, with channels that agree.
-    const double best = variance * std::sqrt(2.0 / (freedom * static_cast<double>(picture.pixels.size())));
-    const Spread spread = spread_of(variances, variance);
-    const double half = confidence * spread.lump / 2; // Wilson (1927), as for counts of lumps
-    const double high = variance + confidence * (half + std::hypot(std::max(spread.error, best), half));
+    // The mean's error adds up from those of the pixels. What one of them may be off by comes in one lump: the third
+    // moment over the variance, and then a bound as for counts of lumps (Wilson 1927).
+    double squares = 0, cubes = 0;
+    for (const double square : squared_errors.pixels) squares += square, cubes += square * std::sqrt(square);
+    const double pixels = static_cast<double>(picture.pixels.size());
+    const double error = std::sqrt(squares) / pixels, lump = squares > 0 ? cubes / squares / pixels : 0;
+    const double half = confidence * lump / 2;
+    const double high = variance + confidence * (half + std::hypot(error, half));
     return {std::sqrt(variance) / mean, std::sqrt(high) / mean};
 }
 }
 
-Noise noise_of(const Layers& layers, int freedom) {
-    const Noise color = noise_of(layers.color, layers.variance, freedom);
-    const Noise fog = noise_of(layers.inscatter, layers.inscatter_variance, freedom);
+Noise noise_of(const Layers& layers) {
+    const Noise color = noise_of(layers.color, layers.variance, layers.variance_error);
+    const Noise fog = noise_of(layers.inscatter, layers.inscatter_variance, layers.inscatter_variance_error);
     return {std::max(color.error, fog.error), std::max(color.bound, fog.bound)};
 }
 }

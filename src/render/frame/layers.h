@@ -28,8 +28,9 @@ struct Layers {
     Image<float> transmittance;               // of the fog, eye to surface
     Image<float> validity;                    // of the least valid stretch of a sample
     Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
-    Image<vec3> half_a, half_b;               // on request: colour of the even and of the odd batches
-    Image<vec3> surface, background;          // on request: the colour without fog light
+    Image<float> variance_error, inscatter_variance_error; // squared standard errors of the variances' channel means
+    Image<vec3> half_a, half_b;                            // on request: colour of the even and of the odd batches
+    Image<vec3> surface, background;                       // on request: the colour without fog light
     // On request, what fog light is made of: by light name, every light of the scene, dark ones too; then OtherLight.
     std::vector<std::pair<std::string, Image<vec3>>> lights;
     Image<vec3> ambient, emission, multiple;
@@ -81,7 +82,7 @@ struct TileShares {
 void blend_layers(Layers& layers, const Layers& other, float share);
 void blend_layers(Layers& layers, const Layers& other, const TileShares& shares);
 
-// From the variances of the layers, which stand on `freedom` differences between batches (batches - 1, summed over
-// pictures combined). A layer that is black and free of noise has no error.
-Noise noise_of(const Layers& layers, int freedom);
+// From the variances of the layers and how well they are known, with noise that is independent from pixel to pixel. A
+// layer that is black and free of noise has no error.
+Noise noise_of(const Layers& layers);
 }

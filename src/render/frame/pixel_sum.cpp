@@ -11,6 +11,19 @@ vec3 RunningMean::variance() const {
     return count < 2 ? vec3(0) : vec3(squares / (static_cast<double>(count) * (count - 1)));
 }
 
+void RunningSpread::add(vec3 value) {
+    const double n = count + 1;
+    const dvec3 part = (dvec3(value) - mean) / n, square = part * part, term = square * n * (n - 1);
+    fourths += term * square * (n * n - 3 * n + 3) + 6.0 * square * squares - 4.0 * part * cubes;
+    cubes += term * part * (n - 2) - 3.0 * part * squares;
+    RunningMean::add(value);
+}
+
+float RunningSpread::variance_error() const {
+    const double n = count;
+    return count < 2 ? 0 : static_cast<float>((fourths.x + fourths.y + fourths.z) / (3 * n * std::pow(n - 1, 3)));
+}
+
 void PixelSum::add(const PixelSample& sample) {
     surface += sample.surface, background += sample.background, inscatter += sample.inscatter;
     const float w = sample.weight;
@@ -48,6 +61,9 @@ void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers) {
     layers.validity.at(p.x, p.y) = sum.validity / count;
     if (!layers.variance.empty()) layers.variance.at(p.x, p.y) = sum.color_mean.variance();
     if (!layers.inscatter_variance.empty()) layers.inscatter_variance.at(p.x, p.y) = sum.inscatter_mean.variance();
+    if (!layers.variance_error.empty()) layers.variance_error.at(p.x, p.y) = sum.color_mean.variance_error();
+    if (!layers.inscatter_variance_error.empty())
+        layers.inscatter_variance_error.at(p.x, p.y) = sum.inscatter_mean.variance_error();
     if (layers.half_a.empty()) return;
     layers.half_a.at(p.x, p.y) = vec3(sum.half_means[0].mean);
     layers.half_b.at(p.x, p.y) = vec3(sum.half_means[1].mean);

@@ -12,10 +12,21 @@ struct RunningMean {
     vec3 variance() const; // squares / (n (n-1)); 0 for fewer than two
 };
 
+// The same with what tells how well that variance is known: the fourth moment (Pébay 2008).
+struct RunningSpread : RunningMean {
+    glm::dvec3 cubes{0}, fourths{0}; // summed powers of deviations from the mean
+
+    void add(vec3 value);
+    // Squared standard error of the variance, averaged over channels: no less than it is (of a normal distribution,
+    // half as much again), and the square of the variance for two values, or where one value makes all of it.
+    float variance_error() const;
+};
+
 // What makes up the colour goes through the means of batches; everything else is summed over all samples.
 struct PixelSum {
     vec3 surface{0}, background{0}, inscatter{0}; // of the current batch
-    RunningMean surface_mean, background_mean, inscatter_mean, color_mean, half_means[2];
+    RunningMean surface_mean, background_mean, half_means[2];
+    RunningSpread inscatter_mean, color_mean;
     float weight = 0, alpha = 0, transmittance = 0, validity = 0; // weighted
     int kept = 0;                                                 // samples
     float depth = infinity, off_center = infinity;

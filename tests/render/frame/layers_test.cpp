@@ -25,40 +25,85 @@ TEST(Noise, RunningMeanMatchesHandComputation) {
     EXPECT_EQ(mean.variance().z, 0);
 }
 
+TEST(Noise, RunningSpreadMatchesHandComputation) {
+    RunningSpread spread;
+    for (const float value : {1.0f, 3.0f}) spread.add(vec3(value));
+    // Two values: the square of the variance of their mean, 1.
+    EXPECT_FLOAT_EQ(spread.variance_error(), 1);
+    for (const float value : {5.0f, 7.0f}) spread.add(vec3(value));
+    // Deviations -3, -1, 1, 3: fourth powers sum to 164, over 4·3³.
+    EXPECT_FLOAT_EQ(spread.variance_error(), 164.0f / 108);
+    // One value of 64 makes all of the variance.
+    RunningSpread lone;
+    for (int i = 0; i < 64; ++i) lone.add(vec3(i == 40 ? 1.0f : 0.0f));
+    EXPECT_NEAR(std::sqrt(lone.variance_error()) / lone.variance().x, 1, 0.02);
+}
+
 namespace {
-Layers homogeneous_layers(ivec2 size, float color, float variance, float fog, float fog_variance) {
+// With variances that are known to a `doubt` of themselves.
+Layers homogeneous_layers(ivec2 size, float color, float variance, float fog, float fog_variance, float doubt = 0.1f) {
     Layers layers;
+    const auto squared = [&](float v) { return Image<float>(size, doubt * doubt * v * v); };
     layers.color = Image<vec3>(size, vec3(color)), layers.variance = Image<vec3>(size, vec3(variance));
     layers.inscatter = Image<vec3>(size, vec3(fog)), layers.inscatter_variance = Image<vec3>(size, vec3(fog_variance));
+    layers.variance_error = squared(variance), layers.inscatter_variance_error = squared(fog_variance);
     return layers;
+}
+
+// Of so many pixels alike, over their error.
+double bound_over_error(double pixels, double doubt) {
+    const double half = 1.96 * doubt / pixels / 2;
+    return std::sqrt(1 + 1.96 * (half + std::hypot(doubt / std::sqrt(pixels), half)));
 }
 }
 
 TEST(Noise, IsTheStandardErrorOverTheMeanOfTheWorseLayer) {
-    Noise noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.0025f), 63);
+    Noise noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.0025f));
     EXPECT_NEAR(noise.error, 0.1, 1e-7);
-    // No tile differs: the bound is that of the variance of normal numbers.
-    EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / (63 * 1024))), 1e-7);
-    noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.09f), 63);
+    EXPECT_NEAR(noise.bound, 0.1 * bound_over_error(1024, 0.1), 1e-7);
+    noise = noise_of(homogeneous_layers({32, 32}, 2, 0.04f, 1, 0.09f));
     EXPECT_NEAR(noise.error, 0.3, 1e-7);
-    noise = noise_of(homogeneous_layers({5, 3}, 2, 0.04f, 0, 0), 63);
+    noise = noise_of(homogeneous_layers({5, 3}, 2, 0.04f, 0, 0));
     EXPECT_NEAR(noise.error, 0.1, 1e-7);
-    noise = noise_of(homogeneous_layers({1, 1}, 2, 0.04f, 0, 0), 63);
-    EXPECT_NEAR(noise.bound, 0.1 * std::sqrt(1 + 1.96 * std::sqrt(2.0 / 63)), 1e-7);
-    noise = noise_of(homogeneous_layers({4, 4}, 0, 0, 0, 0), 63);
+    noise = noise_of(homogeneous_layers({1, 1}, 2, 0.04f, 0, 0, 1));
+    EXPECT_NEAR(noise.bound, 0.1 * bound_over_error(1, 1), 1e-7);
+    noise = noise_of(homogeneous_layers({4, 4}, 0, 0, 0, 0));
     EXPECT_EQ(noise.error, 0);
     EXPECT_EQ(noise.bound, 0);
-    EXPECT_TRUE(std::isinf(noise_of(homogeneous_layers({4, 4}, 0, 1, 0, 0), 63).error));
+    EXPECT_TRUE(std::isinf(noise_of(homogeneous_layers({4, 4}, 0, 1, 0, 0)).error));
 }
 
-TEST(Noise, IsLessSureWhereTilesDiffer) {
-    // 16 tiles of 8×8 pixels, half with variance 1 and half with 3: mean 2, standard error √(16/15)/√16.
-    Layers layers = homogeneous_layers({32, 32}, 1, 1, 0, 0);
-    for (int y = 16; y < 32; ++y)
-        for (int x = 0; x < 32; ++x) layers.variance.at(x, y) = vec3(3);
-    const Noise noise = noise_of(layers, 63);
-    EXPECT_NEAR(noise.error, std::sqrt(2.0), 1e-6);
-    EXPECT_NEAR(noise.bound, std::sqrt(2 + 1.96 * std::sqrt(16.0 / 15) / 4), 1e-6);
+TEST(Noise, IsLessSureWhereFewPixelsHoldItUnlessTheyAreWellKnown) {
+    Layers layers = homogeneous_layers({32, 32}, 1, 0.001f, 0, 0, 1);
+    layers.variance.at(7, 9) = vec3(1024);
+    const auto over_error = [&](float doubt) {
+        layers.variance_error.at(7, 9) = doubt * doubt * 1024 * 1024;
+        const Noise noise = noise_of(layers);
+        return noise.bound / noise.error;
+    };
+    EXPECT_NEAR(over_error(1), bound_over_error(1, 1), 0.01);
+    EXPECT_NEAR(over_error(0.1f), bound_over_error(1, 0.1), 0.01);
+}
+
+TEST(Noise, StaysBelowItsBoundWhereFewSamplesHoldIt) {
+    // One sample of 20 is bright, in a quarter of the pixels only: the true error of 2 samples a pixel, taken by two
+    // batches, in 400 pictures. The bound may be broken in 2.5 % of them, and 2 % for chance.
+    const double p = 0.05, variance = 0.25 * p * (1 - p) / 2;
+    int broken = 0;
+    for (uint32_t picture = 0; picture < 400; ++picture) {
+        Layers layers = homogeneous_layers({32, 32}, 1, 0, 0, 0);
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x) {
+                RunningSpread spread;
+                for (uint32_t k = 0; k < 2; ++k) {
+                    const uint32_t u = hash(picture, static_cast<uint32_t>(y * 32 + x), k);
+                    spread.add(vec3(to_unit(u) < p ? 1.0f : 0.0f));
+                }
+                layers.variance.at(x, y) = spread.variance(), layers.variance_error.at(x, y) = spread.variance_error();
+            }
+        broken += noise_of(layers).bound < std::sqrt(variance);
+    }
+    EXPECT_LE(broken, 0.045 * 400);
 }
 
 TEST(Noise, VarianceIsThatOfTheMean) {
