@@ -14,7 +14,8 @@ struct MarchSettings {
     float near_light = 0.5f;         // a step is at most this share of the distance to a local light
     float min_transmittance = 1e-3f; // the march stops where less than this passes
     Visibility visibility = Visibility::intervals;
-    int nodes = 4; // Gauss–Legendre nodes on each lit stretch of fog in closed form
+    int nodes = 4;         // Gauss–Legendre nodes on each lit stretch of fog in closed form
+    int light_marches = 0; // exact: nodes of a ray from which the way to a light is marched; 0 = all
 };
 
 struct Light;

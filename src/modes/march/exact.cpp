@@ -11,6 +11,7 @@
 namespace tyndall {
 namespace {
 constexpr int nodes_per_part = 2;
+constexpr int march_evaluations = 8; // of fog, that following one grid to a light takes about as long as
 
 // A stretch from which a share of a light's points is seen.
 struct LitPart {
@@ -24,17 +25,24 @@ struct LitEnd {
     int change = 0;
 };
 
+// A point of the ray and what it adds to its light if nothing dims that on its way.
+struct Node {
+    dvec3 position, light;
+};
+
 // Memory that a thread keeps from ray to ray.
 struct Scratch {
     FogPieces fog;
     LightAlong along;
     std::vector<LitPart> lit; // by the current light
     std::vector<LitEnd> ends;
+    std::vector<Node> nodes; // that some are drawn from
 };
 
 struct RayMarch {
     const SingleScattering& frame;
     const Ray& ray;
+    float jitter = 0.5f; // in [0,1)
     Scratch& scratch;
     double longest = 0; // step by length alone
     int nodes = 0;
@@ -161,8 +169,31 @@ void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum)
     if (occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
     light_depths(on.frame.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
     for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
-    on.nodes += pending.count;
+    on.nodes += pending.count * march_evaluations * static_cast<int>(on.frame.depths[light_index].marched.size());
     pending.count = 0;
+}
+
+void add_node(RayMarch& on, size_t light_index, const Node& node, Pending& pending, dvec3& sum) {
+    const int i = pending.count++;
+    pending.x[i] = float(node.position.x), pending.y[i] = float(node.position.y), pending.z[i] = float(node.position.z);
+    pending.position[i] = node.position, pending.light[i] = node.light;
+    if (pending.count == 16) add_pending(on, light_index, pending, sum);
+}
+
+// About `count` of the scratch's nodes, each as often as it adds to the light (systematic resampling, Kitagawa 1996):
+// the mean over jitters is what all of them give.
+void add_drawn(RayMarch& on, size_t light_index, int count, Pending& pending, dvec3& sum) {
+    const auto weight = [](const Node& node) { return node.light.x + node.light.y + node.light.z; };
+    double all = 0, before = 0;
+    for (const Node& node : on.scratch.nodes) all += weight(node);
+    const double each = all / count, shift = on.jitter;
+    for (const Node& node : on.scratch.nodes) {
+        const double after = before + weight(node);
+        const double times = std::floor(after / each + shift) - std::floor(before / each + shift);
+        before = after;
+        if (times > 0)
+            add_node(on, light_index, {node.position, node.light * (times * each / weight(node))}, pending, sum);
+    }
 }
 
 // Light scattered towards the eye at a node of given weight, before what dims it on its way from the light.
@@ -198,17 +229,22 @@ template<class Add> void visit_nodes(const LightAlong& along, double low, double
 dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     const FogPieces& fog = on.scratch.fog;
     const LightAlong& along = on.scratch.along;
+    const LightDepth& depth = on.frame.depths[light_index];
+    const auto& occluders = shadow_casters(*along.light, on.frame.snapshot);
+    const bool slow = !depth.marched.empty() || (occluders && occluders->has_alpha());
+    const int marches = slow ? on.frame.rule->settings.light_marches : 0;
+    on.scratch.nodes.clear();
     Pending pending;
     dvec3 sum(0);
     const auto add = [&](size_t piece, double t, double weight) {
         const dvec3 light = scattered_at(on, piece, t, weight);
         // A million such nodes would not change the seventh digit.
         if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
-        const dvec3 position = on.at(t);
-        const int i = pending.count++;
-        pending.x[i] = float(position.x), pending.y[i] = float(position.y), pending.z[i] = float(position.z);
-        pending.position[i] = position, pending.light[i] = light;
-        if (pending.count == 16) add_pending(on, light_index, pending, sum);
+        ++on.nodes;
+        if (marches > 0)
+            on.scratch.nodes.push_back({on.at(t), light});
+        else
+            add_node(on, light_index, {on.at(t), light}, pending, sum);
     };
 
     size_t piece = 0;
@@ -224,6 +260,10 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
             if (fog.pieces[piece].high >= lit.high) break;
         }
     }
+    if (static_cast<size_t>(marches) < on.scratch.nodes.size())
+        add_drawn(on, light_index, marches, pending, sum);
+    else
+        for (const Node& node : on.scratch.nodes) add_node(on, light_index, node, pending, sum);
     add_pending(on, light_index, pending, sum);
     return sum * dvec3(along.light->intensity * along.light->volume_scale);
 }
@@ -268,7 +308,7 @@ dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_i
 void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_index, Scatter& result) {
     static thread_local Scratch scratch;
     const Ray& ray = batch.rays[ray_index];
-    RayMarch on{frame, ray, scratch};
+    RayMarch on{frame, ray, batch.jitter.empty() ? 0.5f : batch.jitter[ray_index], scratch};
     const FogPieces& fog = scratch.fog;
     find_fog(ray, frame.snapshot.media, frame.rule->settings.min_transmittance, scratch.fog);
     result = {};

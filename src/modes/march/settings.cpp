@@ -29,7 +29,11 @@ void append_march_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("march.nodes", "", 1, 16,
                               "Gauss-Legendre nodes on each lit interval of fog without a grid, with intervals",
                               TYNDALL_FIELD(march.nodes)));
-    mark_advanced(rows, {"step_voxels", "near_light", "min_transmittance"});
+    rows.push_back(number_row("march.light_marches", "", 0, 65536,
+                              "with exact: from how many nodes of a ray, drawn by chance as each adds to its light, "
+                              "grids and alpha on the way to each light are followed; 0 = from all",
+                              TYNDALL_FIELD(march.light_marches)));
+    mark_advanced(rows, {"step_voxels", "near_light", "min_transmittance", "light_marches"});
 }
 
 void set_march_quality(Settings& settings, Quality quality) {

@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <cassert>
+#include <list>
 #include <optional>
+#include <ranges>
 
 namespace tyndall {
 namespace {
 // Shares of the time that measuring may take.
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
+constexpr double truth_work_share = 0.2; // of the picture's work, where no time is given
+constexpr int truth_marches = 64;        // from so many nodes of a ray the truth marches to each light
 
 // Whether a finer candidate is as wrong as the one before.
 bool gains_nothing(const Choice& next, const Choice& before) {
@@ -36,48 +40,48 @@ struct Chooser {
     bool systematic = has_integrator(mode);
     Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
 
+    // `work`: of the picture that it is for.
     std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
-                                 std::function<bool()> stop) const {
-        if (goal.seconds == 0) stop = {};
+                                 std::function<bool()> stop, double work) const {
+        if (goal.seconds > 0)
+            work = infinity;
+        else
+            stop = {};
+        Settings quick = truth; // and as exact on the average
+        quick.march.light_marches = truth_marches;
         return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
-                                                  systematic ? &truth : nullptr, std::move(chances), salt, options,
-                                                  std::move(ready), std::move(stop)));
+                                                  systematic ? &quick : nullptr, std::move(chances), salt, options,
+                                                  std::move(ready), std::move(stop), truth_work_share * work));
     }
 
-    // Draws more tiles as long as `worth` says that a tighter bound would be.
-    Measured measured(Look look, Pilot& pilot, const std::function<bool(const Measured&)>& worth) const {
-        Measured result = measure(pilot, look, goal.clock);
-        while (systematic && goal.error > 0 && pilot.can_grow(result.integrator.by_noise) && worth(result)) {
-            grow(pilot, result.integrator.by_noise);
-            result = measure(pilot, look, goal.clock);
-        }
-        return result;
+    // To get to the error with the candidate of the scout, were that right.
+    double work_ahead(const Scout& scout) const {
+        if (!(goal.error > 0)) return infinity;
+        const Enough enough{goal.error * goal.error, infinity};
+        const double rays = allot(scout.layers, scout_samples, enough, 1, scout_samples).rays;
+        return scout.work() * std::max(rays / static_cast<double>(scout.stats.camera_rays), 1.0);
     }
 
-    // What a candidate is worth; before is one measured already, which knows how noise falls.
-    Choice choice(const Candidate& candidate, std::shared_ptr<Pilot> tiles, const Choice* before,
-                  std::shared_ptr<const Scout> scout) const {
-        Pilot& pilot = *tiles;
+    Look look_at(const Candidate& candidate, const Scout* scout) const {
         const bool scouted = scout && scout->candidate.name == candidate.name;
         Look look{mode, candidate.settings, scouted ? scout->prepared : nullptr};
         if (scouted) look.prepare_seconds = scout->prepare_seconds;
-        Choice choice{candidate, {}, systematic};
+        return look;
+    }
+
+    // What a candidate is worth; `before` is one measured already, which knows how noise falls.
+    Choice choice(const Candidate& candidate, Look& look, std::shared_ptr<Pilot> pilot, const Choice* before,
+                  std::shared_ptr<const Scout> scout) const {
+        const bool scouted = scout && scout->candidate.name == candidate.name;
+        Choice choice{candidate, measure(*pilot, look, goal.clock), systematic};
         choice.scout = scout, choice.power = before ? before->power : 1, choice.pace = before ? before->pace : 1;
-        const auto saves_time = [&](const Measured& measured) {
-            if (goal.seconds > 0 || measured.integrator.value >= goal.error * goal.error) return false;
-            choice.measured = measured;
-            const double now = choice.work_to(goal.error);
-            choice.measured.integrator.bound = measured.integrator.value;
-            return now - choice.work_to(goal.error) >
-                   pilot.cost.work / (measured.integrator.by_noise ? 1 : pilot.drawings);
-        };
-        choice.measured = measured(std::move(look), pilot, saves_time);
         choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
+        if (choice.is_truth) choice.measured.integrator = {};
         if (scouted) choice.pace = scout->seconds / scout_samples / std::max(choice.measured.sample_seconds, 1e-9);
         choice.measured.sample_seconds *= choice.pace;
         if (systematic && !before)
-            choice.power = spread_power(pilot, mode, candidate.settings, *choice.measured.prepared);
-        choice.pilot = std::move(tiles);
+            choice.power = spread_power(*pilot, mode, candidate.settings, *choice.measured.prepared);
+        choice.pilot = std::move(pilot);
         choice.scout_variance = before ? before->scout_variance : choice.measured.sample.value;
         return choice;
     }
@@ -141,31 +145,76 @@ double Choice::expected(double samples) const {
     return measured.integrator.value + spread({0, samples * pixels}, scout_samples).squared_error;
 }
 
+namespace {
+// A candidate, what was seen of it, and the work to get to the error: as far as is sure, and if it is no more wrong
+// than it seems.
+struct Entry {
+    const Candidate& candidate;
+    Look look;
+    Choice choice;
+    double sure = infinity, hoped = infinity;
+
+    void weigh(double error) {
+        sure = choice.work_to(error);
+        Choice hopeful = choice;
+        hopeful.measured.integrator.bound = choice.measured.integrator.value;
+        hoped = hopeful.work_to(error);
+    }
+};
+
+// The candidate with least work. The pilot grows as long as another one may save more than that costs.
+Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilot,
+                      const std::shared_ptr<const Scout>& scout) {
+    const double error = chooser.goal.error;
+    const bool bound = binds_candidates(chooser.mode, chooser.settings, chooser.goal.quality);
+    std::list<Entry> entries;
+    std::optional<Choice> before;
+    for (const Candidate& candidate : chooser.candidates) {
+        Look look = chooser.look_at(candidate, scout.get());
+        Choice choice = chooser.choice(candidate, look, pilot, before ? &*before : nullptr, scout);
+        if (before && bound && gains_nothing(choice, *before)) break;
+        before = choice, before->measured.prepared = nullptr;
+        const bool room = leaves_room(choice, error);
+        entries.push_back({candidate, std::move(look), std::move(choice)});
+        entries.back().weigh(error);
+        if (room) break;
+    }
+
+    while (true) {
+        const Entry& best = *std::ranges::min_element(std::ranges::reverse_view(entries), {}, &Entry::sure);
+        const Entry& hoped = *std::ranges::min_element(entries, {}, &Entry::hoped);
+        const bool by_noise = hoped.choice.measured.integrator.by_noise;
+        const double cost = pilot->cost.work / (by_noise ? 1 : pilot->drawings);
+        if (!chooser.systematic || !pilot->can_grow(by_noise) || !(best.sure - hoped.hoped > cost)) return best.choice;
+        const double least = best.sure;
+        std::erase_if(entries, [&](const Entry& entry) { return entry.hoped > least; });
+        grow(*pilot, by_noise);
+        for (Entry& entry : entries) {
+            entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
+            entry.weigh(error);
+        }
+    }
+}
+}
+
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options) {
-    const bool timed = goal.seconds > 0;
     const auto spent = [&] { return goal.clock() - start; };
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     SquaredError sample; // on more tiles than the truth may have time for
     const std::shared_ptr<const Scout> scout = scout_for(chooser, start, sample);
     const double piloting = spent();
-    const std::shared_ptr<Pilot> pilot =
-        chooser.pilot(scout ? chances_in(scout->layers) : even_chances(view), 0, nullptr,
-                      [&] { return spent() - piloting > truth_share * goal.seconds; });
+    const std::shared_ptr<Pilot> pilot = chooser.pilot(
+        scout ? chances_in(scout->layers) : even_chances(view), 0, nullptr,
+        [&] { return spent() - piloting > truth_share * goal.seconds; }, scout ? chooser.work_ahead(*scout) : infinity);
     pilot->stop = {}; // it refers to this call
+    if (goal.seconds == 0) return choose_by_work(chooser, pilot, scout);
 
     std::optional<Choice> best;
     for (const Candidate& candidate : chooser.candidates) {
         const double begun = spent();
-        Choice next = chooser.choice(candidate, pilot, best ? &*best : nullptr, scout);
-        if (!timed) {
-            if (best && binds_candidates(mode, settings, goal.quality) && gains_nothing(next, *best)) break;
-            const bool room = leaves_room(next, goal.error);
-            const bool better = !best || next.work_to(goal.error) <= best->work_to(goal.error);
-            if (better) best = std::move(next);
-            if (room) break;
-            continue;
-        }
+        Look look = chooser.look_at(candidate, scout.get());
+        Choice next = chooser.choice(candidate, look, pilot, best ? &*best : nullptr, scout);
         if (!scout && sample.value > 0) next.measured.sample = sample;
         const double now = spent();
         const auto samples = [&](const Choice& choice) {
@@ -194,17 +243,20 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     const bool shows_noise = !picture.variance.empty();
-    const std::shared_ptr<Pilot> pilot =
-        chooser.pilot(shows_noise ? chances_in(picture) : even_chances(view), salt,
-                      choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; });
+    const std::shared_ptr<Pilot> pilot = chooser.pilot(
+        shows_noise ? chances_in(picture) : even_chances(view), salt, choice.pilot ? choice.pilot->prepared : nullptr,
+        [&] { return goal.clock() > until; }, samples * choice.measured.sample_work);
     pilot->stop = {}; // it refers to this call
     Choice result = choice;
-    const auto decides = [&](const Measured& measured) {
-        const double left = goal.error * goal.error - noise.bound * noise.bound;
-        return measured.integrator.value <= left && measured.integrator.bound > left;
-    };
-    result.measured.integrator =
-        chooser.measured({mode, choice.candidate.settings, choice.measured.prepared}, *pilot, decides).integrator;
+    Look look{mode, choice.candidate.settings, choice.measured.prepared};
+    Measured measured = measure(*pilot, look, goal.clock);
+    const double left = goal.error * goal.error - noise.bound * noise.bound;
+    while (goal.error > 0 && measured.integrator.value <= left && measured.integrator.bound > left &&
+           pilot->can_grow(measured.integrator.by_noise)) {
+        grow(*pilot, measured.integrator.by_noise);
+        measured = measure(*pilot, look, goal.clock);
+    }
+    result.measured.integrator = measured.integrator;
     const double bound = std::hypot(std::sqrt(result.measured.integrator.bound), noise.bound);
     if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
         return result;
@@ -213,7 +265,8 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     double work = result.work_to(goal.error) - samples * result.measured.sample_work;
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
-        Choice finer = chooser.choice(*next, pilot, &choice, choice.scout);
+        Look of_finer = chooser.look_at(*next, choice.scout.get());
+        Choice finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
         const bool room = leaves_room(finer, goal.error);
         const double its_work = finer.work_to(goal.error);
         if (its_work < work || (work == infinity && room)) work = its_work, result = std::move(finer);

@@ -14,7 +14,6 @@
 
 namespace tyndall {
 namespace {
-constexpr double ray_work = 16;     // of a camera ray and what it hits, in evaluations of fog
 constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
@@ -139,6 +138,21 @@ void keep_first(size_t count, Pilot& pilot) {
     for (DrawnTile& tile : pilot.tiles) tile.stands_for /= share, tile.chance *= share;
 }
 
+// One pass over the first tiles: as many as time and work allow.
+void follow_first(const FrameTracer& tracer, Pilot& pilot) {
+    size_t done = 0;
+    while (done < pilot.tiles.size()) {
+        size_t end = done + tiles_between_stops;
+        if (done > 0 && !pilot.stop)
+            end = static_cast<size_t>(static_cast<double>(done) * std::min(pilot.enough_work / pilot.cost.work, 1e6));
+        end = std::clamp(end, done + 1, pilot.tiles.size());
+        pilot.cost += follow(tracer, pilot, 0, done, end, pilot.truth);
+        done = end;
+        if ((pilot.stop && pilot.stop()) || pilot.cost.work > 0.9 * pilot.enough_work) break;
+    }
+    if (done < pilot.tiles.size()) keep_first(done, pilot);
+}
+
 // All passes over all tiles, of which `seen` tiles have had `passes`.
 Cost follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
     Cost cost;
@@ -190,7 +204,7 @@ SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const 
 
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
-                 std::shared_ptr<const Prepared> prepared, std::function<bool()> stop) {
+                 std::shared_ptr<const Prepared> prepared, std::function<bool()> stop, double enough_work) {
     Pilot pilot{&mode, &snapshot, options.cancel};
     if (truth) pilot.truth_settings = *truth;
     pilot.view = view, pilot.seed = view.seed, pilot.chances = std::move(chances);
@@ -198,7 +212,7 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
     pilot.view.lamp_samples = pilot.view.edge_samples = 1, pilot.view.allotted = nullptr;
     pilot.view.seed = hash(view.seed, use_pilot, salt);
     pilot.view.lamps = lamps_in(view, snapshot);
-    pilot.stop = std::move(stop);
+    pilot.stop = std::move(stop), pilot.enough_work = enough_work;
     if (truth) pilot.prepared = prepared ? std::move(prepared) : prepare(pilot, mode, snapshot, *truth);
     grow(pilot);
     return pilot;
@@ -237,13 +251,10 @@ void grow(Pilot& pilot, bool by_noise) {
     if (!pilot.truth_settings) return;
     const FrameTracer tracer =
         tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared);
-    const size_t all = pilot.tiles.size();
-    for (size_t done = 0; seen == 0 && pilot.stop && done < all; done += tiles_between_stops) {
-        pilot.cost += follow(tracer, pilot, 0, done, std::min(done + tiles_between_stops, all), pilot.truth);
-        if (pilot.stop() && done + tiles_between_stops < all) keep_first(done + tiles_between_stops, pilot), done = all;
-    }
-    const bool followed = seen == 0 && pilot.stop;
-    if (!followed) pilot.cost += follow_rest(tracer, pilot, seen, passes, pilot.truth);
+    if (seen == 0)
+        follow_first(tracer, pilot);
+    else
+        pilot.cost += follow_rest(tracer, pilot, seen, passes, pilot.truth);
 }
 
 Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {

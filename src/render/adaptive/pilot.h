@@ -16,6 +16,7 @@
 namespace tyndall {
 inline constexpr size_t drawing_tiles = 32; // drawn at once
 inline constexpr int max_drawings = 4, max_passes = 8;
+inline constexpr double ray_work = 16; // of a camera ray and what it hits, in evaluations of fog
 // Of a tile: for both samples, for each of its pixels, colour and fog light.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 
@@ -60,6 +61,7 @@ struct Pilot {
     std::vector<vec3> truth{};                  // pilot_values of each tile; empty = the candidate's
     Cost cost{};                                // of following it
     std::function<bool()> stop{};               // says when time is up; a few tiles are followed anyway
+    double enough_work = infinity;              // likewise, of the first drawing
 
     double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the picture
     bool is_full() const { return drawings >= max_drawings || static_cast<double>(tiles.size()) >= all(); }
@@ -72,7 +74,8 @@ struct Pilot {
 // With one drawing; those of another `salt` are independent of it. `prepared` for the truth, where it is already.
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
-                 std::shared_ptr<const Prepared> prepared = {}, std::function<bool()> stop = {});
+                 std::shared_ptr<const Prepared> prepared = {}, std::function<bool()> stop = {},
+                 double enough_work = infinity);
 
 // Draws tiles once more and follows the truth there; or follows it as often again on those there are.
 void grow(Pilot& pilot, bool by_noise = false);

@@ -14,6 +14,8 @@ struct Scout {
     FrameStats stats;
     std::shared_ptr<const Prepared> prepared;
     double prepare_seconds = 0, seconds = 0; // the latter without preparing
+
+    double work() const { return ray_work * static_cast<double>(stats.camera_rays) + static_cast<double>(stats.steps); }
 };
 
 // `prepared` for that candidate, where it is already.

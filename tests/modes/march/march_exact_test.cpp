@@ -266,6 +266,47 @@ TEST(MarchExact, LightsWithoutShadowsAndTheEndOfTheMarch) {
     EXPECT_GT(ended.radiance.x, 0.9f * whole.radiance.x);
 }
 
+TEST(MarchExact, MarchesFromDrawnNodesAreRightOnTheAverage) {
+    Stage stage = busy_stage();
+    stage.snapshot.ambient = vec3(0);
+    const std::vector<Ray> rays = busy_rays(16);
+    const std::vector<uint32_t> ids(16, 7);
+    const auto prepared = [&](int marches) {
+        Settings settings = exact_settings();
+        settings.march.light_marches = marches;
+        return find_mode("march").prepare(View{}, stage.snapshot, settings, nullptr);
+    };
+    const auto of_jitter = [&](const ScatterFunction& scatter, float jitter) {
+        const std::vector<float> jitters(16, jitter);
+        std::vector<Scatter> results(16);
+        scatter({.rays = rays, .ids = ids, .jitter = jitters}, results);
+        return results;
+    };
+    const std::vector<Scatter> all = of_jitter(prepared(0), 0.5f), enough = of_jitter(prepared(65536), 0.25f);
+    const ScatterFunction drawn = prepared(8);
+    // A sum over shifts of one node after the other is the sum over nodes where all shifts come equally often: with 512
+    // of them, each node is off by 1/512 of a drawing at most, and errors of neighbours cancel.
+    constexpr int shifts = 512;
+    std::vector<double> mean(16, 0.0);
+    double spread = 0, steps = 0, all_steps = 0;
+    for (int k = 0; k < shifts; ++k) {
+        const std::vector<Scatter> some = of_jitter(drawn, (static_cast<float>(k) + 0.5f) / shifts);
+        for (size_t i = 0; i < 16; ++i) {
+            mean[i] += double(some[i].radiance.x) / shifts, steps += some[i].steps;
+            EXPECT_EQ(some[i].transmittance, all[i].transmittance);
+            const double off = std::abs(some[i].radiance.x - all[i].radiance.x);
+            if (off > 0) spread = std::max(spread, off / all[i].radiance.x);
+        }
+    }
+    for (size_t i = 0; i < 16; ++i) {
+        EXPECT_EQ(enough[i].radiance, all[i].radiance);
+        EXPECT_NEAR(mean[i], all[i].radiance.x, 2e-3 * all[i].radiance.x);
+        all_steps += all[i].steps;
+    }
+    EXPECT_GT(spread, 1e-3); // one drawing alone is not exact, and takes less
+    EXPECT_LT(steps / shifts, 0.5 * all_steps);
+}
+
 TEST(MarchExact, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
     const Stage stage = busy_stage();
     const std::vector<Ray> rays = busy_rays(64);

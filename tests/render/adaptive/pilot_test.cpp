@@ -128,6 +128,23 @@ TEST(Pilot, GrowsByIndependentDrawings) {
     EXPECT_NE(other.view.seed, pilot.view.seed);
 }
 
+TEST(Pilot, KeepsToItsWork) {
+    const View view = view_of({160, 90});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0.3f, -0.7f, 0})});
+    const double all = pilot_of(view, snapshot, even_chances(view)).cost.work;
+    const Settings exact = truth();
+    for (const double share : {0.0, 0.5, 2.0}) {
+        const Pilot pilot =
+            make_pilot(main_mode(), view, snapshot, &exact, even_chances(view), 0, plain, nullptr, {}, share * all);
+        EXPECT_LT(pilot.cost.work, std::max(share, 0.25) * all * 1.2); // eight tiles at least
+        EXPECT_GT(pilot.cost.work, std::min(share, 1.0) * all * 0.7);
+        EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
+        double stood_for = 0;
+        for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
+        EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
+    }
+}
+
 // The whole error in the 14400th part of a picture, which few tiles drawn evenly would show.
 TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
     const View view = view_of({96, 54});
