@@ -47,7 +47,7 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
     const double deviation = std::sqrt((noise * noise + own * own / (mean * mean)) / pixels);
     EXPECT_LT(std::abs(errors.bias), 4 * deviation);
     EXPECT_LT(std::abs(errors.inscatter_bias), 4 * deviation);
-    // The yardstick's own squared noise, taken out, is known to √(2/pixels) of itself: two of those.
+    // The reference's own squared noise, taken out, is known to √(2/pixels) of itself: two of those.
     const double unsure = 2 * std::pow(own / mean, 2) * std::sqrt(2 / pixels);
     EXPECT_LT(errors.error, std::sqrt(noise * noise + unsure));
 }
