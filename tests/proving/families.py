@@ -431,6 +431,7 @@ def move(drawn, way, distance):
     drawn.offset = offset.tolist()
 
 
+SLOW = {cathedral, street}  # their truths take long: small pictures
 FAMILIES = [slats, foliage, headlights, soft_lamps, keyhole, cathedral, underwater, overlapping, clouds, smoke, scaled,
             moving, others, street]
 
@@ -443,5 +444,5 @@ def draw(seed, attempt=0):
     """The scene of a seed, the same on every machine; `attempt` counts how often it was drawn anew. With it the size of
     its picture."""
     chance = Chance(f"{seed} {attempt}")
-    size = chance.choice(SIZES)
-    return family_of(seed)(chance), size
+    size, family = chance.choice(SIZES), family_of(seed)
+    return family(chance), SIZES[SIZES.index(size) // 2] if family in SLOW else size

@@ -16,8 +16,9 @@ import time
 import numpy as np
 
 from families import draw, family_of
-from pictures import error_against, find_truth, load_truth, render, save_truth
+from pictures import error_against, load_truth, render, save_truth
 from scene_files import write_scene
+from truths import find_truth
 
 SOURCE = pathlib.Path(__file__).parents[2]
 ATTEMPTS = 6
@@ -41,7 +42,7 @@ def scene_with_truth(seed, folder, wanted, options):
         place = folder / f"{seed}.{attempt}"
         scene = write_scene(drawn, size, place, program)
         plain = write_scene(drawn.plain, size, place / "plain", program) if drawn.plain else scene
-        truth = find_truth(program, plain, drawn.frame, place, wanted, options.truth_seconds)
+        truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds)
         if truth:
             if known:
                 save_truth(truth, attempt, known)
