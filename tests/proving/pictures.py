@@ -107,14 +107,6 @@ def load_truth(path):
                      {layer: float(kept[f"{layer}_variance"]) for layer in LAYERS}, float(kept["seconds"])), int(kept["attempt"])
 
 
-def mean_of(pictures):
-    layers = {layer: np.mean([picture[layer] for picture in pictures], 0) for layer in LAYERS}
-    count = len(pictures)
-    variance = {layer: float(np.mean(np.var([picture[layer] for picture in pictures], 0, ddof=1)) / count)
-                for layer in LAYERS}
-    return Truth(layers, variance)
-
-
 def error_against(truth, layers):
     """`rmse_rel`: the worse of beauty and fog light; what the truth is off by itself is taken out."""
     def of(layer):
