@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace tyndall {
-struct FroxelHistory; // of modes/froxel/froxel_history.h
+struct FroxelHistory; // of modes/froxel/history/froxel_history.h
 struct Scene;
 struct Snapshot;
 struct FogBuffer; // of modes/fog_buffer.h

@@ -2,10 +2,10 @@
 // again for every camera ray.
 #include "base/simd/simd.h"
 #include "integrate/style.h"
-#include "modes/froxel/froxel_history.h"
 #include "modes/froxel/grid.h"
+#include "modes/froxel/history/froxel_history.h"
 #include "modes/froxel/limitations.h"
-#include "modes/froxel/lookup.h"
+#include "modes/froxel/lookup/lookup.h"
 #include "modes/froxel/settings.h"
 #include "modes/froxel/statics.h"
 #include "modes/history.h"

@@ -1,6 +1,6 @@
 // What stays as it is from frame to frame while camera, surfaces and fog stand still, whatever the lights do.
 #pragma once
-#include "modes/froxel/fill.h"
+#include "modes/froxel/fill/fill.h"
 #include "modes/froxel/settings.h"
 
 namespace tyndall {

@@ -1,5 +1,5 @@
 // What froxels keep while camera, surfaces and fog stand still.
-#include "modes/froxel/froxel_history.h"
+#include "modes/froxel/history/froxel_history.h"
 #include "modes/froxel/settings.h"
 
 #include "modes/froxel/froxel_fixtures.h"

@@ -1,15 +1,15 @@
 // The light of a beam in fog of closed form on sixteen camera rays: nothing of it is asked of froxels (see
 // base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_CLOSED_BEAM_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_CLOSED_BEAM_SIMD_H
-#undef TYNDALL_MODES_FROXEL_CLOSED_BEAM_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_CLOSED_BEAM_SIMD_H
+#define TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H
 #endif
 
 #include "integrate/scattering_simd.h"
 #include "integrate/style_simd.h"
-#include "modes/froxel/beam_rays_simd.h"
+#include "modes/froxel/beams/beam_rays_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

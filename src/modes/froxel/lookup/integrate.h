@@ -1,6 +1,6 @@
 // Froxels added up from the eye outwards.
 #pragma once
-#include "modes/froxel/fill.h"
+#include "modes/froxel/fill/fill.h"
 
 namespace tyndall {
 // Per tile and face of the slices, front to back [tile · faces + face]: light that reaches the eye from before the face

@@ -1,14 +1,14 @@
 // What froxels keep of the beams through them (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
-#undef TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_BEAM_FILL_SIMD_H
+#define TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
 #endif
 
 #include "base/simd/reduce_simd.h"
-#include "modes/froxel/near_simd.h"
-#include "modes/froxel/scatter_simd.h"
+#include "modes/froxel/beams/near_simd.h"
+#include "modes/froxel/fill/scatter_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,12 +1,12 @@
 // Froxels of the last frame at the places of this frame's: sixteen slices of a tile at a time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/reproject.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/history/reproject.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/froxel_history.h"
+#include "modes/froxel/history/froxel_history.h"
 
 #include "base/parallel.h"
-#include "modes/froxel/place_simd.h"
+#include "modes/froxel/lookup/place_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,4 +1,4 @@
-#include "modes/froxel/light_injection.h"
+#include "modes/froxel/fill/light_injection.h"
 
 #include "base/gauss_legendre.h"
 #include "base/random.h"

@@ -1,13 +1,13 @@
 // One tile of froxels added up (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_INTEGRATE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_INTEGRATE_SIMD_H
-#undef TYNDALL_MODES_FROXEL_INTEGRATE_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H
+#undef TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_INTEGRATE_SIMD_H
+#define TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H
 #endif
 
 #include "base/simd/simd.h"
-#include "modes/froxel/integrate.h"
+#include "modes/froxel/lookup/integrate.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,15 +1,15 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/fill.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/fill/fill.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/fill.h"
+#include "modes/froxel/fill/fill.h"
 
 #include <array>
 #include <cstring>
 
 #include "base/parallel.h"
-#include "modes/froxel/beam_fill_simd.h"
-#include "modes/froxel/scatter_simd.h"
+#include "modes/froxel/beams/beam_fill_simd.h"
+#include "modes/froxel/fill/scatter_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

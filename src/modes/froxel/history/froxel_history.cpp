@@ -1,4 +1,4 @@
-#include "modes/froxel/froxel_history.h"
+#include "modes/froxel/history/froxel_history.h"
 
 #include "base/parallel.h"
 

@@ -1,14 +1,14 @@
 // Where sixteen rays of the grid's camera lie among the froxels (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_PLACE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_PLACE_SIMD_H
-#undef TYNDALL_MODES_FROXEL_PLACE_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H
+#undef TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_PLACE_SIMD_H
+#define TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H
 #endif
 
 #include "base/random.h"
 #include "base/simd/reduce_simd.h"
-#include "modes/froxel/lookup.h"
+#include "modes/froxel/lookup/lookup.h"
 #include "modes/froxel/settings.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,14 +1,14 @@
 // The light of a beam on sixteen camera rays: its strength from the rays themselves, what dims it from froxels (see
 // base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_BEAM_LOOKUP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_BEAM_LOOKUP_SIMD_H
-#undef TYNDALL_MODES_FROXEL_BEAM_LOOKUP_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_BEAM_LOOKUP_SIMD_H
+#define TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
 #endif
 
 #include "integrate/scattering_simd.h"
-#include "modes/froxel/closed_beam_simd.h"
+#include "modes/froxel/beams/closed_beam_simd.h"
 #include "trace/transmittance/light_grid_simd.h"
 
 HWY_BEFORE_NAMESPACE();

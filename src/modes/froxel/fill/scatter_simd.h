@@ -1,16 +1,16 @@
 // What sixteen froxels send towards the eye (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_SCATTER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
-#undef TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H
+#undef TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_SCATTER_SIMD_H
+#define TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H
 #endif
 
 #include "integrate/scattering_simd.h"
 #include "integrate/style_simd.h"
-#include "modes/froxel/light_injection.h"
-#include "modes/froxel/near_simd.h"
-#include "modes/froxel/samples_simd.h"
+#include "modes/froxel/beams/near_simd.h"
+#include "modes/froxel/fill/light_injection.h"
+#include "modes/froxel/fill/samples_simd.h"
 #include "modes/froxel/settings.h"
 #include "trace/transmittance/light_grid_simd.h"
 

@@ -1,13 +1,13 @@
 // The near part of a light for kernels (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_NEAR_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_NEAR_SIMD_H
-#undef TYNDALL_MODES_FROXEL_NEAR_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_BEAMS_NEAR_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAMS_NEAR_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAMS_NEAR_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_NEAR_SIMD_H
+#define TYNDALL_MODES_FROXEL_BEAMS_NEAR_SIMD_H
 #endif
 
 #include "base/simd/simd.h"
-#include "modes/froxel/beams.h"
+#include "modes/froxel/beams/beams.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

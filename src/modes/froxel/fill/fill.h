@@ -1,7 +1,7 @@
 // Light and extinction of every froxel.
 #pragma once
 #include "base/recycled.h"
-#include "modes/froxel/beams.h"
+#include "modes/froxel/beams/beams.h"
 #include "modes/froxel/settings.h"
 #include "modes/froxel/tiles.h"
 #include "modes/settings.h"

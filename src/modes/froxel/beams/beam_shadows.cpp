@@ -1,4 +1,4 @@
-#include "modes/froxel/beam_shadows.h"
+#include "modes/froxel/beams/beam_shadows.h"
 
 namespace tyndall {
 namespace {

@@ -1,11 +1,11 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/lookup.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/lookup/lookup.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/lookup.h"
+#include "modes/froxel/lookup/lookup.h"
 
-#include "modes/froxel/beam_lookup_simd.h"
-#include "modes/froxel/place_simd.h"
+#include "modes/froxel/beams/beam_lookup_simd.h"
+#include "modes/froxel/lookup/place_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

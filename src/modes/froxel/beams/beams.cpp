@@ -1,12 +1,12 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/beams.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/beams/beams.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/beams.h"
+#include "modes/froxel/beams/beams.h"
 
 #include "base/parallel.h"
 #include "base/simd/simd.h"
-#include "modes/froxel/fill.h"
+#include "modes/froxel/fill/fill.h"
 #include "trace/transmittance/light_depth.h"
 #include "volume/medium.h"
 
@@ -79,7 +79,7 @@ bool is_closed(const FroxelScene& scene) { return std::ranges::none_of(scene.sna
 
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t index) {
     const Light& light = scene.snapshot.lights[index];
-    constexpr float froxels = 7; // across: from half of that on they show a light's 1/r² as it is
+    constexpr float froxels = 14; // across: from half of that on they show a light's 1/r² as it is
     if (is_distant(light)) return {};
     if (has_cone(light) || (is_closed(scene) && has_exact_shadows(scene, light))) return {infinity};
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);

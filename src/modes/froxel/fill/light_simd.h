@@ -1,9 +1,9 @@
 // A light as sixteen froxels see it (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
-#undef TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H
+#undef TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_LIGHT_SIMD_H
+#define TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H
 #endif
 
 #include "base/random.h"

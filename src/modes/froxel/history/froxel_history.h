@@ -1,6 +1,6 @@
 // The light of froxels as it was in the last frame, found again from this frame's.
 #pragma once
-#include "modes/froxel/integrate.h"
+#include "modes/froxel/lookup/integrate.h"
 #include "modes/froxel/statics.h"
 #include "volume/medium.h"
 

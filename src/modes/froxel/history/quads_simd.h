@@ -1,10 +1,10 @@
 // Four froxels side by side: light and extinction of each in four lanes (see base/simd/simd.h for how such files are
 // compiled).
-#if defined(TYNDALL_MODES_FROXEL_QUADS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_QUADS_SIMD_H
-#undef TYNDALL_MODES_FROXEL_QUADS_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H
+#undef TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_QUADS_SIMD_H
+#define TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H
 #endif
 
 #include "base/simd/simd.h"

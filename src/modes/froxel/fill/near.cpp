@@ -1,7 +1,7 @@
 // Froxels near a local light: points spread over them.
 #include "base/random.h"
 #include "integrate/equi_angular.h"
-#include "modes/froxel/light_injection.h"
+#include "modes/froxel/fill/light_injection.h"
 #include "modes/froxel/settings.h"
 
 namespace tyndall {

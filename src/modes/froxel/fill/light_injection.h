@@ -1,6 +1,6 @@
 // A light on the lines of a froxel, exactly: how much of it arrives at each slice, and where.
 #pragma once
-#include "modes/froxel/fill.h"
+#include "modes/froxel/fill/fill.h"
 
 namespace tyndall {
 // What arrives of a light at a froxel: a factor on its intensity, and the point the light is best asked for at.

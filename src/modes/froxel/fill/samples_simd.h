@@ -1,14 +1,14 @@
 // Where sixteen froxels are looked at, and the fog there (see base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_SAMPLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_SAMPLES_SIMD_H
-#undef TYNDALL_MODES_FROXEL_SAMPLES_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H
+#undef TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_SAMPLES_SIMD_H
+#define TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H
 #endif
 
 #include "base/random.h"
-#include "modes/froxel/fill.h"
-#include "modes/froxel/light_simd.h"
+#include "modes/froxel/fill/fill.h"
+#include "modes/froxel/fill/light_simd.h"
 #include "modes/froxel/settings.h"
 #include "volume/medium_simd.h"
 

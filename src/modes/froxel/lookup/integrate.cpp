@@ -1,11 +1,11 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/integrate.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/lookup/integrate.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/integrate.h"
+#include "modes/froxel/lookup/integrate.h"
 
 #include "base/parallel.h"
-#include "modes/froxel/integrate_simd.h"
+#include "modes/froxel/lookup/integrate_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,13 +1,13 @@
 // Remembered light held to what this frame shows around it, and mixed with it: four froxels of a tile at a time.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "modes/froxel/blend.cpp"
+#define HWY_TARGET_INCLUDE "modes/froxel/history/blend.cpp"
 #include <hwy/foreach_target.h>
 
-#include "modes/froxel/froxel_history.h"
+#include "modes/froxel/history/froxel_history.h"
 
 #include "base/parallel.h"
-#include "modes/froxel/integrate_simd.h"
-#include "modes/froxel/quads_simd.h"
+#include "modes/froxel/history/quads_simd.h"
+#include "modes/froxel/lookup/integrate_simd.h"
 
 #include <array>
 #include <cstring>

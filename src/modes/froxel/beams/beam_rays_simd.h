@@ -1,16 +1,16 @@
 // Sixteen camera rays as a lamp sees them, and where its light reaches them (see
 // base/simd/simd.h for how such files are compiled).
-#if defined(TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
-#undef TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
+#if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H
+#undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H
 #else
-#define TYNDALL_MODES_FROXEL_BEAM_RAYS_SIMD_H
+#define TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H
 #endif
 
 #include "integrate/equi_angular_simd.h"
-#include "modes/froxel/beam_shadows.h"
-#include "modes/froxel/near_simd.h"
-#include "modes/froxel/place_simd.h"
+#include "modes/froxel/beams/beam_shadows.h"
+#include "modes/froxel/beams/near_simd.h"
+#include "modes/froxel/lookup/place_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,7 +1,7 @@
 // Fog along camera rays, found among integrated froxels.
 #pragma once
 #include "integrate/ray_batch.h"
-#include "modes/froxel/integrate.h"
+#include "modes/froxel/lookup/integrate.h"
 #include "modes/froxel/settings.h"
 
 namespace tyndall {
