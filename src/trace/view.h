@@ -57,7 +57,7 @@ struct View {
 int samples_of(const View& view, ivec2 pixel);
 
 // Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
-inline constexpr int many_allotted = 32, more_batches = 8; // from that factor on, if it is a multiple
+inline constexpr int many_allotted = 8, more_batches = 4; // from that factor on, if it is a multiple
 int batches_of(const View& view, ivec2 pixel);
 
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);

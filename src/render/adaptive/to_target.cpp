@@ -17,7 +17,7 @@ namespace {
 // which show by then.
 constexpr double max_first_samples = 64;
 constexpr double max_growth = 32;         // of a pixel's samples from what shows noise to what was allotted by it
-constexpr double least_part = 1.0 / 32;   // of an allotment, to begin with
+constexpr double min_part = 1.0 / 32;   // of an allotment, to begin with
 constexpr double max_check_share = 0.2;   // of the seconds there are
 constexpr double longest_seconds = 600;   // where none are given, and an error is far
 constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
@@ -138,7 +138,7 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
     const double most = *std::ranges::max_element(allotment.samples.pixels);
-    rounds.first_part = std::clamp(max_growth * rounds.done / most, least_part, 1.0);
+    rounds.first_part = std::clamp(max_growth * rounds.done / most, min_part, 1.0);
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }

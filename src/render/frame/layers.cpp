@@ -77,19 +77,28 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
+// Below this share lie 97.5 % of the ratios of two independent χ², each over its degrees of freedom: Fisher's F after
+// Paulson (1942). Below three degrees of the divisor nothing is known but that it is a lot.
+double largest_ratio(double above, double below) {
+    const double a = 2 / (9 * below), b = 2 / (9 * above), z = confidence * confidence;
+    const double square = (1 - a) * (1 - a) - z * a, product = (1 - a) * (1 - b);
+    const double root = std::sqrt(std::max(product * product - square * ((1 - b) * (1 - b) - z * b), 0.0));
+    return std::pow((product + root) / square, 3);
+}
+
+// A picture's squared error adds up from those of its pixels, and so does the estimate of what it is on the average.
+// Each sum counts as that of as many squares of normal numbers as give it the same squared error (Satterthwaite 1946).
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {
     const double mean = mean_of(picture), variance = mean_of(variances);
     if (!(variance > 0)) return {};
     if (!(mean > 0)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
-    // The mean's error adds up from those of the pixels. What one of them may be off by comes in one lump: the third
-    // moment over the variance, and then a bound as for counts of lumps (Wilson 1927).
-    double squares = 0, cubes = 0;
-    for (const double square : squared_errors.pixels) squares += square, cubes += square * std::sqrt(square);
-    const double pixels = static_cast<double>(picture.pixels.size());
-    const double error = std::sqrt(squares) / pixels, lump = squares > 0 ? cubes / squares / pixels : 0;
-    const double half = confidence * lump / 2;
-    const double high = variance + confidence * (half + std::hypot(error, half));
+    double squares = 0, squared_error = 0; // of the sum of all variances
+    for (const vec3& value : variances.pixels) squares += channel_mean(value) * channel_mean(value);
+    for (const double square : squared_errors.pixels) squared_error += square;
+    const double sum = variance * static_cast<double>(picture.pixels.size());
+    const double pixels = sum * sum / squares, freedom = squared_error > 0 ? 2 * sum * sum / squared_error : 1e9;
+    const double high = variance * largest_ratio(pixels, std::max(freedom, 3.0));
     return {std::sqrt(variance) / mean, std::sqrt(high) / mean};
 }
 }
