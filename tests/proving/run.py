@@ -165,8 +165,8 @@ def summary(rows):
 
 
 def as_good_as_wanted(result):
-    """In few runs, one may miss."""
-    allowed = max(0.03 * result["runs"], 1) / max(result["runs"], 1)
+    """Where there are few scenes, one may miss: its modes often make the same image, and miss together."""
+    allowed = max(0.03, 1 / max(result["scenes"], 1))
     return (result["runs"] > 0 and result["met"] >= 1 - allowed and result["bound_true"] >= 1 - allowed and
             result["refused"] <= 0.05)
 
