@@ -16,8 +16,6 @@ namespace {
 // Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
 // which show by then.
 constexpr double max_first_samples = 64;
-constexpr double max_growth = 32;         // of a pixel's samples from what shows noise to what was allotted by it
-constexpr double min_part = 1.0 / 32;   // of an allotment, to begin with
 constexpr double max_check_share = 0.2;   // of the seconds there are
 constexpr double longest_seconds = 600;   // where none are given, and an error is far
 constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
@@ -137,8 +135,7 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
     if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
-    const double most = *std::ranges::max_element(allotment.samples.pixels);
-    rounds.first_part = std::clamp(max_growth * rounds.done / most, min_part, 1.0);
+    rounds.first_part = *std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done ? 0.4 : 1;
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }
