@@ -19,8 +19,8 @@ struct EquiAngular16 {
     HWY_INLINE EquiAngular16(const Interval<Floats>& stretch, const Floats& away)
         : height(away), from(stretch.low / away), to(stretch.high / away), angle(angle_between(from, to)) {}
 
-    // At a share of the angle, by tan(α + β) = (tan α + tan β) / (1 - tan α tan β) from the nearer end, as β must not be
-    // more than a right angle.
+    // At a share of the angle, by tan(α + β) = (tan α + tan β) / (1 - tan α tan β) from the nearer end, as β must not
+    // be more than a right angle.
     HWY_INLINE Floats slope(const Floats& share) const {
         const Mask16 late = share > 0.5f;
         const Floats end = select(late, -to, from), further = tan(select(late, 1.0f - share, share) * angle);
