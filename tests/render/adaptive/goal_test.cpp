@@ -162,6 +162,23 @@ TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {
     EXPECT_NEAR(true_error(result.layers, truth) / result.stats.error()->error, 1, 0.1);
 }
 
+// Tiles and samples that a candidate was chosen by flatter it.
+TEST(Goal, ChecksAreIndependentOfEachOtherAndOfTheChoice) {
+    const Example example("window");
+    const Mode& march = main_mode();
+    const Goal goal{1, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(march, example.view, example.snapshot, example.settings, goal, 0, {});
+    ASSERT_GT(choice.measured.integrator.value, 0);
+    std::vector<double> bounds{choice.measured.integrator.bound};
+    for (const uint32_t salt : {1u, 2u}) {
+        const Choice after = checked(choice, choice.scout->layers, {}, 4, infinity, march, example.view,
+                                     example.snapshot, example.settings, goal, salt, {});
+        EXPECT_EQ(after.candidate.name, choice.candidate.name);
+        EXPECT_EQ(std::ranges::count(bounds, after.measured.integrator.bound), 0) << salt;
+        bounds.push_back(after.measured.integrator.bound);
+    }
+}
+
 TEST(Goal, PicturesOfATargetHaveTheSameBitsForAnyThreadCount) {
     const Example example("window");
     const auto made = [&] { return to_goal(example, {0.1, 0, Quality::preview, {}}); };
