@@ -12,19 +12,6 @@ bool comes_from(const ShadowView& view, const Camera& camera, const Ray& ray) {
     return glm::length(from - along * ray.direction) <= rounding + 1e-5f * std::abs(along) && along >= -rounding;
 }
 
-// The tile all positions lie in, or -1.
-int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin) {
-    if (positions.empty() || view.tiles.x == 0) return -1;
-    vec2 middle(0);
-    for (const vec2 p : positions) middle += p / static_cast<float>(positions.size());
-    const ivec2 tile = glm::clamp(ivec2(glm::floor(middle / float(shadow_tile_side))), ivec2(0), view.tiles - 1);
-    for (const vec2 p : positions) {
-        const vec2 low = vec2(tile * shadow_tile_side) - margin, high = vec2((tile + 1) * shadow_tile_side) + margin;
-        if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) return -1;
-    }
-    return tile.y * view.tiles.x + tile.x;
-}
-
 void find_in_view(const ShadowView& view, ShadowViewRays& rays, std::vector<ShadowCrossing>& crossings,
                   int (&dark)[16]) {
     find_crossings(view, rays, crossings);

@@ -104,7 +104,7 @@ void set_pixel_shadows(const View& view, FroxelScene& scene) {
     for (const size_t index : scene.beams) {
         const Light& light = scene.snapshot.lights[index];
         if (shadow_casters(light, scene.snapshot) && has_exact_shadows(scene, light))
-            scene.pixel_views[index] = cached_shadow_view(scene.snapshot, light, view, scene.pixel_margin);
+            scene.pixel_views[index] = lamp_views(scene.snapshot, light, view, scene.pixel_margin);
     }
 }
 

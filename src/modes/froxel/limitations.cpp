@@ -55,12 +55,11 @@ struct Followed {
     bool all = false, exact = false;
 };
 Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings) {
-    const auto is_grid = [](const Medium& medium) { return medium.density.kind == DensityKind::bricks; };
     const bool by_ray = !settings.amortise && !is_distant(light);
     const bool exact = by_ray && settings.visibility == FroxelVisibility::intervals && !has_alpha_shadows(snapshot) &&
                        !(is_soft(light) && settings.shadow_rays > 1);
-    const bool all = by_ray && (has_cone(light) || (exact && std::ranges::none_of(snapshot.media, is_grid)));
-    return {all, all && exact};
+    const bool shadows = settings.visibility != FroxelVisibility::off && shadow_casters(light, snapshot);
+    return {by_ray && (has_cone(light) || exact || !shadows), exact};
 }
 
 // Of each light: its shadows, its movement and what is next to it.
@@ -76,7 +75,8 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
         add(Severity::wrong, limitation::visibility_off);
     else if (shadows && !by_rays.exact)
         add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
-    if (shadows && is_soft(light) && settings.shadow_rays == 1) add(Severity::degraded, limitation::hard_shadows);
+    if (shadows && is_soft(light) && settings.shadow_rays == 1 && !by_rays.exact)
+        add(Severity::degraded, limitation::hard_shadows);
     if (by_rays.all) return;
     if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
     if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))

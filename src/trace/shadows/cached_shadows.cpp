@@ -23,16 +23,20 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
     return cached(snapshot, std::move(key), [&] { return make_shadow_map(view, snapshot, light, options); });
 }
 
-std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light) {
-    return cached(snapshot, shadow_key(snapshot, light), [&] {
-        return make_shadow_volumes(shadow_casters(light, snapshot)->shadow_mesh(), center_of(light));
+std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light, dvec3 off) {
+    CacheKey key = shadow_key(snapshot, light);
+    return cached(snapshot, std::move(key.add(off)), [&] {
+        LightPoint point = center_of(light);
+        point.at += off;
+        return make_shadow_volumes(shadow_casters(light, snapshot)->shadow_mesh(), point);
     });
 }
 
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,
-                                                     float margin) {
+                                                     float margin, dvec3 off) {
     CacheKey key = shadow_key(snapshot, light);
-    return cached(snapshot, std::move(key.add(view).add(margin)),
-                  [&] { return view_from(*cached_shadow_volumes(snapshot, light), view.camera, view.size, margin); });
+    return cached(snapshot, std::move(key.add(view).add(margin).add(off)), [&] {
+        return view_from(*cached_shadow_volumes(snapshot, light, off), view.camera, view.size, margin);
+    });
 }
 }

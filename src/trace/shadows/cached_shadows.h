@@ -10,10 +10,11 @@ using ShadowMaps = std::vector<std::shared_ptr<const ShadowMap>>;
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
                                                    const ShadowMapOptions& options);
 
-// Of the light's centre. Surfaces shadow the light.
-std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light);
+// Of the light's centre, or of a point so far off it. Surfaces shadow the light.
+std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light,
+                                                           dvec3 off = dvec3(0));
 
 // The same as the view's camera sees them; see view_from().
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,
-                                                     float margin);
+                                                     float margin, dvec3 off = dvec3(0));
 }

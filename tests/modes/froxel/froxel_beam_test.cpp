@@ -2,9 +2,11 @@
 #include "modes/froxel/froxel_fixtures.h"
 #include "support/threads.h"
 
+#include "base/random.h"
 #include "integrate/equi_angular.h"
 #include "modes/history.h"
 #include "scene/light_reach.h"
+#include "trace/light_ray.h"
 #include "volume/phase.h"
 
 #include <gtest/gtest.h>
@@ -123,6 +125,35 @@ TEST(FroxelBeam, LampsInFogOfClosedFormAreExact) {
         EXPECT_LT(error("froxel.lookup=trilinear"), 0.015);
         EXPECT_LT(error("froxel.lookup=tricubic"), 0.015);
         EXPECT_GT(error("froxel.visibility=off"), 0.03); // there are shadows
+    }
+}
+
+// The shadows of a lamp with a radius are the mean of those of its points, and far from those of its centre.
+TEST(FroxelBeam, ShadowsOfALampWithARadiusAreSoft) {
+    const Medium mist = homogeneous_medium(0.4f, {vec3(-1), vec3(1)});
+    const Medium banks = medium_of(unit_volume(16, [](vec3) { return 1.0f; }), 0.4f);
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    const std::vector<Mesh> slab{box_of({-0.9f, -0.6f, -0.4f}, {-0.8f, 0.15f, 1})};
+    for (const Medium& fog : {mist, banks}) {
+        Light lamp = point_light({-1.3f, 0.2f, 0.3f}, 5), soft = lamp;
+        soft.radius = 0.1f;
+        constexpr uint32_t count = 16;
+        std::vector<Light> points;
+        for (uint32_t i = 0; i < count; ++i) {
+            points.push_back(lamp);
+            const Sample2 u = sample2(i, 5);
+            points.back().position = vec3(point_on(soft, {}, {u.x, u.y, random_unit(i, 1, 2, 3)}).at);
+            points.back().intensity = lamp.intensity / float(count);
+        }
+        const Stage many = stage_of({fog}, points, slab, vec3(0));
+        const std::vector<Ray> rays = picture_rays(view, many.snapshot, 12);
+        const std::vector<Scatter> truth = marched(many.snapshot, exact_settings(), rays);
+        const auto error = [&](const Light& light) {
+            const Stage stage = stage_of({fog}, {light}, slab, vec3(0));
+            return relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth);
+        };
+        EXPECT_LT(error(soft), 0.13);
+        EXPECT_GT(error(lamp), 2.5 * error(soft));
     }
 }
 

@@ -50,7 +50,7 @@ void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
                 static_cast<uint32_t>(((where.at[i].y & 3) * 4 + (where.at[i].x & 3)) * fill.samples() + sample);
         for (size_t b = 0; b < count; ++b) {
             const size_t first = (static_cast<size_t>(sample) * count + b) * slices;
-            if (beams.all[b].end > 0 && !kept.by_rays_alone[b] && !fill.scene.pixel_view(kept.lights[b]))
+            if (beams.all[b].end > 0 && !kept.by_rays_alone[b] && !fill.scene.has_pixel_views(kept.lights[b]))
                 find_beam_lit(fill.scene, fill.grid, fill.tiles, kept.lights[b], where.at, beam_ray(fill, sample),
                               fill.samples() > 1 ? indices : nullptr, beams.reaches.data() + 16 * b,
                               beams.inside.data() + first, beams.lit.data() + first);
@@ -107,7 +107,7 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
         const size_t index = kept.lights[b];
         const Light& light = fill.scene.snapshot.lights[index];
         const Vec3s point = has_cone(light) ? turned_inside(light, lanes.point) : lanes.point;
-        Floats share = fill.scene.pixel_view(index) ? 1.0f : seen_share(fill, beams, b, lanes, point, job);
+        Floats share = fill.scene.has_pixel_views(index) ? 1.0f : seen_share(fill, beams, b, lanes, point, job);
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;
         if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);

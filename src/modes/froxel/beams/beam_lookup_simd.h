@@ -7,6 +7,7 @@
 #define TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
 #endif
 
+#include "base/simd/reduce_simd.h"
 #include "integrate/scattering_simd.h"
 #include "modes/froxel/beams/closed_beam_simd.h"
 #include "trace/transmittance/light_grid_simd.h"
@@ -214,13 +215,13 @@ BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, co
 const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& batch, const Interval<Floats>& chord,
                                        const Mask16& met) {
     const FroxelScene& scene = *walk.picture.scene;
-    const ShadowView* view = scene.pixel_view(walk.picture.beams.lights[walk.beam]);
-    if (!view) return nullptr;
+    const size_t light = walk.picture.beams.lights[walk.beam];
+    if (!scene.has_pixel_views(light)) return nullptr;
     static thread_local LitIntervals lit;
     alignas(64) float low[16], high[16];
     store(zero_unless(met, max(chord.low + walk.by_lamp.nearest, 0.0f)), low);
     store(zero_unless(met, chord.high + walk.by_lamp.nearest), high);
-    find_beam_lit(*view, batch, scene.pixel_margin, low, high, lit);
+    find_beam_lit(scene.pixel_views[light], walk.light.position, batch, scene.pixel_margin, low, high, lit);
     return &lit;
 }
 
@@ -229,13 +230,16 @@ Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Flo
                const BeamSlice& here, const Mask16& wanted) {
     if (!lit) return light_between_kinks(walk, part, slice, here, wanted);
     Vec3s sum = splat(vec3(0));
+    const Floats from = part.low + walk.by_lamp.nearest, to = part.high + walk.by_lamp.nearest;
+    const Interval<float> all{least(select(wanted, from, infinity)), most(select(wanted, to, -infinity))};
     for (const LitIntervals::Row& row : lit->rows) {
+        if (!(row.all.high > all.low && row.all.low < all.high)) continue;
         Interval<Floats> one{max(part.low, load(row.low) - walk.by_lamp.nearest),
                              min(part.high, load(row.high) - walk.by_lamp.nearest)};
         const Mask16 some = wanted & (one.high > one.low);
         if (!any(some)) continue;
         one = {zero_unless(some, one.low), zero_unless(some, one.high)};
-        sum = sum + light_between_kinks(walk, one, slice, here, some);
+        sum = fused(light_between_kinks(walk, one, slice, here, some), zero_unless(some, load(row.share)), sum);
     }
     return sum;
 }

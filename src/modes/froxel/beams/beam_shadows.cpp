@@ -1,49 +1,128 @@
 #include "modes/froxel/beams/beam_shadows.h"
 
+#include "scene/light.h"
+#include "trace/shadows/cached_shadows.h"
+
+#include <algorithm>
+
 namespace tyndall {
-namespace {
-// The tile of the view that the rays lie in, or -1: then all faces are looked at.
-int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin) {
-    if (positions.empty() || view.tiles.x == 0) return -1;
-    vec2 middle(0);
-    for (const vec2 p : positions) middle += p / static_cast<float>(positions.size());
-    const ivec2 tile = glm::clamp(ivec2(glm::floor(middle / float(shadow_tile_side))), ivec2(0), view.tiles - 1);
-    for (const vec2 p : positions) {
-        const vec2 low = vec2(tile * shadow_tile_side) - margin, high = vec2((tile + 1) * shadow_tile_side) + margin;
-        if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) return -1;
-    }
-    return tile.y * view.tiles.x + tile.x;
-}
+LampViews lamp_views(const Snapshot& snapshot, const Light& light, const View& view, float margin) {
+    if (!is_soft(light)) return {cached_shadow_view(snapshot, light, view, margin)};
+    // The corners of a tetrahedron, askew to the axes that things are built along: seen from any side they spread as
+    // far as the disc of the ball does, a quarter of its squared radius each way.
+    constexpr double askew[4][3] = {
+        {0.3323, 0.0873, -0.7949}, {-0.6396, -0.5836, -0.0170}, {-0.3117, 0.7623, 0.2679}, {0.6190, -0.2660, 0.5440}};
+    LampViews views;
+    for (const auto& [x, y, z] : askew)
+        views.push_back(cached_shadow_view(snapshot, light, view, margin, double(light.radius) * dvec3(x, y, z)));
+    return views;
 }
 
-void find_beam_lit(const ShadowView& view, const RayBatch& batch, float margin, const float (&low)[16],
-                   const float (&high)[16], LitIntervals& lit) {
+namespace {
+using PathPacket = std::vector<Interval<double>>[16];
+
+// Appends the stretches that one point of the lamp lights.
+void append_lit_from(const ShadowView& view, const RayBatch& batch, int tile, const Interval<double> (&ranges)[16],
+                     PathPacket& stretches) {
     static thread_local std::vector<ShadowCrossing> crossings;
-    static thread_local std::vector<Interval<double>> stretches[16];
     ShadowViewRays rays;
-    Interval<double> ranges[16];
-    rays.edges = false, rays.tile = tile_of(view, batch.positions, margin);
-    for (size_t i = 0; i < 16; ++i) stretches[i].clear();
+    rays.edges = false, rays.tile = tile;
     for (size_t i = 0; i < batch.rays.size(); ++i) {
-        if (!(low[i] < high[i])) continue;
-        ranges[i] = {low[i], high[i]};
-        place_ray(view, {batch.rays[i].origin, batch.rays[i].direction, std::nextafter(high[i], infinity)},
-                  static_cast<int>(i), rays);
+        if (!(ranges[i].low < ranges[i].high)) continue;
+        const float end = std::nextafter(static_cast<float>(ranges[i].high), infinity);
+        place_ray(view, {batch.rays[i].origin, batch.rays[i].direction, end}, static_cast<int>(i), rays);
     }
     crossings.clear();
     find_crossings(view, rays, crossings);
     int dark[16];
     std::fill(dark, dark + 16, view.dark);
     append_lit(dark, crossings, ranges, stretches);
+}
 
-    size_t most = 0;
-    for (const auto& of_ray : stretches) most = std::max(most, of_ray.size());
-    lit.rows.resize(most);
-    for (size_t k = 0; k < most; ++k)
-        for (size_t i = 0; i < 16; ++i) {
-            const bool some = k < stretches[i].size() && low[i] < high[i];
-            lit.rows[k].low[i] = some ? static_cast<float>(stretches[i][k].low) : 0;
-            lit.rows[k].high[i] = some ? static_cast<float>(stretches[i][k].high) : 0;
+// A stretch and how much of the lamp lights it.
+struct Shared {
+    float low, high, share;
+};
+
+// The stretches of several points, cut into such that as many points light.
+void find_shares(const std::vector<Interval<double>>& stretches, float of_one, std::vector<Shared>& shared) {
+    static thread_local std::vector<std::pair<float, int>> ends;
+    ends.clear(), shared.clear();
+    for (const Interval<double>& s : stretches)
+        ends.emplace_back(static_cast<float>(s.low), 1), ends.emplace_back(static_cast<float>(s.high), -1);
+    std::sort(ends.begin(), ends.end());
+    int count = 0;
+    for (size_t i = 0; i + 1 < ends.size(); ++i) {
+        count += ends[i].second;
+        if (count > 0 && ends[i].first < ends[i + 1].first)
+            shared.push_back({ends[i].first, ends[i + 1].first, of_one * static_cast<float>(count)});
+    }
+}
+
+// Squared, of the way from the lamp.
+float distance2(const Ray& ray, vec3 lamp, float t) {
+    const vec3 way = ray.at(t) - lamp;
+    return glm::dot(way, way);
+}
+
+// Short stretches side by side become one that is wholly lit and as long as what is lit of them, around their middle,
+// or lengthen what they adjoin: along so little of a ray the lamp's light is even.
+void join_short(const Ray& ray, vec3 lamp, std::vector<Shared>& shared) {
+    constexpr float little = 0.05f; // of the distance to the lamp
+    const auto is_short = [&](float low, float high) {
+        const float length = (high - low) / little;
+        return length * length < std::min(distance2(ray, lamp, low), distance2(ray, lamp, high));
+    };
+    size_t kept = 0;
+    for (size_t i = 0, next; i < shared.size(); i = next) {
+        const float low = shared[i].low;
+        float amount = 0, moment = 0;
+        for (next = i; next < shared.size() && is_short(low, shared[next].high); ++next) {
+            const Shared& s = shared[next];
+            amount += s.share * (s.high - s.low),
+                moment += s.share * (s.high - s.low) * (0.5f * (s.low + s.high) - low);
         }
+        if (next == i) {
+            shared[kept++] = shared[next++];
+            continue;
+        }
+        const float middle = low + moment / amount;
+        if (next < shared.size() && shared[next].share == 1 && shared[next].low == shared[next - 1].high)
+            shared[next].low -= amount;
+        else if (kept > 0 && shared[kept - 1].share == 1 && shared[kept - 1].high == low)
+            shared[kept - 1].high += amount;
+        else
+            shared[kept++] = {middle - 0.5f * amount, middle + 0.5f * amount, 1};
+    }
+    shared.resize(kept);
+}
+}
+
+void find_beam_lit(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
+                   const float (&high)[16], LitIntervals& lit) {
+    static thread_local PathPacket stretches;
+    Interval<double> ranges[16];
+    for (size_t i = 0; i < 16; ++i) ranges[i] = {low[i], high[i]}, stretches[i].clear();
+    const int tile = tile_of(*views.front(), batch.positions, margin);
+    for (const std::shared_ptr<const ShadowView>& view : views) append_lit_from(*view, batch, tile, ranges, stretches);
+
+    static thread_local std::vector<Shared> shared;
+    lit.rows.clear();
+    for (size_t i = 0; i < batch.rays.size(); ++i) {
+        if (!(low[i] < high[i])) continue;
+        find_shares(stretches[i], 1 / static_cast<float>(views.size()), shared);
+        join_short(batch.rays[i], lamp, shared);
+        for (size_t k = 0; k < shared.size(); ++k) {
+            if (k == lit.rows.size()) lit.rows.emplace_back();
+            LitIntervals::Row& row = lit.rows[k];
+            row.low[i] = shared[k].low, row.high[i] = shared[k].high, row.share[i] = shared[k].share;
+        }
+    }
+    for (LitIntervals::Row& row : lit.rows) {
+        row.all = {infinity, -infinity};
+        for (size_t i = 0; i < 16; ++i)
+            if (row.low[i] < row.high[i])
+                row.all = {std::min(row.all.low, row.low[i]), std::max(row.all.high, row.high[i])};
+    }
 }
 }

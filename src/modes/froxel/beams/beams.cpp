@@ -81,7 +81,7 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t in
     const Light& light = scene.snapshot.lights[index];
     constexpr float froxels = 14; // across: from half of that on they show a light's 1/r² as it is
     if (is_distant(light)) return {};
-    if (has_cone(light) || (is_closed(scene) && has_exact_shadows(scene, light))) return {infinity};
+    if (has_cone(light) || has_exact_shadows(scene, light)) return {infinity};
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
     if (!(z > 0)) return {};
     return {froxels * froxel_width(grid, z)};

@@ -1,6 +1,6 @@
-// Beams of spots and what is near to other lamps. Light there follows from each ray of the picture itself: its distance
-// from the lamp and the edge of the cone, which froxels would smear. They keep what changes slowly: how much of the
-// light gets there at all.
+// Beams of spots, of lamps whose shadows rays find by themselves, and what is near to other lamps. Light there follows
+// from each ray of the picture itself: its distance from the lamp and the edge of the cone, which froxels would smear.
+// They keep what changes slowly: how much of the light gets there at all.
 #pragma once
 #include "base/recycled.h"
 #include "modes/froxel/grid.h"

@@ -78,7 +78,9 @@ Vec3s closed_beam_light(const BeamWalk& walk, const LitIntervals* lit, const Int
         const Interval<Floats> one{max(chord.low, load(row.low) - walk.by_lamp.nearest),
                                    min(chord.high, load(row.high) - walk.by_lamp.nearest)};
         const Mask16 some = met & (one.high > one.low);
-        if (any(some)) sum = sum + add({zero_unless(some, one.low), zero_unless(some, one.high)}, some);
+        if (any(some))
+            sum = fused(add({zero_unless(some, one.low), zero_unless(some, one.high)}, some),
+                        zero_unless(some, load(row.share)), sum);
     }
     return sum;
 }

@@ -1,6 +1,7 @@
 // Light and extinction of every froxel.
 #pragma once
 #include "base/recycled.h"
+#include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/beams/beams.h"
 #include "modes/froxel/settings.h"
 #include "modes/froxel/tiles.h"
@@ -28,14 +29,12 @@ struct FroxelScene {
     // camera sees them; and what shows those of other lights.
     std::vector<std::unique_ptr<const ShadowView>> views;
     std::vector<const ShadowSlices*> slices; // null where there are none; the snapshot's
-    // Of each light that rays find the shadows of by themselves, its shadows as they see them; else null.
-    std::vector<std::shared_ptr<const ShadowView>> pixel_views;
+    // Of each light that rays find the shadows of by themselves, its shadows as they see them; else empty.
+    std::vector<LampViews> pixel_views;
     float pixel_margin = 0;                     // how far a ray may stray from its pixel, pixels
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 
-    const ShadowView* pixel_view(size_t light) const {
-        return light < pixel_views.size() ? pixel_views[light].get() : nullptr;
-    }
+    bool has_pixel_views(size_t light) const { return light < pixel_views.size() && !pixel_views[light].empty(); }
     NearLight near(size_t light) const { return light < nears.size() ? nears[light] : NearLight{}; }
     // Whether nothing of a light is in the froxels' light.
     bool is_beam(size_t light) const { return std::isinf(near(light).radius); }

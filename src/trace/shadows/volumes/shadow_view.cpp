@@ -143,6 +143,18 @@ ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 s
     return view;
 }
 
+int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin) {
+    if (positions.empty() || view.tiles.x == 0) return -1;
+    vec2 middle(0);
+    for (const vec2 p : positions) middle += p / static_cast<float>(positions.size());
+    const ivec2 tile = glm::clamp(ivec2(glm::floor(middle / float(shadow_tile_side))), ivec2(0), view.tiles - 1);
+    for (const vec2 p : positions) {
+        const vec2 low = vec2(tile * shadow_tile_side) - margin, high = vec2((tile + 1) * shadow_tile_side) + margin;
+        if (glm::any(glm::lessThan(p, low)) || glm::any(glm::greaterThan(p, high))) return -1;
+    }
+    return tile.y * view.tiles.x + tile.x;
+}
+
 void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays& rays) {
     const dvec3 origin = dvec3(ray.origin) - view.place, direction(ray.direction);
     const double along = glm::dot(origin, direction) / glm::dot(direction, direction);

@@ -79,6 +79,10 @@ struct ShadowCrossing {
         64) float behind[16] = {}; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
 };
 
+// The tile of the image that all positions lie in, no farther than `margin` pixels outside of it; -1 where there is
+// none.
+int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin);
+
 // Up to 16 rays of a view.
 struct ShadowViewRays {
     alignas(64) double p[3][16] = {};  // see RayProduct
