@@ -24,6 +24,11 @@ bool reaches(const Choice& choice, double samples, double error) {
     return leaves_room(choice, error) && choice.measured.integrator.bound + noise <= error * error;
 }
 
+// Whether an error that may be larger than what it should be may turn out not to be, once more is seen of it.
+bool is_undecided(const SquaredError& error, double wanted) {
+    return error.bound > wanted && 2 * error.value - error.bound <= wanted;
+}
+
 bool same_settings(const Settings& a, const Settings& b) {
     return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
 }
@@ -162,25 +167,33 @@ struct Entry {
     }
 };
 
-// The candidate with least work. The pilot grows as long as another one may save more than that costs.
+// The candidate with least work. The pilot grows as long as another one may save more than that costs, or shows that
+// none leaves room for noise: then finer ones are measured too.
 Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilot,
                       const std::shared_ptr<const Scout>& scout) {
     const double error = chooser.goal.error;
     const bool bound = binds_candidates(chooser.mode, chooser.settings, chooser.goal.quality);
     std::list<Entry> entries;
-    std::optional<Choice> before;
-    for (const Candidate& candidate : chooser.candidates) {
-        Look look = chooser.look_at(candidate, scout.get());
-        Choice choice = chooser.choice(candidate, look, pilot, before ? &*before : nullptr, scout);
-        if (before && bound && gains_nothing(choice, *before)) break;
-        before = choice, before->measured.prepared = nullptr;
-        const bool room = leaves_room(choice, error);
-        entries.push_back({candidate, std::move(look), std::move(choice)});
-        entries.back().weigh(error);
-        if (room) break;
-    }
-
+    std::optional<Choice> before; // of the finest so far
+    size_t next = 0;
+    const auto needs_finer = [&] {
+        if (next == 0 || next == chooser.candidates.size()) return next == 0;
+        const Entry& finest = entries.back();
+        return finest.candidate.name == chooser.candidates[next - 1].name && !leaves_room(finest.choice, error);
+    };
     while (true) {
+        while (needs_finer()) {
+            const Candidate& candidate = chooser.candidates[next++];
+            Look look = chooser.look_at(candidate, scout.get());
+            Choice choice = chooser.choice(candidate, look, pilot, before ? &*before : nullptr, scout);
+            if (before && bound && gains_nothing(choice, *before)) {
+                next = chooser.candidates.size();
+                break;
+            }
+            before = choice, before->measured.prepared = nullptr;
+            entries.push_back({candidate, std::move(look), std::move(choice)});
+            entries.back().weigh(error);
+        }
         const Entry& best = *std::ranges::min_element(std::ranges::reverse_view(entries), {}, &Entry::sure);
         const Entry& hoped = *std::ranges::min_element(entries, {}, &Entry::hoped);
         const bool by_noise = hoped.choice.measured.integrator.by_noise;
@@ -251,8 +264,8 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
     Measured measured = measure(*pilot, look, goal.clock);
     const double left = goal.error * goal.error - noise.bound * noise.bound;
-    while (goal.error > 0 && measured.integrator.value <= left && measured.integrator.bound > left &&
-           pilot->can_grow(measured.integrator.by_noise)) {
+    while (left > 0 && is_undecided(measured.integrator, left) && pilot->can_grow(measured.integrator.by_noise) &&
+           (goal.seconds == 0 || goal.clock() < until)) {
         grow(*pilot, measured.integrator.by_noise);
         measured = measure(*pilot, look, goal.clock);
     }
@@ -267,6 +280,11 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
         Look of_finer = chooser.look_at(*next, choice.scout.get());
         Choice finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
+        while (is_undecided(finer.measured.integrator, std::pow(integrator_share * goal.error, 2)) &&
+               pilot->can_grow(finer.measured.integrator.by_noise)) {
+            grow(*pilot, finer.measured.integrator.by_noise);
+            finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
+        }
         const bool room = leaves_room(finer, goal.error);
         const double its_work = finer.work_to(goal.error);
         if (its_work < work || (work == infinity && room)) work = its_work, result = std::move(finer);

@@ -195,6 +195,37 @@ TEST(Pilot, BoundsHoldWhereFewTilesHoldMost) {
     EXPECT_GE(held, times * 965 / 1000);
 }
 
+namespace {
+std::atomic<size_t> draft_rays = 0, right_draft_rays = 0;
+
+// As the march, with a little noise; draft settings are 6 % off, which their first rays do not show.
+ScatterFunction prepare_off_later(const View& view, const Snapshot& snapshot, const Settings& settings,
+                                  History* history) {
+    const ScatterFunction right = main_mode().prepare(view, snapshot, settings, history);
+    const bool draft = settings.march.step_share == settings_for(Quality::draft).march.step_share;
+    return [right, draft](const RayBatch& batch, std::span<Scatter> results) {
+        right(batch, results);
+        const bool off = draft && (draft_rays += results.size()) > right_draft_rays;
+        for (size_t i = 0; i < results.size(); ++i)
+            results[i].radiance *= (off ? 1.01f : 0.95f) + 0.1f * to_unit(hash(batch.ids[i], 1u));
+    };
+}
+}
+
+// What was chosen for lack of evidence gives way to a finer candidate when the pilot has grown.
+TEST(Pilot, AChoiceGetsToTheErrorWhereAFinerCandidateDoes) {
+    Mode mode = main_mode();
+    mode.prepare = prepare_off_later;
+    const View view = view_of({160, 90});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {sun_light({0, -1, -0.2f})});
+    draft_rays = 0, right_draft_rays = 160 * 90 * scout_samples + drawing_tiles * 16 * 2; // scout and first drawing
+    const Goal goal{0.02, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(mode, view, snapshot, settings_for(Quality::preview), goal, 0, plain);
+    EXPECT_GT(choice.pilot->passes * choice.pilot->drawings, 1) << "the pilot has grown";
+    EXPECT_NE(choice.candidate.name, "draft");
+    EXPECT_LT(choice.samples_to(goal.error), infinity);
+}
+
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.
 TEST(Goal, AFrameIsHeldAgainstTermsThatAnotherDidNotNeed) {
     Medium fog = homogeneous_medium(0.1f, room);
