@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace tyndall {
 namespace {
@@ -30,21 +31,24 @@ struct TileMeans {
 // Tiles of the image, or as many as are looked at, spread evenly; and what each pass over them gave.
 struct Sweep {
     std::vector<ivec2> corners;
-    double share = 1; // of all tiles
+    std::vector<double> weights; // how many pixels each has: fewer at the image's edges
+    double share = 1;            // of all tiles
     std::vector<std::vector<TileMeans>> passes{};
 };
 
 Sweep make_sweep(const View& view, size_t most) {
     const bool cropped = view.crop_low != view.crop_high;
-    const ivec2 low = (cropped ? view.crop_low : ivec2(0)) / tile_side;
-    const ivec2 size = ((cropped ? view.crop_high : view.size) - 1) / tile_side + 1 - low;
+    const ivec2 begin = cropped ? view.crop_low : ivec2(0), end = cropped ? view.crop_high : view.size;
+    const ivec2 low = begin / tile_side, size = (end - 1) / tile_side + 1 - low;
     const size_t all = static_cast<size_t>(size.x) * static_cast<size_t>(size.y), count = std::min(all, most);
-    Sweep sweep{{}, static_cast<double>(count) / static_cast<double>(all)};
+    Sweep sweep{{}, {}, static_cast<double>(count) / static_cast<double>(all)};
     for (size_t i = 0; i < count; ++i) {
         // One at random of each of `count` runs of tiles.
         const double at = (static_cast<double>(i) + to_unit(hash(view.seed, use_orders, static_cast<uint32_t>(i))));
         const int tile = static_cast<int>(std::min(at / sweep.share * (1 - 1e-12), static_cast<double>(all - 1)));
-        sweep.corners.push_back((low + ivec2(tile % size.x, tile / size.x)) * tile_side);
+        const ivec2 corner = (low + ivec2(tile % size.x, tile / size.x)) * tile_side;
+        const ivec2 pixels = glm::min(corner + tile_side, end) - glm::max(corner, begin);
+        sweep.corners.push_back(corner), sweep.weights.push_back(pixels.x * pixels.y);
     }
     return sweep;
 }
@@ -113,24 +117,29 @@ struct Estimate {
 // Products of differences in two passes have the square of the tile's difference for their mean: the average over all
 // pairs of passes, by their sum.
 Estimate estimate(const Sweep& sweep, size_t layer, size_t left_out) {
-    double passes = 0, tiles = static_cast<double>(sweep.corners.size()), truth = 0;
+    double passes = 0, truth = 0;
     for (size_t p = 0; p < sweep.passes.size(); ++p) passes += p != left_out;
-    double squares = 0, fourths = 0, sums = 0;
+    const double pixels = std::accumulate(sweep.weights.begin(), sweep.weights.end(), 0.0);
+    double squares = 0, sums = 0;
+    std::vector<double> products;
     for (size_t t = 0; t < sweep.corners.size(); ++t) {
+        const double share = sweep.weights[t] / pixels;
         dvec3 sum(0), own(0);
         for (size_t p = 0; p < sweep.passes.size(); ++p) {
             if (p == left_out) continue;
             const dvec3 difference(sweep.passes[p][t].difference[layer]);
             sum += difference, own += difference * difference;
-            truth += channel_mean(dvec3(sweep.passes[p][t].truth[layer])) / passes / tiles;
+            truth += share * channel_mean(dvec3(sweep.passes[p][t].truth[layer])) / passes;
         }
-        const double product = channel_mean(sum * sum - own) / (passes * (passes - 1));
-        squares += product / tiles, fourths += product * product / tiles;
-        sums += channel_mean(sum) / passes / tiles;
+        products.push_back(channel_mean(sum * sum - own) / (passes * (passes - 1)));
+        squares += share * products.back(), sums += share * channel_mean(sum) / passes;
     }
     if (!(truth > 0)) return {squares > 0 ? infinity : 0, 0, 0};
+    double variance = 0;
+    for (size_t t = 0; t < products.size(); ++t)
+        variance += std::pow(sweep.weights[t] / pixels * (products[t] - squares), 2);
     const double scale = 1 / (truth * truth);
-    return {squares * scale, sums / truth, std::max(fourths - squares * squares, 0.0) / tiles * scale * scale};
+    return {squares * scale, sums / truth, variance * scale * scale};
 }
 
 // Of Student's (1908) distribution with so many degrees of freedom, below which 97.5 % lie; as of Fisher & Cornish

@@ -4,6 +4,7 @@
 #include "modes/settings.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
+#include "render/frame/layers.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "support/threads.h"
@@ -62,6 +63,21 @@ Mode as_right() {
     return mode;
 }
 
+// The same, twice as bright below a row of pixels.
+constexpr int last_row = 32;
+Mode off_below() {
+    Mode mode = off_by<0>();
+    mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+        const ScatterFunction right = mode_of_all_orders().prepare(view, snapshot, settings, history);
+        return ScatterFunction([right](const RayBatch& batch, std::span<Scatter> results) {
+            right(batch, results);
+            for (size_t i = 0; i < results.size(); ++i)
+                if (batch.positions[i].y >= last_row) results[i].radiance *= 2;
+        });
+    };
+    return mode;
+}
+
 OrdersError error_of(const Mode& mode, uint32_t seed, double wanted = 0.05) {
     static const Snapshot snapshot = milk();
     return orders_error(mode, view_of(seed), snapshot, all_orders_settings(), wanted, {});
@@ -84,6 +100,31 @@ TEST(Orders, AShareOfAllLightIsFound) {
     EXPECT_GE(error.tiles.bound, 0.2);
     EXPECT_GE(error.tiles.error, 0.17);
     EXPECT_LE(error.tiles.bound, 0.6);
+}
+
+TEST(Orders, TilesCountByTheirPixels) {
+    // Two rows of pixels are left over at the lower edge: all that is wrong is in them.
+    View view = view_of(0);
+    view.size.y = last_row + 2;
+    const Snapshot snapshot = milk();
+    Settings settings;
+    settings.path.orders = all_orders;
+    view.pixel_samples = 64;
+    FrameStats stats;
+    const Layers truth = render_frame(mode_of_all_orders(), view, snapshot, settings, {}, stats);
+    double below = 0, all = 0;
+    for (int y = 0; y < view.size.y; ++y)
+        for (int x = 0; x < view.size.x; ++x)
+            all += truth.color.at(x, y).x, below += y < last_row ? 0 : truth.color.at(x, y).x;
+
+    constexpr uint32_t count = 16;
+    double mean = 0, squares = 0;
+    for (view.seed = 1; view.seed <= count; ++view.seed) {
+        const double one = orders_error(off_below(), view, snapshot, all_orders_settings(), 0, {}).mean;
+        mean += one / count, squares += one * one / count;
+    }
+    // The truth has as many rays: its own standard error is no larger.
+    EXPECT_NEAR(mean, below / all, 4 * std::sqrt(2 * (squares - mean * mean) / (count - 1)));
 }
 
 TEST(Orders, NoiseAloneIsNoError) {
