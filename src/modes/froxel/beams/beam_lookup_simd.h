@@ -189,13 +189,8 @@ HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
 // How close rays pass a lamp, as far as they are in its beam: so much of their light comes from there that the fog has
 // to be asked for where they are.
 Floats closeness(const BeamWalk& walk, const Interval<Floats>& chord, const Mask16& met) {
-    constexpr float froxels = 7; // all of it within half of that
-    const FroxelGrid& grid = walk.picture.grid;
-    const float z =
-        std::max(glm::dot(walk.light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
     const Floats u = max(max(chord.low, -chord.high), 0.0f);
-    const NearLight within{froxels * froxel_width(grid, z)};
-    return zero_unless(met, near_share(within, sqrt(fused(u, u, walk.by_lamp.height2))));
+    return zero_unless(met, near_share(walk.around, sqrt(fused(u, u, walk.by_lamp.height2))));
 }
 
 // The froxels of a slice around the rays, from the depths to its faces.
@@ -259,6 +254,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   light,
                   picture.scene->cones[index],
                   picture.scene->near(index),
+                  near_to(picture.grid, light),
                   seen_from(light, rays.origin, rays.direction),
                   depth_before,
                   0.0f,

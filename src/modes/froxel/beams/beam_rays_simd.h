@@ -112,7 +112,7 @@ struct BeamWalk {
     size_t beam;
     const Light& light;
     const ConeFalloff& cone;
-    NearLight near;
+    NearLight near, around; // what the rays follow, and where they ask for the fog themselves
     RaysByLamp by_lamp;
     Floats depth_before;   // optical, of what lies before the rays' starts
     Floats whole;          // angle of all of the beam on each ray

@@ -44,13 +44,32 @@ struct Shared {
     float low, high, share;
 };
 
-// The stretches of several points, cut into such that as many points light.
-void find_shares(const std::vector<Interval<double>>& stretches, float of_one, std::vector<Shared>& shared) {
+// The stretches that one point of the lamp lights, ray by ray.
+struct LitByPoint {
+    PathPacket lit;
+};
+
+// A ray's stretches of several points, cut into such that as many points light. Points next to each other light much
+// the same: side by side their ends are almost in order.
+void find_shares(const std::vector<LitByPoint>& points, size_t ray, std::vector<Shared>& shared) {
     static thread_local std::vector<std::pair<float, int>> ends;
     ends.clear(), shared.clear();
-    for (const Interval<double>& s : stretches)
-        ends.emplace_back(static_cast<float>(s.low), 1), ends.emplace_back(static_cast<float>(s.high), -1);
-    std::sort(ends.begin(), ends.end());
+    size_t most = 0;
+    for (const LitByPoint& point : points) most = std::max(most, point.lit[ray].size());
+    const auto add = [&](double at, int change) {
+        const auto end = static_cast<float>(at);
+        size_t place = ends.size();
+        ends.emplace_back();
+        for (; place > 0 && end < ends[place - 1].first; --place) ends[place] = ends[place - 1];
+        ends[place] = {end, change};
+    };
+    for (size_t k = 0; k < most; ++k) {
+        for (const LitByPoint& point : points)
+            if (k < point.lit[ray].size()) add(point.lit[ray][k].low, 1);
+        for (const LitByPoint& point : points)
+            if (k < point.lit[ray].size()) add(point.lit[ray][k].high, -1);
+    }
+    const float of_one = 1 / static_cast<float>(points.size());
     int count = 0;
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
         count += ends[i].second;
@@ -100,17 +119,21 @@ void join_short(const Ray& ray, vec3 lamp, std::vector<Shared>& shared) {
 
 void find_beam_lit(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
                    const float (&high)[16], LitIntervals& lit) {
-    static thread_local PathPacket stretches;
+    static thread_local std::vector<LitByPoint> points;
+    points.resize(views.size());
     Interval<double> ranges[16];
-    for (size_t i = 0; i < 16; ++i) ranges[i] = {low[i], high[i]}, stretches[i].clear();
+    for (size_t i = 0; i < 16; ++i) ranges[i] = {low[i], high[i]};
     const int tile = tile_of(*views.front(), batch.positions, margin);
-    for (const std::shared_ptr<const ShadowView>& view : views) append_lit_from(*view, batch, tile, ranges, stretches);
+    for (size_t k = 0; k < views.size(); ++k) {
+        for (std::vector<Interval<double>>& of_ray : points[k].lit) of_ray.clear();
+        append_lit_from(*views[k], batch, tile, ranges, points[k].lit);
+    }
 
     static thread_local std::vector<Shared> shared;
     lit.rows.clear();
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         if (!(low[i] < high[i])) continue;
-        find_shares(stretches[i], 1 / static_cast<float>(views.size()), shared);
+        find_shares(points, i, shared);
         join_short(batch.rays[i], lamp, shared);
         for (size_t k = 0; k < shared.size(); ++k) {
             if (k == lit.rows.size()) lit.rows.emplace_back();

@@ -79,12 +79,15 @@ bool is_closed(const FroxelScene& scene) { return std::ranges::none_of(scene.sna
 
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t index) {
     const Light& light = scene.snapshot.lights[index];
-    constexpr float froxels = 14; // across: from half of that on they show a light's 1/r² as it is
     if (is_distant(light)) return {};
     if (has_cone(light) || has_exact_shadows(scene, light)) return {infinity};
+    return near_to(grid, light);
+}
+
+NearLight near_to(const FroxelGrid& grid, const Light& light) {
+    constexpr float froxels = 14; // across
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
-    if (!(z > 0)) return {};
-    return {froxels * froxel_width(grid, z)};
+    return {z > 0 ? froxels * froxel_width(grid, z) : 0};
 }
 
 float dimming(const LightDepth& depth) {

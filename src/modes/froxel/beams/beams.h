@@ -24,6 +24,10 @@ struct NearLight {
 };
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t light);
 
+// What is near to a lamp by the size of the froxels around it: from half of that on they show its 1/r², and the fog
+// that it lights, as they are. None of a lamp behind the camera.
+NearLight near_to(const FroxelGrid& grid, const Light& light);
+
 // Whether rays find a light's shadows by themselves, exactly, or there are none.
 bool has_exact_shadows(const FroxelScene& scene, const Light& light);
 
