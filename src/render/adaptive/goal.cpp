@@ -29,6 +29,14 @@ bool is_undecided(const SquaredError& error, double wanted) {
     return error.bound > wanted && 2 * error.value - error.bound <= wanted;
 }
 
+// Shows more of what is undecided, by more samples or by more tiles; false where there is nothing more to see.
+bool grow_while_possible(Pilot& pilot, bool by_noise) {
+    if (!pilot.can_grow(by_noise)) by_noise = !by_noise;
+    if (!pilot.can_grow(by_noise)) return false;
+    grow(pilot, by_noise);
+    return true;
+}
+
 bool same_settings(const Settings& a, const Settings& b) {
     return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
 }
@@ -264,11 +272,9 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
     Measured measured = measure(*pilot, look, goal.clock);
     const double left = goal.error * goal.error - noise.bound * noise.bound;
-    while (left > 0 && is_undecided(measured.integrator, left) && pilot->can_grow(measured.integrator.by_noise) &&
-           (goal.seconds == 0 || goal.clock() < until)) {
-        grow(*pilot, measured.integrator.by_noise);
+    while (left > 0 && is_undecided(measured.integrator, left) && (goal.seconds == 0 || goal.clock() < until) &&
+           grow_while_possible(*pilot, measured.integrator.by_noise))
         measured = measure(*pilot, look, goal.clock);
-    }
     result.measured.integrator = measured.integrator;
     const double bound = std::hypot(std::sqrt(result.measured.integrator.bound), noise.bound);
     if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
@@ -281,10 +287,8 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
         Look of_finer = chooser.look_at(*next, choice.scout.get());
         Choice finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
         while (is_undecided(finer.measured.integrator, std::pow(integrator_share * goal.error, 2)) &&
-               pilot->can_grow(finer.measured.integrator.by_noise)) {
-            grow(*pilot, finer.measured.integrator.by_noise);
+               grow_while_possible(*pilot, finer.measured.integrator.by_noise))
             finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
-        }
         const bool room = leaves_room(finer, goal.error);
         const double its_work = finer.work_to(goal.error);
         if (its_work < work || (work == infinity && room)) work = its_work, result = std::move(finer);
