@@ -145,10 +145,6 @@ double Choice::samples_to(double error) const {
     return spread({left, infinity}, scout_samples).rays / pixels;
 }
 
-double Choice::seconds_to(double error) const {
-    return measured.prepare_seconds + samples_to(error) * measured.sample_seconds;
-}
-
 double Choice::work_to(double error) const { return samples_to(error) * measured.sample_work; }
 
 double Choice::expected(double samples) const {

@@ -22,8 +22,7 @@ struct Choice {
     // Samples per pixel that get to an error, on the average; infinite where that is out of reach.
     double samples_to(double error) const;
 
-    // To prepare and render them, and the work of the latter.
-    double seconds_to(double error) const;
+    // To render them.
     double work_to(double error) const;
 
     // The squared error to expect of so many samples per pixel, on the average.

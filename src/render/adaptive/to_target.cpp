@@ -86,14 +86,17 @@ Rounds rounds_of(const Mode& mode, const View& view, Goal& goal) {
     return rounds;
 }
 
+// Whether the integrator alone may be as wrong as is allowed.
+bool is_out_of_reach(const Choice& choice, double error) {
+    return choice.has_integrator && choice.measured.integrator.bound >= error * error;
+}
+
 Choice choice_for(const Rounds& rounds, const Snapshot& snapshot, const Settings& settings,
                   const FrameOptions& options) {
     const Goal& goal = rounds.goal;
     if (goal.choice) return *goal.choice;
     Choice choice = choose(rounds.mode, rounds.view, snapshot, settings, goal, rounds.start, options);
-    const bool falls_short =
-        goal.error > 0 && choice.has_integrator && choice.measured.integrator.bound >= goal.error * goal.error;
-    if (!falls_short || !goal.wanted) return choice;
+    if (goal.error == 0 || !is_out_of_reach(choice, goal.error) || !goal.wanted) return choice;
     return choose(rounds.mode, rounds.view, snapshot, *goal.wanted, goal, rounds.start, options);
 }
 
@@ -221,6 +224,14 @@ double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
         return std::clamp(std::ceil(needed / batches) * batches, batches, 1.0 * max_target_samples);
     }
     return next_round(rounds, stats);
+}
+
+// What a goal is likely to take from here, when so much work comes next: an allotment may be enough after its first
+// part.
+double seconds_ahead(const Rounds& rounds, double next) {
+    if (is_out_of_reach(*rounds.choice, rounds.goal.error)) return infinity;
+    const double work = rounds.allotment ? (rounds.first_part + 1) / 2 : rounds.expected - rounds.done;
+    return (next > 0 ? work * rounds.work_seconds : 0) + rounds.check_seconds;
 }
 }
 
@@ -350,15 +361,13 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (rounds.choice->scout) round = 1; // none may take the random numbers of the first picture again
-        if (goal.error > 0 && has_integrator(mode)) {
-            const double render = rounds.choice->seconds_to(goal.error) - rounds.choice->measured.prepare_seconds;
-            make_forecast(render + rounds.check_seconds, rounds, options, stats);
-        }
     }
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
-        render_rounds(rounds, rendering, scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds),
-                      result, stats, round);
+        const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
+        if (check == 1 && goal.error > 0 && has_integrator(mode))
+            make_forecast(seconds_ahead(rounds, work), rounds, options, stats);
+        render_rounds(rounds, rendering, work, result, stats, round);
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;

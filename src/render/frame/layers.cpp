@@ -67,7 +67,7 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 }
 
 namespace {
-constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
+constexpr double confidence = 2.576; // standard deviations below which 99.5 % of a normal distribution lie
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
@@ -77,7 +77,7 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-// Below this share lie 97.5 % of the ratios of two independent χ², each over its degrees of freedom: Fisher's F after
+// Below this share lie 99.5 % of the ratios of two independent χ², each over its degrees of freedom: Fisher's F after
 // Paulson (1942). Below three degrees of the divisor nothing is known but that it is a lot.
 double largest_ratio(double above, double below) {
     const double a = 2 / (9 * below), b = 2 / (9 * above), z = confidence * confidence;

@@ -36,7 +36,7 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
     const ReferenceMetrics reference_metrics = make_yardstick(make_reference(small.shot(), exact, files), false);
     const auto halves = make_reference(small.shot(), quick, files).halves;
 
-    // The halves tell their own noise, and it is the one asked for: bounds hold with 97.5 %.
+    // The halves tell their own noise, and it is the one asked for: bounds hold with 99.5 %.
     const double mean = reference_metrics.mean;
     EXPECT_LT(measure_errors(halves[0].color, halves[1].color).rmse / 2 / mean, 1.3 * noise);
 
@@ -47,9 +47,7 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
     const double deviation = std::sqrt((noise * noise + own * own / (mean * mean)) / pixels);
     EXPECT_LT(std::abs(errors.bias), 4 * deviation);
     EXPECT_LT(std::abs(errors.inscatter_bias), 4 * deviation);
-    // The reference's own squared noise, taken out, is known to √(2/pixels) of itself: two of those.
-    const double unsure = 2 * std::pow(own / mean, 2) * std::sqrt(2 / pixels);
-    EXPECT_LT(errors.error, std::sqrt(noise * noise + unsure));
+    EXPECT_LT(errors.error, noise);
 }
 // A light grid this coarse is off by more than the noise unless exact samples put it right.
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,

@@ -54,7 +54,7 @@ Layers homogeneous_layers(ivec2 size, float color, float variance, float fog, fl
 // Of so many pixels alike: F where both have as many degrees of freedom, for which Wilson & Hilferty's cube roots are
 // x² (A² - z²a) - 2 A² x + (A² - z²a) = 0, A = 1 - a.
 double bound_over_error(double pixels, double doubt) {
-    const double a = 2 / (9 * pixels), A = (1 - a) * (1 - a), z = 1.96 * 1.96 * a;
+    const double a = 2 / (9 * pixels), A = (1 - a) * (1 - a), z = 2.576 * 2.576 * a;
     EXPECT_NEAR(2 / (doubt * doubt), 1, 1e-6) << "as many degrees of freedom for either";
     return std::pow((A + std::sqrt(A * A - (A - z) * (A - z))) / (A - z), 1.5);
 }
@@ -68,9 +68,9 @@ TEST(Noise, IsTheStandardErrorOverTheMeanOfTheWorseLayer) {
     EXPECT_NEAR(noise.error, 0.3, 1e-7);
     noise = noise_of(homogeneous_layers({5, 3}, 2, 0.04f, 0, 0));
     EXPECT_NEAR(noise.error, 0.1, 1e-7);
-    // Known for sure, one pixel's error is within 1.96 deviations of a normal distribution in 95 %, and 2.24 in 97.5 %.
+    // Known for sure, one pixel's error is within 2.81 deviations of a normal distribution in 99.5 %.
     noise = noise_of(homogeneous_layers({1, 1}, 2, 0.04f, 0, 0, 1e-4f));
-    EXPECT_NEAR(noise.bound, 0.1 * 2.24, 0.004);
+    EXPECT_NEAR(noise.bound, 0.1 * 2.81, 0.005);
     noise = noise_of(homogeneous_layers({4, 4}, 0, 0, 0, 0));
     EXPECT_EQ(noise.error, 0);
     EXPECT_EQ(noise.bound, 0);
@@ -87,18 +87,18 @@ TEST(Noise, IsLessSureWhereFewPixelsHoldItOrFewBatchesTell) {
         const Noise noise = noise_of(layers);
         return noise.bound / noise.error;
     };
-    // Square roots of tabled F at 0.975: (10, ∞), (30, 30), (10, 20), (4, 12).
-    EXPECT_NEAR(over_error(10, 1e-3f), std::sqrt(2.05), 0.02);
-    EXPECT_NEAR(over_error(30, std::sqrt(2.0f)), std::sqrt(2.07), 0.02);
-    EXPECT_NEAR(over_error(10, 1), std::sqrt(2.77), 0.03);
-    EXPECT_NEAR(over_error(4, std::sqrt(2.0f / 3)), std::sqrt(4.12), 0.05);
+    // Square roots of tabled F at 0.995: (10, ∞), (30, 30), (10, 20), (4, 12).
+    EXPECT_NEAR(over_error(10, 1e-3f), std::sqrt(2.52), 0.02);
+    EXPECT_NEAR(over_error(30, std::sqrt(2.0f)), std::sqrt(2.63), 0.02);
+    EXPECT_NEAR(over_error(10, 1), std::sqrt(3.85), 0.03);
+    EXPECT_NEAR(over_error(4, std::sqrt(2.0f / 3)), std::sqrt(6.52), 0.05);
     EXPECT_GT(over_error(1, 1), 4);
     EXPECT_TRUE(std::isfinite(over_error(1, 1)));
 }
 
 TEST(Noise, StaysBelowItsBoundWhereFewSamplesHoldIt) {
     // One sample of 20 is bright, in a quarter of the pixels only: the true error of 2 samples a pixel, taken by two
-    // batches, in 400 pictures. The bound may be broken in 2.5 % of them, and 2 % for chance.
+    // batches, in 400 pictures. The bound may be broken in 0.5 % of them, and 1.5 % for chance.
     const double p = 0.05, variance = 0.25 * p * (1 - p) / 2;
     int broken = 0;
     for (uint32_t picture = 0; picture < 400; ++picture) {
@@ -114,12 +114,12 @@ TEST(Noise, StaysBelowItsBoundWhereFewSamplesHoldIt) {
             }
         broken += noise_of(layers).bound < std::sqrt(variance);
     }
-    EXPECT_LE(broken, 0.045 * 400);
+    EXPECT_LE(broken, 0.02 * 400);
 }
 
 TEST(Noise, ErrorsOfPicturesStayBelowTheBoundWhereFewPixelsHoldThem) {
-    // Ten pixels with normal noise, known from two batches. In 1000 pictures, the bound may be broken in 2.5 %, and 1 %
-    // for chance.
+    // Ten pixels with normal noise, known from two batches. In 1000 pictures, the bound may be broken in 0.5 %, and
+    // 0.7 % for chance.
     int broken = 0;
     for (uint32_t picture = 0; picture < 1000; ++picture) {
         Layers layers = homogeneous_layers({32, 32}, 1, 0, 0, 0);
@@ -137,7 +137,7 @@ TEST(Noise, ErrorsOfPicturesStayBelowTheBoundWhereFewPixelsHoldThem) {
         }
         broken += noise_of(layers).bound < std::sqrt(squared);
     }
-    EXPECT_LE(broken, 35);
+    EXPECT_LE(broken, 12);
 }
 
 TEST(Noise, VarianceIsThatOfTheMean) {
