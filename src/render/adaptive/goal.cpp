@@ -180,13 +180,8 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
     std::list<Entry> entries;
     std::optional<Choice> before; // of the finest so far
     size_t next = 0;
-    const auto needs_finer = [&] {
-        if (next == 0 || next == chooser.candidates.size()) return next == 0;
-        const Entry& finest = entries.back();
-        return finest.candidate.name == chooser.candidates[next - 1].name && !leaves_room(finest.choice, error);
-    };
     while (true) {
-        while (needs_finer()) {
+        while (entries.empty() || (next < chooser.candidates.size() && !leaves_room(entries.back().choice, error))) {
             const Candidate& candidate = chooser.candidates[next++];
             Look look = chooser.look_at(candidate, scout.get());
             Choice choice = chooser.choice(candidate, look, pilot, before ? &*before : nullptr, scout);
@@ -204,9 +199,9 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         const double cost = pilot->cost.work / (by_noise ? 1 : pilot->drawings);
         if (!chooser.systematic || !pilot->can_grow(by_noise) || !(best.sure - hoped.hoped > cost)) return best.choice;
         const double least = best.sure;
-        std::erase_if(entries, [&](const Entry& entry) { return entry.hoped > least; });
         grow(*pilot, by_noise);
         for (Entry& entry : entries) {
+            if (entry.hoped > least) continue; // as long as the best is as good
             entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
             entry.weigh(error);
         }
