@@ -29,8 +29,8 @@ class Fault:
 
 ADAPTIVE = "src/render/adaptive/"
 FAULTS = [
-    Fault("noise-without-tail", "src/render/frame/layers.cpp", "return {std::sqrt(variance) / mean, std::sqrt(high) / mean};",
-          "return {std::sqrt(variance) / mean, std::sqrt(variance) / mean};"),
+    Fault("noise-without-tail", "src/render/frame/layers.cpp", "bound(std::max(freedom, 3.0)), bound(certain)};",
+          "std::sqrt(variance) / mean, std::sqrt(variance) / mean + 0 * bound(freedom)};"),
     Fault("bound-halved", "src/render/frame/frame.cpp", "std::hypot(noise->bound, ", "0.5 * std::hypot(noise->bound, "),
     Fault("integrator-without-tail", ADAPTIVE + "pilot.cpp",
           "const double bound = std::max(value, 0.0) + confidence * (half + std::sqrt(variance + half * half));",

@@ -127,7 +127,7 @@ bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
         return false;
     const double pixels = pixel_count(rounds.view);
     const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
-    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->bound / stats.noise->error;
+    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->settled / stats.noise->error;
     Enough enough{0, max_target_samples * pixels};
     if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
     if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
@@ -212,7 +212,7 @@ double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
     } else {
         const Noise noise = noise_of(scout.layers);
         const double ratio = std::sqrt(choice.noise_ratio);
-        stats.noise = Noise{ratio * noise.error, ratio * noise.bound};
+        stats.noise = Noise{ratio * noise.error, ratio * noise.bound, ratio * noise.settled};
     }
     if (!begin_allotment(rounds, scout.layers, stats) && !counts) {
         const double batches = rounds.max_batches();

@@ -69,6 +69,8 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 namespace {
 constexpr double confidence = 2.576; // standard deviations below which 99.5 % of a normal distribution lie
 
+constexpr double certain = 1e9; // degrees of freedom
+
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
 double mean_of(const Image<vec3>& image) {
@@ -91,21 +93,22 @@ double largest_ratio(double above, double below) {
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {
     const double mean = mean_of(picture), variance = mean_of(variances);
     if (!(variance > 0)) return {};
-    if (!(mean > 0)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    if (!(mean > 0)) return {infinite, infinite, infinite};
 
     double squares = 0, squared_error = 0; // of the sum of all variances
     for (const vec3& value : variances.pixels) squares += channel_mean(value) * channel_mean(value);
     for (const double square : squared_errors.pixels) squared_error += square;
     const double sum = variance * static_cast<double>(picture.pixels.size());
-    const double pixels = sum * sum / squares, freedom = squared_error > 0 ? 2 * sum * sum / squared_error : 1e9;
-    const double high = variance * largest_ratio(pixels, std::max(freedom, 3.0));
-    return {std::sqrt(variance) / mean, std::sqrt(high) / mean};
+    const double pixels = sum * sum / squares, freedom = squared_error > 0 ? 2 * sum * sum / squared_error : certain;
+    const auto bound = [&](double known) { return std::sqrt(variance * largest_ratio(pixels, known)) / mean; };
+    return {std::sqrt(variance) / mean, bound(std::max(freedom, 3.0)), bound(certain)};
 }
 }
 
 Noise noise_of(const Layers& layers) {
     const Noise color = noise_of(layers.color, layers.variance, layers.variance_error);
     const Noise fog = noise_of(layers.inscatter, layers.inscatter_variance, layers.inscatter_variance_error);
-    return {std::max(color.error, fog.error), std::max(color.bound, fog.bound)};
+    return {std::max(color.error, fog.error), std::max(color.bound, fog.bound), std::max(color.settled, fog.settled)};
 }
 }

@@ -15,6 +15,7 @@ struct Noise {
     double error = 0; // root mean square of the standard errors over linear RGB, as a share of the picture's mean; for
                       // colour or fog light alone, whichever is worse
     double bound = 0; // the error is below this with a confidence of 99.5 %
+    double settled = 0; // the bound, were the variance of each pixel known for certain
 };
 
 // Pixels of the crop window. Colours are premultiplied linear Rec.709.

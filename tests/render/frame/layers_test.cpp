@@ -94,6 +94,8 @@ TEST(Noise, IsLessSureWhereFewPixelsHoldItOrFewBatchesTell) {
     EXPECT_NEAR(over_error(4, std::sqrt(2.0f / 3)), std::sqrt(6.52), 0.05);
     EXPECT_GT(over_error(1, 1), 4);
     EXPECT_TRUE(std::isfinite(over_error(1, 1)));
+    // The last pixel's, known for certain, is χ² of one degree of freedom: 2.81 deviations.
+    EXPECT_NEAR(noise_of(layers).settled / noise_of(layers).error, 2.81, 0.05);
 }
 
 TEST(Noise, StaysBelowItsBoundWhereFewSamplesHoldIt) {
