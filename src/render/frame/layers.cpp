@@ -1,7 +1,6 @@
 #include "render/frame/layers.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tyndall {
 namespace {
@@ -68,8 +67,7 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 
 namespace {
 constexpr double confidence = 2.576; // standard deviations below which 99.5 % of a normal distribution lie
-
-constexpr double certain = 1e9; // degrees of freedom
+constexpr double certain = 1e9;      // degrees of freedom
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
@@ -93,8 +91,7 @@ double largest_ratio(double above, double below) {
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {
     const double mean = mean_of(picture), variance = mean_of(variances);
     if (!(variance > 0)) return {};
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    if (!(mean > 0)) return {infinite, infinite, infinite};
+    if (!(mean > 0)) return {infinity, infinity, infinity};
 
     double squares = 0, squared_error = 0; // of the sum of all variances
     for (const vec3& value : variances.pixels) squares += channel_mean(value) * channel_mean(value);

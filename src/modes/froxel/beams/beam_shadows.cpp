@@ -49,8 +49,8 @@ struct LitByPoint {
     PathPacket lit;
 };
 
-// A ray's stretches of several points, cut into such that as many points light. Points next to each other light much
-// the same: side by side their ends are almost in order.
+// Splits a ray wherever one of the points begins or ceases to light it. Neighbouring points light much the same
+// stretches, so their ends come almost sorted, and an insertion sort is quick.
 void find_shares(const std::vector<LitByPoint>& points, size_t ray, std::vector<Shared>& shared) {
     static thread_local std::vector<std::pair<float, int>> ends;
     ends.clear(), shared.clear();
