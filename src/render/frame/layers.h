@@ -14,7 +14,7 @@ namespace tyndall {
 struct Noise {
     double error = 0; // root mean square of the standard errors over linear RGB, as a share of the picture's mean; for
                       // colour or fog light alone, whichever is worse
-    double bound = 0; // the error is below this with a confidence of 99.5 %
+    double bound = 0; // the error is below this with a confidence of 99.5 % (noise) or 97.5 % (all else)
     double settled = 0; // the bound, were the variance of each pixel known for certain
 };
 
