@@ -92,7 +92,11 @@ class Truth:
 
     def error(self):
         """Of the truth itself, as of pictures."""
-        return max(np.sqrt(self.variance[layer]) / max(self.layers[layer].mean(), 1e-30) for layer in LAYERS)
+        return error_of(self.layers, self.variance)
+
+
+def error_of(layers, variance):
+    return max(np.sqrt(variance[layer]) / max(layers[layer].mean(), 1e-30) for layer in LAYERS)
 
 
 def save_truth(truth, attempt, path):

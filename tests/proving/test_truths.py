@@ -63,6 +63,15 @@ class Truths(unittest.TestCase):
             self.assertAlmostEqual(np.mean(is_so[layer]) / np.mean(said[layer]), 1, delta=0.25, msg=layer)
         self.assertLess(abs(np.mean(bias)), 4 * np.std(bias) / np.sqrt(len(bias)))
 
+    def test_few_pixels_leave_more_doubt(self):
+        random = np.random.default_rng(1)
+        for pixels in (1, 4, 100):
+            pictures = random.standard_normal((truths.RUNS, 4000, pixels))
+            seen = np.var(pictures, 0, ddof=1)
+            exceeded = np.mean([row.sum() * truths.doubt(row) < pixels for row in seen])
+            self.assertLess(exceeded, 0.07, pixels)
+            self.assertGreater(exceeded, 0.01, pixels)
+
     def test_takes_no_more_time_than_there_is(self):
         whole = Known(1).find().seconds
         self.assertIsNone(Known(1).find(0.5 * whole))

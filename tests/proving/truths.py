@@ -6,7 +6,7 @@ import itertools
 
 import numpy as np
 
-from pictures import LAYERS, Truth, render
+from pictures import LAYERS, Truth, error_of, render
 from windows import allot, area_of, cautious, divide, inside
 
 RUNS = 4  # independent pictures of a truth
@@ -15,6 +15,7 @@ FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centres o
 STEP = 16   # variances fall by this factor at most at once: far from what is wanted, little is known
 HOPE = 4    # forecasts may be as many times too long
 AIM = 0.85  # of the variance wanted
+SURE = 1.645  # deviations: variances are below what is counted on in 95 %
 PARTS = ("surface", "fog")
 SAME_RAYS = ("--set", "pixel.edge_samples=1", "--set", "pixel.lamp_samples=1")
 BARE, EXACT = "bare", "exact"
@@ -32,6 +33,14 @@ RECIPES = {  # from quick to exact; what each departs from the reference in
 
 class TooLong(Exception):
     pass
+
+
+def doubt(variances):
+    """How many times the sum of variances of pixels, each from RUNS pictures, may exceed what it seems: much where one pixel
+    holds all of it. Chi-squared with as many degrees of freedom as Satterthwaite 1946 says, after Wilson and Hilferty 1931."""
+    freedom = (RUNS - 1) * variances.sum() ** 2 / max((variances ** 2).sum(), 1e-300)
+    share = 2 / (9 * freedom)
+    return 1 / (1 - share - SURE * np.sqrt(share)) ** 3
 
 
 def parts_of(layers):
@@ -103,9 +112,9 @@ class Level:
     def mean(self, part):
         return np.mean([run[part] for run in self.runs], 0)
 
-    def variance(self, part):
-        """Of pixels of a run, averaged over channels."""
-        return np.var([run[part] for run in self.runs], 0, ddof=1).mean(-1)
+    def variance(self, *parts):
+        """Of pixels of a run, averaged over channels; of several parts, of their sum."""
+        return np.var([sum(run[part] for part in parts) for run in self.runs], 0, ddof=1).mean(-1)
 
     def spread(self, scales):
         """Of pixels of a run, as shares of squared means."""
@@ -182,26 +191,26 @@ def steps(levels, scales, wanted):
 
 
 def find_truth(program, scene, size, frame, folder, wanted, seconds):
-    """The truth with an error of at most `wanted`, or None where that takes more processor time: quick pictures, corrected
-    by how far they are from better ones through the same few rays, and so on to exact ones. What is noisiest, a level or a
-    window of one, takes most samples. What is known of the error comes from differences between independent pictures
-    alone."""
+    """The truth with an error that is surely at most `wanted`, or None where that takes more processor time: quick pictures,
+    corrected by how far they are from better ones through the same few rays, and so on to exact ones. What is noisiest, a
+    level or a window of one, takes most samples. What is known of the error comes from differences between independent
+    pictures alone, and from how many of them."""
     renderer = Renderer(program, scene, frame, folder, seconds)
     try:
         levels = levels_of(renderer, size, wanted)
         while True:
             mean = {part: sum(level.mean(part) for level in levels) for part in PARTS}
-            variance = {part: sum(float(level.variance(part).mean()) for level in levels) / RUNS for part in PARTS}
-            both = sum(float(np.var([run["surface"] + run["fog"] for run in level.runs], 0, ddof=1).mean())
-                       for level in levels) / RUNS
-            truth = Truth(dict(zip(LAYERS, (mean["surface"] + mean["fog"], mean["fog"]))),
-                          dict(zip(LAYERS, (both, variance["fog"]))), seconds - renderer.left)
-            if min(truth.layers[layer].mean() for layer in LAYERS) <= 0:
+            layers = dict(zip(LAYERS, (mean["surface"] + mean["fog"], mean["fog"])))
+            if min(layer.mean() for layer in layers.values()) <= 0:
                 return None
-            if truth.error() <= wanted:
-                return truth
-            scales = {part: truth.layers[layer].mean() for part, layer in zip(PARTS, LAYERS)}
-            goal = RUNS * AIM * wanted ** 2
+            pixels = {layer: np.array([level.variance(*parts) for level in levels]) / RUNS
+                      for layer, parts in zip(LAYERS, (PARTS, ("fog",)))}
+            variance = {layer: float(values.sum(0).mean()) for layer, values in pixels.items()}
+            doubts = {layer: doubt(values) for layer, values in pixels.items()}
+            if error_of(layers, {layer: doubts[layer] * variance[layer] for layer in LAYERS}) <= wanted:
+                return Truth(layers, variance, seconds - renderer.left)
+            scales = {part: layers[layer].mean() for part, layer in zip(PARTS, LAYERS)}
+            goal = RUNS * AIM * wanted ** 2 / max(doubts.values())
             if sum(step[0] for step in steps(levels, scales, goal)) > HOPE * renderer.left:
                 return None
             now = sum(level.spread(scales).mean() for level in levels)
