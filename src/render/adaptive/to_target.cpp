@@ -278,12 +278,13 @@ void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStat
     note_integrator(choice, stats);
 }
 
-// Tells what the goal is likely to take when `more` seconds come on top of those that have passed. What is far gets
-// a limit.
+// Tells what the goal is likely to take when `more` seconds come on top of those that have passed; stats keep what was
+// told first. What is far gets a limit.
 void make_forecast(double more, Rounds& rounds, const FrameOptions& options, FrameStats& stats) {
-    stats.forecast_seconds = rounds.goal.clock() - rounds.start + more;
-    if (rounds.goal.seconds == 0 && stats.forecast_seconds > longest_seconds) rounds.goal.seconds = longest_seconds;
-    if (options.forecast) options.forecast(stats.forecast_seconds);
+    const double seconds = rounds.goal.clock() - rounds.start + more;
+    if (stats.forecast_seconds == 0) stats.forecast_seconds = seconds;
+    if (rounds.goal.seconds == 0 && seconds > longest_seconds) rounds.goal.seconds = longest_seconds;
+    if (options.forecast) options.forecast(seconds);
 }
 
 // Renders rounds until noise is as small as the goal asks for, or time is up. `round` counts those of all tries.
@@ -349,6 +350,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
     if (!goal.clock) goal.clock = steady_seconds;
     const double start = goal.clock();
+    const bool is_timed = goal.seconds > 0;
     const std::optional<OrdersError> orders = orders_for(mode, view, snapshot, settings, goal, options);
     Rounds rounds = rounds_of(mode, view, goal);
     rounds.start = start;
@@ -365,14 +367,15 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
         const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
-        if (check == 1 && goal.error > 0 && has_integrator(mode))
-            make_forecast(seconds_ahead(rounds, work), rounds, options, stats);
+        if (goal.error > 0 && has_integrator(mode)) make_forecast(seconds_ahead(rounds, work), rounds, options, stats);
         render_rounds(rounds, rendering, work, result, stats, round);
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
+        Goal asked = goal;
+        if (!is_timed) asked.seconds = 0; // the limit of what is far: a finer candidate may get there in less
         const Choice after = checked(*rounds.choice, result, *stats.noise, stats.samples, until, mode, rounds.view,
-                                     snapshot, settings, goal, check, options);
+                                     snapshot, settings, asked, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;

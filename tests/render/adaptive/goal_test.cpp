@@ -259,6 +259,21 @@ TEST(Goal, WhatIsFarIsStoppedAfterTenMinutes) {
     EXPECT_GT(stats.goal_seconds, 400);
 }
 
+// What was chosen beforehand sees no shadows, which makes the goal seem out of reach.
+TEST(Goal, AFinerCandidateIsTakenWhereTheOneChosenIsFarFromTheError) {
+    const Example example("window");
+    Goal goal{0.2, 0, Quality::preview, steady_seconds};
+    Choice coarse = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
+    apply_setting(coarse.candidate.settings, "march.visibility=off");
+    coarse.scout = nullptr, coarse.measured.prepared = nullptr;
+    coarse.measured.integrator.value = coarse.measured.integrator.bound = 1;
+    goal.choice = std::make_shared<Choice>(coarse);
+    const Result result = to_goal(example, goal);
+    EXPECT_EQ(result.stats.forecast_seconds, infinity);
+    EXPECT_NE(result.stats.integrator->candidate, coarse.candidate.name);
+    EXPECT_LE(result.stats.error()->bound, goal.error);
+}
+
 // A clock that ticks whenever it is looked at: there is no time for more than one sample.
 TEST(Goal, MarchTakesOneSampleOfACandidateWhateverTheTime) {
     const Example example("window");
