@@ -27,7 +27,7 @@ def prove(seed, options):
     rows = []
     with tempfile.TemporaryDirectory(prefix="proving_budgets_") as folder:
         folder = pathlib.Path(folder)
-        scene, frame, truth, _ = scene_with_truth(seed, folder, 0.004, options)
+        scene, frame, truth, _ = scene_with_truth(seed, folder, [0.004, 0.01], options)
         if truth is None:
             return rows
         draft = render(options.program, scene, folder / "draft.exr", ["--quality", "draft", "--frames", frame]).wall

@@ -88,6 +88,7 @@ class Truth:
     """Means of independent pictures, and the variance of those means."""
     layers: dict
     variance: dict  # of a layer's mean, averaged over pixels and channels
+    bound: float  # that its own error is surely below
     seconds: float = 0  # of processors
 
     def error(self):
@@ -100,15 +101,15 @@ def error_of(layers, variance):
 
 
 def save_truth(truth, attempt, path):
-    np.savez(path, attempt=attempt, seconds=truth.seconds, **{layer: truth.layers[layer] for layer in LAYERS},
+    np.savez(path, attempt=attempt, bound=truth.bound, seconds=truth.seconds, **{layer: truth.layers[layer] for layer in LAYERS},
              **{f"{layer}_variance": truth.variance[layer] for layer in LAYERS})
 
 
 def load_truth(path):
     """The truth and the attempt it belongs to."""
     with np.load(path) as kept:
-        return Truth({layer: kept[layer] for layer in LAYERS},
-                     {layer: float(kept[f"{layer}_variance"]) for layer in LAYERS}, float(kept["seconds"])), int(kept["attempt"])
+        layers, variance = [{layer: kept[layer + end] for layer in LAYERS} for end in ("", "_variance")]
+        return Truth(layers, variance, float(kept["bound"]), float(kept["seconds"])), int(kept["attempt"])
 
 
 def error_against(truth, layers):

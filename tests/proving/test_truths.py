@@ -41,7 +41,7 @@ class Known:
 
     def find(self, seconds=1e3):
         with mock.patch.object(truths.Renderer, "picture", lambda *given: self.picture(*given)):
-            return truths.find_truth("", "", SIZE, 1, None, WANTED, seconds)
+            return truths.find_truth("", "", SIZE, 1, None, [WANTED, 4 * WANTED], seconds)
 
     def layers(self):
         return dict(zip(LAYERS, (self.surface + self.fog, self.fog)))
@@ -53,7 +53,8 @@ class Truths(unittest.TestCase):
         for seed in range(10):
             known = Known(seed)
             truth = known.find()
-            self.assertLessEqual(truth.error(), WANTED)
+            self.assertLessEqual(truth.error(), truth.bound)
+            self.assertLessEqual(truth.bound, WANTED)
             for layer in LAYERS:
                 off = truth.layers[layer] - known.layers()[layer]
                 said[layer].append(truth.variance[layer])
@@ -74,7 +75,9 @@ class Truths(unittest.TestCase):
 
     def test_takes_no_more_time_than_there_is(self):
         whole = Known(1).find().seconds
-        self.assertIsNone(Known(1).find(0.5 * whole))
+        self.assertGreater(Known(1).find(0.5 * whole).bound, WANTED)
+        self.assertLessEqual(Known(1).find(0.5 * whole).seconds, 0.5 * whole)
+        self.assertIsNone(Known(1).find(0.01 * whole))
 
     def test_windows(self):
         known = Known(0)

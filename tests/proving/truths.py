@@ -190,14 +190,24 @@ def steps(levels, scales, wanted):
         poor -= good
 
 
+def aim_of(costs, left):
+    """Which error to go for, of those wanted and what each costs: the smallest that time is left for, or else one that may
+    cost less than it seems."""
+    for most in (left, HOPE * left):
+        within = [error for error, cost in sorted(costs.items()) if cost <= most]
+        if within:
+            return within[0] if most == left else within[-1]
+    return None
+
+
 def find_truth(program, scene, size, frame, folder, wanted, seconds):
-    """The truth with an error that is surely at most `wanted`, or None where that takes more processor time: quick pictures,
-    corrected by how far they are from better ones through the same few rays, and so on to exact ones. What is noisiest, a
-    level or a window of one, takes most samples. What is known of the error comes from differences between independent
-    pictures alone, and from how many of them."""
-    renderer = Renderer(program, scene, frame, folder, seconds)
+    """The truth with an error that is surely at most one of those wanted, the smallest there is processor time for; None
+    where that is none. Quick pictures, corrected by how far they are from better ones through the same few rays, and so on
+    to exact ones. What is noisiest, a level or a window of one, takes most samples. What is known of the error comes from
+    differences between independent pictures alone, and from how many of them."""
+    renderer, best = Renderer(program, scene, frame, folder, seconds), None
     try:
-        levels = levels_of(renderer, size, wanted)
+        levels = levels_of(renderer, size, min(wanted))
         while True:
             mean = {part: sum(level.mean(part) for level in levels) for part in PARTS}
             layers = dict(zip(LAYERS, (mean["surface"] + mean["fog"], mean["fog"])))
@@ -207,14 +217,17 @@ def find_truth(program, scene, size, frame, folder, wanted, seconds):
                       for layer, parts in zip(LAYERS, (PARTS, ("fog",)))}
             variance = {layer: float(values.sum(0).mean()) for layer, values in pixels.items()}
             doubts = {layer: doubt(values) for layer, values in pixels.items()}
-            if error_of(layers, {layer: doubts[layer] * variance[layer] for layer in LAYERS}) <= wanted:
-                return Truth(layers, variance, seconds - renderer.left)
+            bound = error_of(layers, {layer: doubts[layer] * variance[layer] for layer in LAYERS})
+            if bound <= max(wanted):
+                best = Truth(layers, variance, bound, seconds - renderer.left)
             scales = {part: layers[layer].mean() for part, layer in zip(PARTS, LAYERS)}
-            goal = RUNS * AIM * wanted ** 2 / max(doubts.values())
-            if sum(step[0] for step in steps(levels, scales, goal)) > HOPE * renderer.left:
-                return None
+            goals = {error: RUNS * AIM * error ** 2 / max(doubts.values()) for error in wanted if error < bound}
+            aim = aim_of({error: sum(step[0] for step in steps(levels, scales, goal)) for error, goal in goals.items()},
+                         renderer.left)
+            if aim is None:
+                return best
             now = sum(level.spread(scales).mean() for level in levels)
-            for _, take, plan in steps(levels, scales, max(goal, now / STEP)):
+            for _, take, plan in steps(levels, scales, max(goals[aim], now / STEP)):
                 take(plan)
     except TooLong:
-        return None
+        return best
