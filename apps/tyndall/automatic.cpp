@@ -8,8 +8,9 @@
 
 namespace tyndall {
 namespace {
-// Of what the frames would take without a plan: what looking for a quicker way may take.
-constexpr double planning_share = 0.05;
+// What looking for a quicker way may take: of what the frames would take without a plan, or of their time budget; and
+// of one frame without a budget, where that is more.
+constexpr double planning_share = 0.05, planning_share_of_one = 0.25;
 
 // The mode of a frame that --mode auto has rendered, for the same goal; null where there is none.
 const Mode* mode_before(const RenderRequest& request) {
@@ -45,9 +46,10 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
     double seconds = request.time_budget;
     if (seconds > 0) seconds = std::max(request.started + seconds - steady_seconds(), 1e-3);
     const Goal goal{request.target_error, seconds, request.quality};
+    double share = planning_share * static_cast<double>(request.frames.size());
+    if (seconds == 0) share = std::max(share, planning_share_of_one);
     const auto plan_with = [&](std::span<const Mode> candidates) {
-        return make_plan(candidates, view, first, request.settings, goal, control,
-                         planning_share * static_cast<double>(request.frames.size()));
+        return make_plan(candidates, view, first, request.settings, goal, control, share);
     };
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
     if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was

@@ -20,10 +20,17 @@ struct Runner {
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
 };
 
-// To get to a goal's error; infinite where too many would be needed.
+// Squared, what noise may be beside what it is on the average: where few pixels hold it, pictures differ.
+double squared_chance(const Layers& layers) {
+    const Noise noise = noise_of(layers);
+    return noise.error > 0 && noise.error < infinity ? std::pow(noise.settled / noise.error, 2) : 1;
+}
+
+// To get to a goal's error for sure; infinite where too many would be needed.
 double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
-    const double left = error * error - contender.integrator().bound;
+    const double chance = choice.scout ? squared_chance(choice.scout->layers) : 1;
+    const double left = (error * error - contender.integrator().bound) / chance;
     if (!(left > 0)) return infinity;
     if (!choice.has_integrator && !choice.scout) return std::ceil(choice.measured.sample.value / left);
     if (!choice.scout) return infinity;
@@ -123,14 +130,16 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     while (!runners.empty()) {
         for (Runner& runner : runners) {
             const double before = goal.clock(), left = allowed - (before - begun);
-            // A finer one takes longer than the one before. Where nothing is known of any mode, one is measured anyway.
-            if (!contest.contenders.empty() && left < 3 * runner.seconds + 1e-9) {
+            // A finer one takes longer than the one before. First ones may take twice the time, so that one that takes
+            // most of it does not hide the others; where nothing is known of any mode, one is measured anyway.
+            const double least = runner.next > 0 ? 3 * runner.seconds : 1e-9 - allowed;
+            if (!contest.contenders.empty() && left < least) {
                 runner.next = runner.candidates.size();
                 continue;
             }
             add(measured_beside(first, *runner.mode, runner.candidates[runner.next++], goal), goal, contest);
             const Contender& last = contest.contenders.back();
-            runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.value);
+            runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.bound);
             if (!may_improve(last, runner.idle, contest.best(), goal)) runner.next = runner.candidates.size();
         }
         std::erase_if(runners, [](const Runner& runner) { return runner.next >= runner.candidates.size(); });

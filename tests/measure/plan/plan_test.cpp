@@ -145,6 +145,18 @@ TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
     EXPECT_NE(plan.certificate().find(std::string(plan.chosen.mode->name)), std::string::npos);
 }
 
+// A lamp in view: few pixels hold all of the noise, whose bound is far above what it is on the average.
+TEST(Plan, SamplesAreThoseThatTheBoundTakes) {
+    const Stage stage = stage_of({homogeneous_medium(0.2f, room)}, {point_light({0.5f, 0.3f, 0}, 50)},
+                                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const Goal goal{0.02, 0, Quality::preview, steady_seconds};
+    const Contender march = measured_alone(main_mode(), small_view(), stage.snapshot, Settings{}, goal, {});
+    FrameStats stats;
+    render_to_target(main_mode(), small_view(), stage.snapshot, Settings{}, goal, {}, stats);
+    EXPECT_LE(stats.error()->bound, goal.error);
+    EXPECT_NEAR(march.samples / stats.samples, 1, 0.6) << stats.samples;
+}
+
 // Every plan of these scenes is kept: rendered as planned, the picture is as near to the truth as wanted. At the
 // centres of pixels: elsewhere in them lamps and bright edges make pictures noisier than the targets for minutes.
 class PlannedScene : public testing::TestWithParam<const char*> {};
