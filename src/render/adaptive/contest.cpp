@@ -14,10 +14,12 @@ struct Runner {
     std::vector<Candidate> candidates;
     size_t next = 0;
     double seconds = 0;           // the last one took to be measured
-    double integrator = infinity; // squared, of it
+    double integrator = infinity; // the bound of its squared error
     int idle = 0;                 // candidates since one was better than that before it
 
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
+    // How likely it is that the next one gets to an error: the less, the further off the last one is.
+    double chance(double error) const { return error > 0 ? std::min(error / std::sqrt(integrator), 1.0) : 1; }
 };
 
 // Squared, what noise may be beside what it is on the average: where few pixels hold it, pictures differ.
@@ -132,8 +134,9 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             const double before = goal.clock(), left = allowed - (before - begun);
             // A finer one takes longer than the one before. First ones may take twice the time, so that one that takes
             // most of it does not hide the others; where nothing is known of any mode, one is measured anyway.
-            const double least = runner.next > 0 ? 3 * runner.seconds : 1e-9 - allowed;
-            if (!contest.contenders.empty() && left < least) {
+            const bool worth =
+                runner.next == 0 ? left + allowed > 0 : left * runner.chance(goal.error) > 3 * runner.seconds;
+            if (!contest.contenders.empty() && !worth) {
                 runner.next = runner.candidates.size();
                 continue;
             }
