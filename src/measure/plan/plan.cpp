@@ -62,7 +62,9 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
     const Contender& winner = contest.best();
     for (const Mode& mode : modes) {
         Standing standing{&mode, {}, "artistic: no error bound"};
-        if (mode.accuracy == Accuracy::multiple_scattering)
+        if (mode.accuracy == Accuracy::multiple_scattering && !many_orders && max_component(snapshot.ambient) > 0)
+            standing.why = "not tried: it shadows ambient light, which the reference does not";
+        else if (mode.accuracy == Accuracy::multiple_scattering)
             standing.why =
                 many_orders ? "not tried: multiple scattering from a grid is close enough"
                             : "not tried: errors here are of single scattering, and it traces all orders (--mode path)";

@@ -2,6 +2,7 @@
 
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
+#include "trace/snapshot.h"
 
 #include <algorithm>
 #include <cassert>
@@ -33,9 +34,10 @@ double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
     const double chance = choice.scout ? squared_chance(choice.scout->layers) : 1;
     const double left = (error * error - contender.integrator().bound) / chance;
-    if (!(left > 0)) return infinity;
-    if (!choice.has_integrator && !choice.scout) return std::ceil(choice.measured.sample.value / left);
-    if (!choice.scout) return infinity;
+    if (!(left > 0) || (choice.has_integrator && !choice.scout)) return infinity;
+    // The first image tells where noise is, if it has any.
+    if (!choice.scout || choice.scout_variance == 0)
+        return std::max(std::ceil(choice.measured.sample.value / left), 1.0 * scout_samples);
     const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
     const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
     return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
@@ -70,6 +72,7 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
 }
 
 // All modes but the main one, and those whose error is noise only where they are needed: they are never the quickest.
+// They shadow ambient light, which the truth does not.
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
@@ -123,7 +126,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : main.seconds), begun = goal.clock();
-    const bool noisy = share == infinity || !main.gets_there() || modes.size() == 1;
+    const bool same_light = max_component(snapshot.ambient) == 0;
+    const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
     std::vector<Runner> runners;

@@ -145,6 +145,23 @@ TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
     EXPECT_NE(plan.certificate().find(std::string(plan.chosen.mode->name)), std::string::npos);
 }
 
+// At the centres of pixels the march has no noise, path tracing has; and it shadows ambient light.
+TEST(Plan, PathTracingIsAsNoisyAsItIsAndTakesNoPartInAmbientLight) {
+    Stage stage = stage_of({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                           {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    View view = small_view();
+    view.filter = PixelFilter::center;
+    const auto path_of = [&] {
+        const Plan plan = make_plan(modes(), view, stage.snapshot, Settings{}, {0.01, 0, Quality::preview, {}, {}});
+        return *std::ranges::find(plan.standings, "path", [](const Standing& s) { return s.mode->name; });
+    };
+    const Standing noisy = path_of();
+    ASSERT_TRUE(noisy.best);
+    EXPECT_GT(noisy.best->samples, 50);
+    stage.snapshot.ambient = vec3(0.1f);
+    EXPECT_FALSE(path_of().best);
+}
+
 // A lamp in view: few pixels hold all of the noise, whose bound is far above what it is on the average.
 TEST(Plan, SamplesAreThoseThatTheBoundTakes) {
     const Stage stage = stage_of({homogeneous_medium(0.2f, room)}, {point_light({0.5f, 0.3f, 0}, 50)},
