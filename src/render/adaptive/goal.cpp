@@ -56,10 +56,9 @@ struct Chooser {
     // `work`: of the picture that it is for.
     std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
                                  std::function<bool()> stop, double work) const {
-        if (goal.seconds > 0)
-            work = infinity;
-        else
-            stop = {};
+        if (goal.seconds == 0) stop = {};
+        // Modes that leave something out may be wrong in few places: these get all the tiles of a drawing.
+        if (goal.seconds > 0 || mode.name != main_mode().name) work = infinity;
         Settings quick = truth; // and as exact on the average
         quick.march.light_marches = truth_marches;
         return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
