@@ -36,6 +36,7 @@ struct Work {
     View view;
     Snapshot snapshot;
     Layers layers;
+    std::optional<RenderPlan> by{}; // rendered by, where that is not the sequence's
 };
 
 // What the stages share.
@@ -193,6 +194,24 @@ void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
     say(pipeline, work, "will take about " + seconds_text(seconds));
 }
 
+// Whether a technique chosen for the first frame turned out to be too far off for the target.
+bool is_out_of_reach(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
+    return plan.wanted && plan.mode != &main_mode() && request.time_budget == 0 && stats.integrator &&
+           stats.integrator->error.bound >= request.target_error;
+}
+
+void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
+    const RenderPlan& plan = pipeline.plan;
+    say(pipeline, work,
+        std::string(plan.mode->name) + " is too far off: rendered again with " + std::string(main_mode().name));
+    work.report.mode = main_mode().name;
+    work.by = RenderPlan{&main_mode(), *plan.wanted, plan.certificate, nullptr, plan.wanted};
+    const Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
+    options.history = nullptr;
+    work.layers =
+        render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
+}
+
 void render(Pipeline& pipeline, Work& work) {
     const RenderRequest& request = pipeline.request;
     const RenderPlan& plan = pipeline.plan;
@@ -214,6 +233,7 @@ void render(Pipeline& pipeline, Work& work) {
         work.layers = has_goal(request)
                           ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
                           : render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
+        if (is_out_of_reach(plan, request, stats)) render_by_main_mode(pipeline, work, options);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
@@ -242,8 +262,8 @@ void write(Pipeline& pipeline, Work& work) {
     const double start = steady_seconds();
     FrameReport& report = work.report;
     try {
-        const Provenance provenance =
-            provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, report.stats);
+        const Provenance provenance = provenance_of(pipeline.scene, request, work.by ? *work.by : pipeline.plan,
+                                                    work.view, work.hash, report.stats);
         write_exr(report.file, work.layers, provenance, request.exr);
         if (request.png) write_picture(pipeline, stored_color(work.layers, request.exr), report);
     } catch (const Error& error) {

@@ -26,7 +26,8 @@ LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, c
 struct FrameReport {
     int frame = 0;
     std::string file;
-    bool kept = false; // by resume; nothing was rendered, noise and samples are those of the file
+    std::string mode{}; // that rendered it, where that is not the sequence's
+    bool kept = false;  // by resume; nothing was rendered, noise and samples are those of the file
     double load_seconds = 0, seconds = 0, write_seconds = 0;
     std::optional<double> exposure{}; // stops, of its PNG
     FrameStats stats;

@@ -17,6 +17,7 @@ Json frame_json(const FrameReport& frame) {
                              {"camera_rays", frame.stats.camera_rays},
                              {"steps", frame.stats.steps},
                              {"non_finite", frame.stats.non_finite}});
+    if (!frame.mode.empty()) json.members.emplace_back("mode", frame.mode);
     if (frame.exposure) json.members.emplace_back("exposure", *frame.exposure);
     if (frame.stats.noise) {
         json.members.emplace_back("samples", frame.stats.samples);

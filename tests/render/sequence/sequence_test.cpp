@@ -4,6 +4,7 @@
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
 #include "render/sequence/sequence_fixtures.h"
+#include "scene/file/scene_file.h"
 #include "scene/scene.h"
 #include "support/threads.h"
 #include "trace/view.h"
@@ -141,5 +142,21 @@ TEST(Sequence, ReportsItselfAsJson) {
     EXPECT_EQ(totals->number_or("camera_rays", 0), 3 * 1200);
     EXPECT_EQ(totals->number_or("non_finite", 0), 1200);
     EXPECT_GT(totals->number_or("peak_memory_bytes", 0), 0);
+}
+
+// A cone knows no shadows of pillars.
+TEST(Sequence, WhatThePlansTechniqueIsTooFarOffForIsRenderedByTheMainOne) {
+    const Scratch out;
+    const Scene scene = load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / "scenes/pillars.json");
+    RenderRequest job = job_for(scene, out.file("f.exr"), {1});
+    job.settings = settings_for(Quality::preview), job.target_error = 0.1, job.resolution = {32, 18};
+    Progress progress(ProgressStyle::none, "render", 1);
+    std::atomic<bool> cancel = false;
+    RenderPlan plan{&find_mode("cone"), job.settings, "chosen", nullptr, nullptr};
+    EXPECT_EQ(render_sequence(scene, job, plan, progress, cancel).missed, 1) << "asked for by name";
+    EXPECT_EQ(read_exr(out.file("f.exr")).attributes.at("tyndall:mode"), "cone");
+    plan.wanted = std::make_shared<const Settings>(job.settings);
+    EXPECT_EQ(render_sequence(scene, job, plan, progress, cancel).missed, 0);
+    EXPECT_EQ(read_exr(out.file("f.exr")).attributes.at("tyndall:mode"), "march");
 }
 }
