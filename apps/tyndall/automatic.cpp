@@ -60,6 +60,9 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
                       std::make_shared<const Choice>(plan.chosen.choice),
                       std::make_shared<const Settings>(request.settings),
                       plan.chosen.mode == &main_mode() ? plan.orders : std::nullopt};
+    for (const Standing& standing : plan.standings)
+        if (standing.mode == &main_mode() && standing.mode != plan.chosen.mode && standing.best)
+            result.main = std::make_shared<const Choice>(standing.best->choice);
     if (globals.quiet) return result;
     say("plan: " + printable(result.certificate, 460));
     if (globals.verbose) say(plan_text(plan));

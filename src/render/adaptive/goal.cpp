@@ -124,6 +124,10 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
 }
 }
 
+bool has_rivals(const Choice& choice, const Mode& mode) {
+    return choice.scout && choice.scout->mode->name != mode.name;
+}
+
 bool leaves_room(const Choice& choice, double error) {
     return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
 }
@@ -253,10 +257,16 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
                uint32_t salt, const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const bool shows_noise = !picture.variance.empty();
+    const bool rivals = has_rivals(choice, mode);
+    // Few samples tell little of what misses the goal anyway: all the tiles of a drawing say by how much.
+    const bool hopeless = choice.measured.integrator.bound >= goal.error * goal.error;
+    const double work = hopeless ? infinity : samples * choice.measured.sample_work;
+    const auto chances = [&] {
+        if (picture.variance.empty()) return even_chances(view);
+        return rivals ? chances_between(picture, choice.scout->layers) : chances_in(picture);
+    };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
-        shows_noise ? chances_in(picture) : even_chances(view), salt, choice.pilot ? choice.pilot->prepared : nullptr,
-        [&] { return goal.clock() > until; }, samples * choice.measured.sample_work);
+        chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; }, work);
     pilot->stop = {}; // it refers to this call
     Choice result = choice;
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
@@ -269,9 +279,10 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     const double bound = std::hypot(std::sqrt(result.measured.integrator.bound), noise.bound);
     if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
         return result;
+    if (rivals) return result; // the main mode is likely to be quicker than a finer one
 
     // More samples of this one, of which some are there, or a finer one from nothing.
-    double work = result.work_to(goal.error) - samples * result.measured.sample_work;
+    double least = result.work_to(goal.error) - samples * result.measured.sample_work;
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
         Look of_finer = chooser.look_at(*next, choice.scout.get());
@@ -281,7 +292,7 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
             finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
         const bool room = leaves_room(finer, goal.error);
         const double its_work = finer.work_to(goal.error);
-        if (its_work < work || (work == infinity && room)) work = its_work, result = std::move(finer);
+        if (its_work < least || (least == infinity && room)) least = its_work, result = std::move(finer);
         if (room) break;
     }
     return result;

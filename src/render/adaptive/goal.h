@@ -44,6 +44,9 @@ struct Goal {
 // Share of the error wanted that the integrator may use up.
 inline constexpr double integrator_share = 0.7;
 
+// Whether a mode's choice was made beside other modes, by what the first image of the main one shows.
+bool has_rivals(const Choice& choice, const Mode& mode);
+
 // Whether what samples do not remove leaves enough of the error wanted for noise.
 bool leaves_room(const Choice& choice, double error);
 

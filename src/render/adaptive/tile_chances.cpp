@@ -57,6 +57,23 @@ TileChances chances_in(const Layers& picture) {
     return tiles;
 }
 
+TileChances chances_between(const Layers& picture, const Layers& other) {
+    constexpr double share = 0.25;
+    TileChances tiles = chances_in(picture);
+    std::vector<dvec3> sums(tiles.chances.size(), dvec3(0));
+    for (int y = 0; y < picture.size.y; ++y)
+        for (int x = 0; x < picture.size.x; ++x) {
+            const ivec2 tile = (picture.low + ivec2(x, y)) / tile_side - tiles.low;
+            sums[static_cast<size_t>(tile.y) * tiles.size.x + tile.x] +=
+                dvec3(picture.inscatter.at(x, y)) - dvec3(other.inscatter.at(x, y));
+        }
+    double all = 0;
+    for (const dvec3& sum : sums) all += glm::dot(sum, sum);
+    for (size_t i = 0; all > 0 && std::isfinite(all) && i < sums.size(); ++i)
+        tiles.chances[i] = (1 - share) * tiles.chances[i] + share * glm::dot(sums[i], sums[i]) / all;
+    return tiles;
+}
+
 std::vector<DrawnTile> draw_tiles(const TileChances& tiles, size_t count, uint32_t seed) {
     std::vector<DrawnTile> drawn;
     const size_t all = tiles.chances.size();

@@ -24,6 +24,10 @@ TileChances even_chances(const View& view);
 // integrator are shares of the light, so their squares go with its square.
 TileChances chances_in(const Layers& picture);
 
+// The same, and a quarter by where its fog light differs from that of another technique's picture of the same pixels:
+// what one of them leaves out may be in few tiles. Tiles even out the noise.
+TileChances chances_between(const Layers& picture, const Layers& other);
+
 // `count` tiles, or all there are, spread evenly over the chances (systematic sampling); tiles likely enough are drawn
 // for certain.
 std::vector<DrawnTile> draw_tiles(const TileChances& chances, size_t count, uint32_t seed);

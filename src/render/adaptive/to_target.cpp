@@ -382,7 +382,8 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         }
         rounds.choice = after;
         note_integrator(after, stats);
-        if (goal.error > 0 && rounds.freedom > 0 && !judge(rounds, result, stats))
+        const bool worth = !has_rivals(after, mode) || leaves_room(after, goal.error);
+        if (goal.error > 0 && worth && rounds.freedom > 0 && !judge(rounds, result, stats))
             render_rounds(rounds, rendering, next_round(rounds, stats), result, stats, round);
         break;
     }

@@ -57,6 +57,7 @@ struct RenderPlan {
     std::shared_ptr<const Settings> wanted; // by --mode auto: the settings with the terms its first frame does not need
     std::optional<OrdersError> orders{};    // of the first frame's multiple scattering, when already measured
     std::optional<double> exposure{};       // of PNGs, where it is measured
+    std::shared_ptr<const Choice> main{};   // of the main mode for the first frame, where another one was chosen
 };
 
 // The mode and the settings asked for. Throws Error (usage) for a mode that is not in the table.

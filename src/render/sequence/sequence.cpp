@@ -194,10 +194,10 @@ void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
     say(pipeline, work, "will take about " + seconds_text(seconds));
 }
 
-// Whether a technique chosen for the first frame turned out to be too far off for the target.
-bool is_out_of_reach(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
+// Whether a technique that was chosen for the first frame missed the target.
+bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
     return plan.wanted && plan.mode != &main_mode() && request.time_budget == 0 && stats.integrator &&
-           stats.integrator->error.bound >= request.target_error;
+           stats.error()->bound > request.target_error;
 }
 
 void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
@@ -206,7 +206,8 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
         std::string(plan.mode->name) + " is too far off: rendered again with " + std::string(main_mode().name));
     work.report.mode = main_mode().name;
     work.by = RenderPlan{&main_mode(), *plan.wanted, plan.certificate, nullptr, plan.wanted};
-    const Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
+    Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
+    if (work.index == 0) goal.choice = plan.main;
     options.history = nullptr;
     work.layers =
         render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
@@ -233,7 +234,7 @@ void render(Pipeline& pipeline, Work& work) {
         work.layers = has_goal(request)
                           ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
                           : render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
-        if (is_out_of_reach(plan, request, stats)) render_by_main_mode(pipeline, work, options);
+        if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }

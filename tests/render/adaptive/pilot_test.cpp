@@ -102,6 +102,17 @@ TEST(TileChances, FollowNoiseAndLight) {
     EXPECT_GT(tiles.chances[static_cast<size_t>(lamp.y) * tiles.size.x + lamp.x], 1.0 / drawing_tiles);
 }
 
+TEST(TileChances, FollowWhatAnotherTechniqueShows) {
+    const View view = view_of({160, 90});
+    const auto scout = scout_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(vec3(0))}));
+    Layers other = scout->layers;
+    for (int i = 0; i < 16; ++i) other.inscatter.at(80 + i % 4, 8 + i / 4) *= 1.5f;
+    const TileChances tiles = chances_between(other, scout->layers);
+    EXPECT_NEAR(std::accumulate(tiles.chances.begin(), tiles.chances.end(), 0.0), 1, 1e-9);
+    EXPECT_GT(tiles.chances[2 * static_cast<size_t>(tiles.size.x) + 20], 0.24);
+    EXPECT_EQ(chances_between(other, other).chances, chances_in(other).chances);
+}
+
 TEST(Pilot, ATinyPictureIsFollowedWhole) {
     const View view = view_of({3, 2});
     const Pilot pilot =
