@@ -3,8 +3,8 @@
     budgets.py --seeds 1-50 [--budgets 2,6,20] [--modes march,auto] [--program build/release/tyndall] [-o DIR] [--truths DIR]
 
 Budgets are multiples of what `--quality draft` takes, loading and writing included. A process is late by more than a tenth of
-its budget or .2 s, whichever is more. Bounds below what the truth itself may be off by are not judged. Prints a row a run and what they add up to; ends with 1 where more than 3 % of the
-runs are late or of the bounds are false."""
+its budget or .2 s, whichever is more. Bounds below what the truth itself may be off by are not judged. Prints a row a run
+and what they add up to; ends with 1 where more than 3 % of the runs are late or of the bounds are false."""
 import argparse
 import json
 import pathlib
@@ -76,7 +76,8 @@ def main():
     result = {"runs": len(rows), "late": share(late, rows),
               "late_and_unsaid": share(lambda row: late(row) and row["exit"] == 0, rows),
               "bounds_judged": len(judged), "bound_true": share(bound_holds, judged),
-              "bound_by_achieved": round(float(np.median([row["bound"] / row["achieved"] for row in judged if row["bound"] and row["achieved"]])), 3)}
+              "bound_by_achieved": round(float(np.median(
+                  [row["bound"] / row["achieved"] for row in judged if row["bound"] and row["achieved"]])), 3)}
     print(json.dumps(result, indent=1))
     sys.exit(0 if result["late"] <= 0.03 and result["bound_true"] >= 0.97 else 1)
 

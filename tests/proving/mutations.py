@@ -39,7 +39,7 @@ FAULTS = [
           "const auto square = [](vec3 value) { return 1 / (1e-6 + channel_mean(value * value)); };"),
     Fault("tiles-without-weights", ADAPTIVE + "tile_chances.cpp", "drawn.push_back({corner(i), chance, 1 / chance});",
           "drawn.push_back({corner(i), chance, 1});"),
-    Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "even_chances(view), salt,", "even_chances(view), 0 * salt,"),
+    Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "chances(), salt,", "chances(), 0 * salt,"),
     Fault("rounds-of-the-same-samples", ADAPTIVE + "to_target.cpp",
           "if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));", ""),
     Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),

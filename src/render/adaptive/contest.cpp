@@ -23,13 +23,13 @@ struct Runner {
     double chance(double error) const { return error > 0 ? std::min(error / std::sqrt(integrator), 1.0) : 1; }
 };
 
-// Squared, what noise may be beside what it is on the average: where few pixels hold it, pictures differ.
+// How much larger the squared noise of an image may be than it is on average: much where few pixels hold it.
 double squared_chance(const Layers& layers) {
     const Noise noise = noise_of(layers);
     return noise.error > 0 && noise.error < infinity ? std::pow(noise.settled / noise.error, 2) : 1;
 }
 
-// To get to a goal's error for sure; infinite where too many would be needed.
+// Samples that bring the bound of the error to a goal's; infinite where too many would be needed.
 double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
     const double chance = choice.scout ? squared_chance(choice.scout->layers) : 1;
@@ -72,7 +72,6 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
 }
 
 // All modes but the main one, and those whose error is noise only where they are needed: they are never the quickest.
-// They shadow ambient light, which the truth does not.
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
@@ -126,7 +125,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : main.seconds), begun = goal.clock();
-    const bool same_light = max_component(snapshot.ambient) == 0;
+    const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the truth does not
     const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
