@@ -35,7 +35,8 @@ bool beats(const Contender& a, const Contender& b, const Goal& goal);
 // the main mode's choice is held against. Artistic modes take no part. With an error asked for, the winner is the
 // quickest that gets there, else the most accurate one; with seconds only, the most accurate in that time. Seconds are
 // predicted from a few pixels. `view` is the picture's; candidates are made from `settings`. What the main mode would
-// take, or the seconds there are, times `share` is all the time that the others may take to be measured.
+// take, or the seconds there are, times `share` is the time that the others may take to be measured; the coarsest of
+// each mode may take as much again.
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
                      const Goal& goal, double share, const FrameOptions& options);
 }
