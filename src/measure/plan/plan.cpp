@@ -18,7 +18,8 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     centers.filter = PixelFilter::center;
     const Settings& settings = chosen.choice.candidate.settings;
     const FrameOptions options{false, nullptr, control.cancel, {}, {}};
-    const Pilot pilot = make_pilot(*chosen.mode, centers, snapshot, nullptr, even_chances(centers), 0, options);
+    const Pilot pilot =
+        make_pilot(*chosen.mode, centers, snapshot, nullptr, even_chances(centers, snapshot), 0, options);
     const Measured measured = measure(pilot, *chosen.mode, settings, steady_seconds);
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * max_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);

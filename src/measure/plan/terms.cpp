@@ -57,7 +57,7 @@ struct Terms {
     const FrameOptions frame_options{false, nullptr, control.cancel, {}, {}};
 
     Pilot make(const Settings& truth) const {
-        Pilot result = make_pilot(main_mode(), view, snapshot, &truth, even_chances(view), 0, frame_options);
+        Pilot result = make_pilot(main_mode(), view, snapshot, &truth, even_chances(view, snapshot), 0, frame_options);
         while (!result.is_full()) grow(result);
         return result;
     }

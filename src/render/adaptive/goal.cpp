@@ -107,7 +107,7 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
     std::shared_ptr<const Prepared> prepared;
     double prepare_seconds = 0;
     if (goal.seconds > 0) {
-        Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view), 0, options);
+        Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view, snapshot), 0, options);
         grow(first);
         const Measured coarse = measure(first, mode, candidates[0].settings, goal.clock);
         const double left = goal.seconds - (goal.clock() - start);
@@ -220,7 +220,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     const std::shared_ptr<const Scout> scout = scout_for(chooser, start, sample);
     const double piloting = spent();
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
-        scout ? chances_in(scout->layers) : even_chances(view), 0, nullptr,
+        scout ? chances_in(scout->layers) : even_chances(view, snapshot), 0, nullptr,
         [&] { return spent() - piloting > truth_share * goal.seconds; }, scout ? chooser.work_ahead(*scout) : infinity);
     pilot->stop = {}; // it refers to this call
     if (goal.seconds == 0) return choose_by_work(chooser, pilot, scout);
@@ -235,6 +235,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         const auto samples = [&](const Choice& choice) {
             return std::max(1.0, std::floor((goal.seconds - now) / choice.measured.sample_seconds));
         };
+        if (best && samples(next) < 2 && samples(*best) >= 2) break; // one sample's noise shows in no pixel
         if (goal.error > 0 && reaches(next, samples(next), goal.error)) return next;
         const double expected = next.expected(samples(next));
         const bool noisy = expected > 11 * next.measured.integrator.value;
@@ -262,7 +263,7 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     const bool hopeless = choice.measured.integrator.bound >= goal.error * goal.error;
     const double work = hopeless ? infinity : samples * choice.measured.sample_work;
     const auto chances = [&] {
-        if (picture.variance.empty()) return even_chances(view);
+        if (picture.variance.empty()) return even_chances(view, snapshot);
         return rivals ? chances_between(picture, choice.scout->layers) : chances_in(picture);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(

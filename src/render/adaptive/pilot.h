@@ -14,7 +14,6 @@
 #include <span>
 
 namespace tyndall {
-inline constexpr size_t drawing_tiles = 32; // drawn at once
 inline constexpr int max_drawings = 4, max_passes = 8;
 inline constexpr double ray_work = 16; // of a camera ray and what it hits, in evaluations of fog
 // Of a tile: for both samples, for each of its pixels, colour and fog light.

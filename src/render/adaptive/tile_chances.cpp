@@ -1,6 +1,7 @@
 #include "render/adaptive/tile_chances.h"
 
 #include "base/random.h"
+#include "trace/sampling/lamp_samples.h"
 #include "trace/view.h"
 
 #include <algorithm>
@@ -14,6 +15,10 @@ TileChances tiles_between(ivec2 low, ivec2 high) {
     TileChances tiles{low / tile_side, (high - 1) / tile_side + 1 - low / tile_side, {}};
     tiles.chances.assign(static_cast<size_t>(tiles.size.x) * tiles.size.y, 0.0);
     return tiles;
+}
+
+ivec2 corner_of(const TileChances& tiles, int tile) {
+    return (tiles.low + ivec2(tile % tiles.size.x, tile / tiles.size.x)) * tile_side;
 }
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
@@ -32,12 +37,31 @@ template<class Function> void add_share(const Layers& picture, double share, con
     const bool spread = all > 0 && std::isfinite(all);
     for (size_t i = 0; i < sums.size(); ++i) tiles.chances[i] += spread ? share * sums[i] / all : even;
 }
+
+// Those within two pixels of a lamp in view.
+std::vector<size_t> tiles_with_lamps(const TileChances& tiles, const View& view, const Snapshot& snapshot) {
+    constexpr float reach = 2; // pixels
+    std::vector<size_t> result;
+    const std::vector<View::Lamp> lamps = lamps_in(view, snapshot);
+    for (size_t i = 0; !lamps.empty() && i < tiles.chances.size(); ++i) {
+        const int tile = static_cast<int>(i);
+        const vec2 low(corner_of(tiles, tile)), high = low + float{tile_side};
+        if (std::ranges::any_of(lamps, [&](const View::Lamp& lamp) {
+                return glm::distance(lamp.at, glm::clamp(lamp.at, low, high)) < lamp.radius + reach;
+            }))
+            result.push_back(i);
+    }
+    return result;
+}
 }
 
-TileChances even_chances(const View& view) {
+TileChances even_chances(const View& view, const Snapshot& snapshot) {
     const bool cropped = view.crop_low != view.crop_high;
     TileChances tiles = cropped ? tiles_between(view.crop_low, view.crop_high) : tiles_between(ivec2(0), view.size);
-    std::ranges::fill(tiles.chances, 1 / static_cast<double>(tiles.chances.size()));
+    const std::vector<size_t> lit = tiles_with_lamps(tiles, view, snapshot);
+    const double of_lamps = std::min(static_cast<double>(lit.size()) / drawing_tiles, 0.5);
+    std::ranges::fill(tiles.chances, (1 - of_lamps) / static_cast<double>(tiles.chances.size()));
+    for (size_t tile : lit) tiles.chances[tile] += of_lamps / static_cast<double>(lit.size());
     return tiles;
 }
 
@@ -77,10 +101,7 @@ TileChances chances_between(const Layers& picture, const Layers& other) {
 std::vector<DrawnTile> draw_tiles(const TileChances& tiles, size_t count, uint32_t seed) {
     std::vector<DrawnTile> drawn;
     const size_t all = tiles.chances.size();
-    const auto corner = [&](size_t i) {
-        const int tile = static_cast<int>(i);
-        return (tiles.low + ivec2(tile % tiles.size.x, tile / tiles.size.x)) * tile_side;
-    };
+    const auto corner = [&](size_t i) { return corner_of(tiles, static_cast<int>(i)); };
     if (count >= all) {
         for (size_t i = 0; i < all; ++i) drawn.push_back({corner(i)});
         return drawn;

@@ -3,7 +3,10 @@
 #include "render/frame/layers.h"
 
 namespace tyndall {
+struct Snapshot;
 struct View;
+
+inline constexpr size_t drawing_tiles = 32; // drawn at once
 
 struct TileChances {
     ivec2 low{0}, size{0};       // of the tiles, in tiles of the full picture
@@ -17,8 +20,8 @@ struct DrawnTile {
     double chance = 1, stands_for = 1;
 };
 
-// All alike.
-TileChances even_chances(const View& view);
+// All alike, but those with lamps in view, where noise is largest, are drawn for certain: up to half of a drawing.
+TileChances even_chances(const View& view, const Snapshot& snapshot);
 
 // By what a picture shows: a quarter for each of noise, light of surfaces, light of fog, and all alike. Errors of an
 // integrator are shares of the light, so their squares go with its square.

@@ -114,6 +114,8 @@ int first_round(Rounds& rounds) {
         rounds.expected = std::max<double>(samples, std::min<double>(needed, max_target_samples));
     }
     if (rounds.goal.seconds > 0) {
+        // Two samples show where an image spreads, which counts for more than a check of the integrator.
+        if (rounds.left() < 2 * rounds.work_seconds) rounds.check_seconds = 0;
         const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + max_target_samples));
         samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
         rounds.expected = std::min(rounds.expected, std::max(time, 1.0));
@@ -180,10 +182,12 @@ double next_round(Rounds& rounds, const FrameStats& stats) {
     return wanted;
 }
 
-// Of a picture of one sample per pixel, going by what was measured beforehand.
-Noise single_noise(const Choice& choice) {
+// Of an image of one sample per pixel: by what was measured on tiles beforehand, which few bright pixels escape, and by
+// how far neighbours are apart.
+Noise single_noise(const Choice& choice, const Layers& image) {
     const SquaredError& sample = choice.measured.sample;
-    return {std::sqrt(sample.value), std::sqrt(sample.bound)};
+    const Noise seen = noise_by_neighbours(image);
+    return {std::max(std::sqrt(sample.value), seen.error), std::max(std::sqrt(sample.bound), seen.bound)};
 }
 
 // Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
@@ -192,7 +196,7 @@ bool judge(Rounds& rounds, const Layers& result, FrameStats& stats) {
     if (rounds.freedom > 0)
         stats.noise = noise_of(result);
     else
-        stats.noise = single_noise(*rounds.choice);
+        stats.noise = single_noise(*rounds.choice, result);
     const double target = rounds.goal.error;
     const bool hopeless = stats.integrator && stats.integrator->error.bound >= target;
     return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);

@@ -101,11 +101,46 @@ Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const I
     const auto bound = [&](double known) { return std::sqrt(variance * largest_ratio(pixels, known)) / mean; };
     return {std::sqrt(variance) / mean, bound(std::max(freedom, 3.0)), bound(certain)};
 }
+
+Noise worse(const Noise& a, const Noise& b) {
+    return {std::max(a.error, b.error), std::max(a.bound, b.bound), std::max(a.settled, b.settled)};
+}
+
+// Half the squared differences from the pixels around: the variance on average, and what their means differ by.
+Noise noise_by_neighbours(const Image<vec3>& picture) {
+    Image<vec3> variances(picture.size);
+    Image<float> errors(picture.size);
+    constexpr ivec2 beside[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int y = 0; y < picture.size.y; ++y)
+        for (int x = 0; x < picture.size.x; ++x) {
+            vec3 sum(0);
+            float count = 0;
+            for (const ivec2 step : beside) {
+                const ivec2 q = ivec2(x, y) + step;
+                if (q.x < 0 || q.y < 0 || q.x >= picture.size.x || q.y >= picture.size.y) continue;
+                const vec3 apart = picture.at(q.x, q.y) - picture.at(x, y);
+                sum += apart * apart / 2.0f, count += 1;
+            }
+            const vec3 variance = sum / std::max(count, 1.0f);
+            const float mean = static_cast<float>(channel_mean(variance));
+            variances.at(x, y) = variance,
+                            errors.at(x, y) = 2 * mean * mean; // as known as one square of a normal number
+        }
+    return noise_of(picture, variances, errors);
+}
 }
 
 Noise noise_of(const Layers& layers) {
-    const Noise color = noise_of(layers.color, layers.variance, layers.variance_error);
-    const Noise fog = noise_of(layers.inscatter, layers.inscatter_variance, layers.inscatter_variance_error);
-    return {std::max(color.error, fog.error), std::max(color.bound, fog.bound), std::max(color.settled, fog.settled)};
+    return worse(noise_of(layers.color, layers.variance, layers.variance_error),
+                 noise_of(layers.inscatter, layers.inscatter_variance, layers.inscatter_variance_error));
+}
+
+Noise noise_by_neighbours(const Layers& layers) {
+    // An edge crosses a pixel anywhere: its variance is a sixth of the squared step, and half the squared differences
+    // add up to a half of it across and a sixth along, of which two pixels and two directions make a third.
+    const double edge_share = std::sqrt(0.5);
+    Noise noise = worse(noise_by_neighbours(layers.color), noise_by_neighbours(layers.inscatter));
+    noise.error *= edge_share;
+    return noise;
 }
 }

@@ -86,4 +86,8 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 // From the variances of the layers and how well they are known, with noise that is independent from pixel to pixel. A
 // layer that is black and free of noise has no error.
 Noise noise_of(const Layers& layers);
+
+// Of an image of one sample per pixel, by how far neighbouring pixels are apart. Their means are apart as well: noise
+// is less than the bound says. The error is what it is along an edge, where half of the variance is noise.
+Noise noise_by_neighbours(const Layers& layers);
 }

@@ -21,6 +21,7 @@ namespace tyndall::test {
 namespace {
 const Box room{vec3(-4), vec3(4)};
 const FrameOptions plain{};
+const vec3 out_of_view{0.3f, 8, 0};
 
 View view_of(ivec2 size) {
     View view;
@@ -102,6 +103,25 @@ TEST(TileChances, FollowNoiseAndLight) {
     EXPECT_GT(tiles.chances[static_cast<size_t>(lamp.y) * tiles.size.x + lamp.x], 1.0 / drawing_tiles);
 }
 
+// Before there is an image to go by.
+TEST(TileChances, EvenOnesDrawALampInViewForCertain) {
+    View view = view_of({640, 360});
+    view.filter = PixelFilter::blackman_harris;
+    const vec3 place(0.3f, -0.7f, 0);
+    const TileChances tiles = even_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)}));
+    EXPECT_NEAR(std::accumulate(tiles.chances.begin(), tiles.chances.end(), 0.0), 1, 1e-9);
+    EXPECT_GE(*std::ranges::min_element(tiles.chances), 0.5 / static_cast<double>(tiles.chances.size()) - 1e-12);
+    const ivec2 lamp = ivec2(*pixel_of(view.camera, view.size, place)) / 4 * 4;
+    for (uint32_t seed = 0; seed < 8; ++seed) {
+        const std::vector<DrawnTile> drawn = draw_tiles(tiles, drawing_tiles, seed);
+        const auto found = std::ranges::find(drawn, lamp, &DrawnTile::corner);
+        ASSERT_NE(found, drawn.end());
+        EXPECT_EQ(found->stands_for, 1);
+    }
+    const TileChances dark = even_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {}));
+    EXPECT_EQ(std::ranges::min(dark.chances), std::ranges::max(dark.chances));
+}
+
 TEST(TileChances, FollowWhatAnotherTechniqueShows) {
     const View view = view_of({160, 90});
     const auto scout = scout_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(vec3(0))}));
@@ -115,16 +135,16 @@ TEST(TileChances, FollowWhatAnotherTechniqueShows) {
 
 TEST(Pilot, ATinyPictureIsFollowedWhole) {
     const View view = view_of({3, 2});
-    const Pilot pilot =
-        pilot_of(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})}), even_chances(view));
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})});
+    const Pilot pilot = pilot_of(view, snapshot, even_chances(view, snapshot));
     EXPECT_EQ(pilot.tiles.size(), 1u);
     EXPECT_TRUE(pilot.is_full());
 }
 
 TEST(Pilot, GrowsByIndependentDrawings) {
     const View view = view_of({160, 90});
-    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0.3f, -0.7f, 0})});
-    Pilot pilot = pilot_of(view, snapshot, even_chances(view));
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(out_of_view)});
+    Pilot pilot = pilot_of(view, snapshot, even_chances(view, snapshot));
     EXPECT_EQ(pilot.tiles.size(), drawing_tiles);
     grow(pilot), grow(pilot);
     EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
@@ -134,19 +154,19 @@ TEST(Pilot, GrowsByIndependentDrawings) {
     double stood_for = 0;
     for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
     EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
-    const Pilot other = pilot_of(view, snapshot, even_chances(view), 1);
+    const Pilot other = pilot_of(view, snapshot, even_chances(view, snapshot), 1);
     EXPECT_NE(other.tiles[0].corner, pilot.tiles[0].corner);
     EXPECT_NE(other.view.seed, pilot.view.seed);
 }
 
 TEST(Pilot, KeepsToItsWork) {
     const View view = view_of({160, 90});
-    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0.3f, -0.7f, 0})});
-    const double all = pilot_of(view, snapshot, even_chances(view)).cost.work;
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(out_of_view)});
+    const double all = pilot_of(view, snapshot, even_chances(view, snapshot)).cost.work;
     const Settings exact = truth();
     for (const double share : {0.0, 0.5, 2.0}) {
-        const Pilot pilot =
-            make_pilot(main_mode(), view, snapshot, &exact, even_chances(view), 0, plain, nullptr, {}, share * all);
+        const Pilot pilot = make_pilot(main_mode(), view, snapshot, &exact, even_chances(view, snapshot), 0, plain,
+                                       nullptr, {}, share * all);
         EXPECT_LT(pilot.cost.work, std::max(share, 0.25) * all * 1.2); // eight tiles at least
         EXPECT_GT(pilot.cost.work, std::min(share, 1.0) * all * 0.7);
         EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);

@@ -142,6 +142,46 @@ TEST(Noise, ErrorsOfPicturesStayBelowTheBoundWhereFewPixelsHoldThem) {
     EXPECT_LE(broken, 12);
 }
 
+// Edges that cross an image at any angle, 20 times as bright on one side, seen by one point of each pixel.
+TEST(Noise, NeighboursTellThatOfAnEdge) {
+    double told = 0, is = 0;
+    for (uint32_t image = 0; image < 64; ++image) {
+        const float angle = 2 * pi * to_unit(hash(image, 1u)), away = 20 * to_unit(hash(image, 2u));
+        const auto value = [&](vec2 at) {
+            return std::cos(angle) * (at.x - 32) + std::sin(angle) * (at.y - 32) < away ? 0.05f : 1.0f;
+        };
+        Layers layers = homogeneous_layers({64, 64}, 0, 0, 1, 0);
+        double variance = 0, mean = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const auto sample = [&](uint32_t k) {
+                    const uint32_t pixel = static_cast<uint32_t>(64 * y + x);
+                    return value(vec2(x, y) +
+                                 vec2(to_unit(hash(image, pixel, k, 0u)), to_unit(hash(image, pixel, k, 1u))));
+                };
+                layers.color.at(x, y) = vec3(sample(0));
+                double sum = 0, squares = 0;
+                for (uint32_t k = 1; k <= 16; ++k) sum += sample(k), squares += sample(k) * sample(k);
+                variance += (squares - sum * sum / 16) / 15, mean += sum / 16;
+            }
+        const Noise noise = noise_by_neighbours(layers);
+        const double error = 64 * std::sqrt(variance) / mean; // over the mean, of 64² pixels
+        EXPECT_GT(noise.bound, error) << image;
+        told += noise.error, is += error;
+    }
+    EXPECT_NEAR(told / is, 1, 0.15);
+}
+
+TEST(Noise, NeighboursTellMoreThanThatOfPixelsAlike) {
+    Layers layers = homogeneous_layers({64, 64}, 0, 0, 1, 0);
+    for (size_t i = 0; i < 64 * 64; ++i) layers.color.pixels[i] = vec3(to_unit(hash(static_cast<uint32_t>(i), 5u)));
+    const double error = std::sqrt(1 / 12.0) / 0.5; // of even numbers between 0 and 1
+    const Noise noise = noise_by_neighbours(layers);
+    EXPECT_GT(noise.bound, error);
+    EXPECT_LT(noise.bound, 1.1 * error);
+    EXPECT_EQ(noise_by_neighbours(homogeneous_layers({4, 4}, 2, 0, 1, 0)).bound, 0);
+}
+
 TEST(Noise, VarianceIsThatOfTheMean) {
     const Scene scene;
     const Snapshot snapshot = snapshot_of(scene);
