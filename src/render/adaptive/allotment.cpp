@@ -22,16 +22,16 @@ double square_of_mean(const Image<vec3>& image) {
 // Sums over the pixels of tiles.
 struct Tiles {
     ivec2 low{0}, size{0};
-    std::vector<double> variance, pixels;
+    std::vector<double> variance, pixels, work;
 
     size_t index(ivec2 tile) const { return static_cast<size_t>(tile.y) * size.x + tile.x; }
 };
 
 Tiles empty_tiles(const Layers& layers) {
     Tiles tiles{
-        layers.low / tile_side, (layers.low + layers.size - 1) / tile_side - layers.low / tile_side + 1, {}, {}};
+        layers.low / tile_side, (layers.low + layers.size - 1) / tile_side - layers.low / tile_side + 1, {}, {}, {}};
     tiles.variance.resize(static_cast<size_t>(tiles.size.x) * tiles.size.y, 0.0);
-    tiles.pixels = tiles.variance;
+    tiles.pixels = tiles.work = tiles.variance;
     return tiles;
 }
 
@@ -45,6 +45,7 @@ Tiles relative_variances(const Layers& layers) {
             const double a = color > 0 ? channel_mean(layers.variance.at(x, y)) / color : 0;
             const double b = fog > 0 ? channel_mean(layers.inscatter_variance.at(x, y)) / fog : 0;
             tiles.variance[i] += std::max(a, b), tiles.pixels[i] += 1;
+            tiles.work[i] += layers.work.empty() ? 1 : layers.work.at(x, y);
         }
     return tiles;
 }
@@ -67,6 +68,15 @@ std::vector<double> cautious(const Tiles& tiles) {
     return result;
 }
 
+// Of a pixel of each tile, as shares of the mean one's.
+std::vector<double> costs_of(const Tiles& tiles, double pixels) {
+    double sum = 0;
+    for (const double work : tiles.work) sum += work;
+    std::vector<double> result(tiles.work.size());
+    for (size_t i = 0; i < result.size(); ++i) result[i] = tiles.work[i] / tiles.pixels[i] * pixels / sum;
+    return result;
+}
+
 float samples_at(double scale, double variance, double power, int least) {
     return static_cast<float>(
         std::clamp(scale * std::pow(variance, 1 / (1 + power)), 1.0 * least, 1.0 * max_tile_samples));
@@ -78,11 +88,12 @@ Allotment allot(const Layers& layers, double taken, const Enough& enough, double
     const std::vector<double> variances = cautious(tiles);
     double pixels = 0;
     for (const double count : tiles.pixels) pixels += count;
+    const std::vector<double> costs = costs_of(tiles, pixels);
     const auto at = [&](double scale) {
         Allotment result{tiles.low, Image<float>(tiles.size), 0, 0};
         for (size_t i = 0; i < variances.size(); ++i) {
             const float samples = samples_at(scale, variances[i], power, least);
-            result.samples.pixels[i] = samples, result.rays += tiles.pixels[i] * samples;
+            result.samples.pixels[i] = samples, result.rays += tiles.pixels[i] * costs[i] * samples;
             result.squared_error += tiles.pixels[i] / pixels * variances[i] * std::pow(taken / samples, power);
         }
         return result;

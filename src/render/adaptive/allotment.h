@@ -11,17 +11,18 @@ inline constexpr int max_tile_samples = 1 << 16; // of a pixel
 struct Allotment {
     ivec2 low{0};             // the first tile's place
     Image<float> samples;     // of each pixel of a tile
-    double rays = 0;          // of all pixels
+    double rays = 0;          // of all pixels, counted in those of the mean cost
     double squared_error = 0; // to expect, as a share of the squared mean
 };
 
-// Fewest samples with no more error, or the best that so many rays give.
+// Least cost with no more error, or the best that so many rays of the mean cost give.
 struct Enough {
     double squared_error = 0, rays = 0;
 };
 
 // Where variances of means fall with the number of samples to the `power`, samples go as variance^(1 / (1 + power))
-// (Neyman 1934 for power 1), `least` or more of each pixel. `layers` hold the variances of means of `taken` samples.
+// (Neyman 1934 for power 1), `least` or more of each pixel. `layers` hold the variances of means of `taken` samples,
+// and the work of one.
 Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
 
 // What a picture of `to` times as many samples as allotted adds to one of `from` times as many: in multiples of `unit`,

@@ -15,7 +15,6 @@
 
 namespace tyndall {
 inline constexpr int max_drawings = 4, max_passes = 8;
-inline constexpr double ray_work = 16; // of a camera ray and what it hits, in evaluations of fog
 // Of a tile: for both samples, for each of its pixels, colour and fog light.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 

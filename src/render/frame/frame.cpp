@@ -44,7 +44,7 @@ Layers make_layers(const View& view, bool halves) {
     layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
     if (view.batches > 1) {
         layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
-        layers.variance_error = layers.inscatter_variance_error = Image<float>(layers.size);
+        layers.variance_error = layers.inscatter_variance_error = layers.work = Image<float>(layers.size);
     }
     if (view.surface_parts || view.fog_parts) layers.surface = layers.background = Image<vec3>(layers.size);
     if (view.fog_parts) layers.ambient = layers.emission = layers.multiple = Image<vec3>(layers.size);
@@ -101,12 +101,13 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
     if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
     PixelSum sums[16];
     PixelSample samples[16];
+    int64_t steps[16] = {};
     std::vector<vec3> fog_parts(part_count * count), part_sums(part_count * count, vec3(0));
     for (int s = 0; s < sample_count; ++s) {
         trace_samples(task.tracer, {pixels, count}, s, {samples, count}, fog_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(layers, pixels[i])) continue;
-            ++stats.camera_rays, stats.steps += static_cast<uint64_t>(samples[i].steps);
+            ++stats.camera_rays, steps[i] += samples[i].steps;
             const std::span<const vec3> parts{fog_parts.data() + i * part_count, part_count};
             if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
                 count_dropped(pixels[i], stats);
@@ -124,6 +125,8 @@ void render_tile(const FrameTask& task, ivec2 corner, Layers& layers, FrameStats
         if (!contains(layers, pixels[i])) continue;
         const ivec2 p = pixels[i] - layers.low;
         store_pixel(sums[i], sample_count, p, layers);
+        stats.steps += static_cast<uint64_t>(steps[i]);
+        if (!layers.work.empty()) layers.work.at(p.x, p.y) = ray_work + static_cast<float>(steps[i]) / samples_float;
         for (size_t k = 0; k < part_count; ++k)
             task.parts[k]->at(p.x, p.y) += part_sums[i * part_count + k] / samples_float;
     }

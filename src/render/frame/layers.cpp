@@ -28,6 +28,7 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
     blend(layers.inscatter, other.inscatter, share);
     blend(layers.transmittance, other.transmittance, share);
     blend(layers.validity, other.validity, share);
+    blend(layers.work, other.work, share);
     blend(layers.half_a, other.half_a, share);
     blend(layers.half_b, other.half_b, share);
     for (size_t i = 0; i < layers.lights.size(); ++i) blend(layers.lights[i].second, other.lights[i].second, share);

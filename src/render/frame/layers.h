@@ -18,6 +18,8 @@ struct Noise {
     double settled = 0; // the bound, were the variance of each pixel known for certain
 };
 
+inline constexpr float ray_work = 16; // of a camera ray and what it hits, in evaluations of fog
+
 // Pixels of the crop window. Colours are premultiplied linear Rec.709.
 struct Layers {
     ivec2 display{0}, low{0}, size{0};        // full picture; where the pixels lie in it
@@ -30,6 +32,7 @@ struct Layers {
     Image<float> validity;                    // of the least valid stretch of a sample
     Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
     Image<float> variance_error, inscatter_variance_error; // squared standard errors of the variances' channel means
+    Image<float> work;                                     // of a sample, see ray_work; for more than one batch
     Image<vec3> half_a, half_b;                            // on request: colour of the even and of the odd batches
     Image<vec3> surface, background;                       // on request: the colour without fog light
     // On request, what fog light is made of: by light name, every light of the scene, dark ones too; then OtherLight.

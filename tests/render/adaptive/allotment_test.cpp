@@ -54,6 +54,16 @@ TEST(Allotment, StaysWithinTheRaysThereAre) {
     EXPECT_NEAR(allotment.squared_error, 0.2, 1e-5);
 }
 
+TEST(Allotment, CountsWhatTilesCost) {
+    Layers layers = two_tiles(1, 9);
+    layers.work = Image<float>(layers.size);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 8; ++x) layers.work.at(x, y) = x < 4 ? 20.0f : 80.0f; // .4 and 1.6 of the mean
+    const Allotment allotment = allot(layers, 1, {0.02, endless}, 1, 2);
+    EXPECT_NEAR(allotment.samples.at(1, 0), 300, 1e-3);
+    EXPECT_NEAR(allotment.rays, 16 * (0.4 * 100 + 1.6 * 300), 0.02);
+}
+
 TEST(Allotment, GoesByThePowerOfTheSamples) {
     // Samples as variance^(1 / 2.5).
     const Allotment allotment = allot(two_tiles(1, 9), 1, {0.02, endless}, 1.5, 2);
