@@ -231,11 +231,16 @@ double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
 }
 
 // What a goal is likely to take from here, when so much work comes next: an allotment may be enough after its first
-// part.
+// part. Noise falls fastest at first: the power measured there holds for about half of the way, in logarithms, and the
+// rest falls as 1 / n.
 double seconds_ahead(const Rounds& rounds, double next) {
     if (is_out_of_reach(*rounds.choice, rounds.goal.error)) return infinity;
+    if (!(next > 0)) return rounds.check_seconds;
+    const double first = rounds.choice->scout ? scout_samples : 1;
+    const double samples = rounds.allotment ? rounds.allotment->rays / pixel_count(rounds.view) : rounds.expected;
+    const double slower = std::pow(std::max(samples / first, 1.0), (rounds.power() - 1) / 2);
     const double work = rounds.allotment ? (rounds.first_part + 1) / 2 : rounds.expected - rounds.done;
-    return (next > 0 ? work * rounds.work_seconds : 0) + rounds.check_seconds;
+    return slower * work * rounds.work_seconds + rounds.check_seconds;
 }
 }
 
