@@ -29,6 +29,7 @@ Run add_info(const Command& program);
 Run add_check(const Command& program);
 Run add_modes(const Command& program);
 Run add_compare(const Command& program);
+Run add_merge(const Command& program);
 Run add_verify(const Command& program);
 Run add_plan(const Command& program);
 Run add_explain(const Command& program);

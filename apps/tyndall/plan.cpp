@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
+#include "render/parts/plan_file.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"
@@ -18,7 +19,7 @@ namespace tyndall {
 namespace {
 struct Options {
     RenderOptions render; // those that plan shares with it
-    std::string frame;
+    std::string frame, save;
 };
 
 Json term_json(const Term& term) {
@@ -84,7 +85,49 @@ std::string command_of(const Plan& plan, const RenderRequest& request, bool one_
     return text;
 }
 
+// The plan as a file that render --plan takes.
+void save(const std::string& file, const Scene& scene, const RenderRequest& asked, RenderPlan plan,
+          const Globals& globals) {
+    RenderRequest request = asked;
+    int& samples = plan.settings.pixel.samples;
+    const int wanted = samples;
+    request.grouping = grouping_of(samples);
+    if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
+    drop_absent_layers(scene, plan, request);
+    check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
+    save_plan(file, scene, {request, plan, {}, build_name()});
+    if (globals.quiet) return;
+    if (samples != wanted)
+        say(formatted("note: %d camera rays per pixel instead of %d: they come in %d equal groups", samples, wanted,
+                      request.grouping.groups));
+    say(printable(file) + ": " + count_text(request.frames.size(), "frame") + " by " + std::string(plan.mode->name) +
+        formatted(", %d samples per pixel in %d groups of %d leaves", samples, request.grouping.groups,
+                  request.grouping.leaves));
+}
+
+// What stands in the way of a plan whose bits depend on nothing but it.
+void check_saved(const RenderOptions& texts) {
+    if (!texts.time_budget.empty())
+        fail(ExitCode::usage, "--time-budget", "a saved plan does not go by the clock: use --samples");
+    if (!texts.history.empty())
+        fail(ExitCode::usage, "--history", "planned frames are rendered one by one, without those before them");
+}
+
+int save_as_asked(const Options& texts, const Globals& globals) {
+    check_saved(texts.render);
+    const Mode& mode = find_mode(texts.render.mode, "--mode");
+    const RenderRequest request = make_request(texts.render, mode);
+    const Scene scene = load_scene(request.scene_file, load_options(texts.render));
+    find_camera(scene, request.camera);
+    save(texts.save, scene, request, plan_as_asked(request), globals);
+    return 0;
+}
+
 int run_plan(const Options& texts, const Globals& globals) {
+    if (texts.render.mode != automatic && texts.save.empty())
+        fail(ExitCode::usage, "--mode", "a plan finds the mode by itself; with --save it can be given");
+    if (texts.render.mode != automatic) return save_as_asked(texts, globals);
+    if (!texts.save.empty()) check_saved(texts.render);
     RenderRequest request = make_request(texts.render, main_mode());
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(request.scene_file, options);
@@ -122,20 +165,10 @@ Run add_plan(const Command& program) {
     RenderOptions& render = texts->render;
     render.mode = automatic, render.output = "out.####.exr";
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
-    command.option("--target-error", render.target_error,
-                   "error wanted (rmse), as a share of the image's mean (default: by quality,\n"
-                   "0.05 for preview)",
-                   "E");
-    command.option("--time-budget", render.time_budget, "seconds an image may take instead", "SECONDS");
-    command.option("--quality", render.quality, "where other settings come from (default: preview)", "NAME");
-    command.options("--set", render.settings, "a setting that is to stay as it is; may be repeated", "NAME=VALUE");
-    command.option("--orders", render.orders,
-                   "how many times light may scatter, or all (default: 1); more than once only\n"
-                   "where the fog needs it",
-                   "N");
-    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    command.option("--camera", render.camera, "which camera (default: the scene's)", "NAME");
-    command.option("--res", render.resolution, "size of the image (default: the scene's)", "WxH");
+    command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
+    command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");
+    command.option("--mode", render.mode, "with --save: a mode, instead of the one that is found", "NAME");
+    add_planned_options(command, render);
     command.footer("Example: tyndall plan scenes/window.json --target-error 0.02\n"
                    "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
                    "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"

@@ -11,6 +11,8 @@
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
+#include "render/parts/part_file.h"
+#include "render/parts/plan_file.h"
 #include "render/sequence/auto_exposure.h"
 #include "render/sequence/sequence.h"
 #include "render_options.h"
@@ -44,7 +46,7 @@ Limitations limitations_of(const Scene& scene, const RenderRequest& request, con
 // How far multiple scattering is off, where an image is not rendered to a goal, which counts it.
 void add_orders(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const Snapshot& snapshot,
                 Limitations& limitations) {
-    if (has_goal(request) || !takes_fluence(*plan.mode, plan.settings)) return;
+    if (has_goal(request) || is_part(request.grouping) || !takes_fluence(*plan.mode, plan.settings)) return;
     const View view = view_of(scene, request, plan.settings, request.frames[0]);
     const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
     limitations.push_back(limitation_of(orders_error(*plan.mode, view, snapshot, plan.settings, 0, options)));
@@ -69,6 +71,7 @@ void say_rounding(const RenderRequest& request, const Globals& globals) {
 
 // Takes as many samples as measuring noise needs, and says so; half floats hide the last of it.
 void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals& globals) {
+    if (request.grouping.groups > 0) return; // the plan has settled it
     const bool first_round = request.target_error > 0 && request.time_budget == 0 && error_is_noise(*plan.mode);
     if (!(has_goal(request) ? first_round : measures_noise(request))) return say_rounding(request, globals);
     int& samples = plan.settings.pixel.samples;
@@ -242,10 +245,20 @@ std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
     return requests;
 }
 
+// By a plan, or as the command line alone says.
+std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional<SavedPlan>& plan) {
+    if (!texts.plan.empty()) return {planned_request(texts, plan.emplace())};
+    if (texts.scene.empty()) fail(ExitCode::usage, "SCENE", "a scene file or --plan is required");
+    for (const auto& [name, text] : {std::pair{"--part", &texts.part}, {"--more", &texts.more}})
+        if (!text->empty()) fail(ExitCode::usage, name, "needs --plan");
+    return make_requests(texts);
+}
+
 int run_render(const RenderOptions& texts, const Globals& globals) {
-    std::vector<RenderRequest> requests = make_requests(texts);
+    std::optional<SavedPlan> saved;
+    std::vector<RenderRequest> requests = requests_of(texts, saved);
     const bool several = requests.size() > 1;
-    const LoadOptions options = load_options(texts);
+    const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
     if (!several && !texts.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
     set_stop_remark("; finished frames are kept, --resume continues");
@@ -260,12 +273,16 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     }
 
     const Scene scene = load_scene(requests[0].scene_file, options);
+    if (saved) check_inputs(*saved, scene);
     stop_if_cancelled();
     for (RenderRequest& request : requests) {
         choose_frames(scene, request);
         places.check(request.output, request.frames);
         find_camera(scene, request.camera);
         check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
+        if (is_part(request.grouping))
+            range_of(request.grouping, find_mode(request.mode),
+                     view_of(scene, request, request.settings, request.frames[0]));
     }
     if (!texts.sheet_reference.empty())
         check_sheet_reference(texts.sheet_reference, requests[0].frames,
@@ -283,7 +300,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
         stop_if_cancelled();
     }
     if (several) write_sheets(scene, all, texts, globals);
-    if (!several && !globals.quiet) say_look(all[0].request);
+    if (!several && !globals.quiet && !is_part(all[0].request.grouping)) say_look(all[0].request);
     if (globals.json) print_report((several ? "[" + reports + "]" : reports) + "\n");
     return outcome(all, requests[0].scene_file.string());
 }

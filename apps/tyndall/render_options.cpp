@@ -7,6 +7,10 @@
 #include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
+#include "render/parts/plan_file.h"
+
+#include <algorithm>
+#include <tuple>
 
 namespace tyndall {
 namespace {
@@ -56,9 +60,6 @@ void check_samples(const RenderRequest& request, const Mode& mode) {
 }
 
 void add_what(const Command& command, RenderOptions& texts) {
-    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
-    command.option("-o,--output", texts.output, "files to write; #### stands for the frame number", "out.####.exr")
-        .required();
     command.option("--frames", texts.frames,
                    "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
                    "(default: the scene's range)",
@@ -75,6 +76,18 @@ void add_what(const Command& command, RenderOptions& texts) {
                    "what a glTF's light intensities mean: spec (candela, lux;\n"
                    "default), or Blender's unitless or raw (watts) export",
                    "UNITS");
+}
+
+void add_mode(const Command& command, RenderOptions& texts) {
+    command
+        .option("--mode", texts.mode,
+                "rendering technique (default: march), or auto: the quickest that gets to\n"
+                "--target-error (default: by quality, 0.05 for preview) or the best for\n"
+                "--time-budget, as tyndall plan finds it for the first frame. Several\n"
+                "(a,b,c) or all: each then writes files of its own, out.MODE.####.exr, and\n"
+                "a PNG shows them side by side; tyndall modes lists them",
+                "NAMES")
+        .group("Quality");
 }
 
 void add_how(const Command& command, RenderOptions& texts) {
@@ -106,13 +119,6 @@ void add_how(const Command& command, RenderOptions& texts) {
            "scattered before is added to the fog, on top of exact single scattering;\n"
            "surfaces keep direct light",
            "N");
-    option("--mode", texts.mode,
-           "rendering technique (default: march), or auto: the quickest that gets to\n"
-           "--target-error (default: by quality, 0.05 for preview) or the best for\n"
-           "--time-budget, as tyndall plan finds it for the first frame. Several\n"
-           "(a,b,c) or all: each then writes files of its own, out.MODE.####.exr, and\n"
-           "a PNG shows them side by side; tyndall modes lists them",
-           "NAMES");
     option("--history", texts.history,
            "frames before each that modes with a memory (tyndall modes) look at first,\n"
            "to smooth their noise (default: 0)",
@@ -130,7 +136,7 @@ void add_how(const Command& command, RenderOptions& texts) {
            "NAME");
 }
 
-void add_results(const Command& command, RenderOptions& texts) {
+void add_layers(const Command& command, RenderOptions& texts) {
     const char* group = "Results";
     command
         .option("--aov", texts.aov,
@@ -148,6 +154,10 @@ void add_results(const Command& command, RenderOptions& texts) {
                 "WHAT")
         .group(group);
     command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
+}
+
+void add_results(const Command& command, RenderOptions& texts) {
+    const char* group = "Results";
     command.flag("--png", texts.png, "also write images for looking at (8-bit sRGB)").group(group);
     command
         .option("--exposure", texts.exposure,
@@ -178,10 +188,36 @@ void add_results(const Command& command, RenderOptions& texts) {
 }
 }
 
+namespace {
+void add_shares(const Command& command, RenderOptions& texts) {
+    const auto option = [&](const char* name, std::string& text, const char* help, const char* type) {
+        command.option(name, text, help, type).group("Many machines");
+    };
+    option("--plan", texts.plan, "a plan that tyndall plan --save made, instead of scene and quality", "FILE");
+    option("--part", texts.part,
+           "part i of N of each frame's samples, into an EXR part beside the frame;\n"
+           "tyndall merge puts parts together",
+           "i/N");
+    option("--more", texts.more, "so many groups of samples beyond those of the plan, as parts", "M");
+}
+}
+
 void add_render_options(const Command& command, RenderOptions& texts) {
+    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "");
+    command.option("-o,--output", texts.output, "files to write; #### stands for the frame number", "out.####.exr")
+        .required();
+    add_what(command, texts);
+    add_mode(command, texts);
+    add_how(command, texts);
+    add_layers(command, texts);
+    add_results(command, texts);
+    add_shares(command, texts);
+}
+
+void add_planned_options(const Command& command, RenderOptions& texts) {
     add_what(command, texts);
     add_how(command, texts);
-    add_results(command, texts);
+    add_layers(command, texts);
 }
 
 void check_crop(const RenderRequest& request, ivec2 picture) {
@@ -253,8 +289,7 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     if (!texts.crop.empty()) read_crop(texts.crop, request);
     if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(request, request.resolution);
     if (!texts.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    request.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
+    request.missing = static_cast<MissingFrame>(choice_among("--missing", texts.missing, missing_frame_names));
     read_look(texts, request);
     if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
     request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
@@ -266,8 +301,69 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     return request;
 }
 
+namespace {
+// i/N, both from 1.
+void read_part_option(const std::string& text, Grouping& grouping) {
+    const size_t slash = text.find('/');
+    if (slash == text.npos)
+        fail(ExitCode::usage, "--part", "expected i/N, 3/8 for instance; got '" + printable(text, 40) + "'");
+    grouping.parts = static_cast<int>(integer_option("--part", text.substr(slash + 1), 1, 1 << 16));
+    grouping.part = static_cast<int>(integer_option("--part", text.substr(0, slash), 1, grouping.parts));
+}
+
+// The options that a plan has decided.
+void check_planned(const RenderOptions& texts) {
+    const RenderOptions usual;
+    const std::tuple<const char*, bool> decided[] = {{"SCENE", !texts.scene.empty()},
+                                                     {"--mode", texts.mode != usual.mode},
+                                                     {"--quality", texts.quality != usual.quality},
+                                                     {"--camera", !texts.camera.empty()},
+                                                     {"--res", !texts.resolution.empty()},
+                                                     {"--crop", !texts.crop.empty()},
+                                                     {"--samples", !texts.samples.empty()},
+                                                     {"--light-units", texts.light_units != usual.light_units},
+                                                     {"--missing", texts.missing != usual.missing},
+                                                     {"--aov", !texts.aov.empty()},
+                                                     {"--seed", !texts.seed.empty()},
+                                                     {"--isa", texts.isa != usual.isa},
+                                                     {"--orders", !texts.orders.empty()},
+                                                     {"--target-error", !texts.target_error.empty()},
+                                                     {"--time-budget", !texts.time_budget.empty()},
+                                                     {"--history", !texts.history.empty()},
+                                                     {"--background", texts.background != usual.background},
+                                                     {"--set", !texts.settings.empty()},
+                                                     {"--float", texts.full_float}};
+    for (const auto& [name, given] : decided)
+        if (given) fail(ExitCode::usage, name, "the plan has decided it: plan again to change it");
+}
+}
+
+RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
+    check_planned(texts);
+    plan = load_plan(texts.plan);
+    RenderRequest request = plan.request;
+    chosen_isa(request.isa);
+    request.output = texts.output;
+    Grouping& grouping = request.grouping;
+    if (!texts.part.empty()) read_part_option(texts.part, grouping);
+    if (!texts.more.empty()) {
+        grouping.more = static_cast<int>(integer_option("--more", texts.more, 1, 1 << 16));
+        if (texts.part.empty()) grouping.part = grouping.parts = 1;
+    }
+    if (is_part(grouping) && texts.png) fail(ExitCode::usage, "--png", "a part is no image: merge shows it");
+    if (!texts.frames.empty()) {
+        request.frames = parse_frames(texts.frames);
+        for (const int frame : request.frames)
+            if (!std::ranges::count(plan.request.frames, frame))
+                fail(ExitCode::usage, "--frames", formatted("frame %d is not in the plan", frame));
+    }
+    check_pattern(texts.output, ".exr", request.frames.size() > 1);
+    read_look(texts, request);
+    request.png = texts.png, request.resume = texts.resume;
+    return request;
+}
+
 LoadOptions load_options(const RenderOptions& texts) {
-    constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    return {units[choice_among("--light-units", texts.light_units, {"spec", "unitless", "raw"})]};
+    return {static_cast<LightUnits>(choice_among("--light-units", texts.light_units, light_unit_names))};
 }
 }

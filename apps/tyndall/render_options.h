@@ -6,15 +6,19 @@
 
 namespace tyndall {
 struct Mode;
+struct SavedPlan;
 struct RenderOptions {
     std::string scene, output, frames, mode = main_mode_name(), quality = "preview", camera, resolution, crop, samples;
     std::string exposure, view_transform, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
     std::string orders, target_error, time_budget, history, background = "on", sheet_reference;
+    std::string plan, part, more;
     std::vector<std::string> settings;
     bool png = false, resume = false, full_float = false;
 };
 
 void add_render_options(const Command& command, RenderOptions& texts);
+// Those that a saved plan decides, but scene and mode.
+void add_planned_options(const Command& command, RenderOptions& texts);
 
 // The modes of an option: a name, several with commas between, or all. Throws Error (usage).
 std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text);
@@ -22,5 +26,8 @@ std::vector<const Mode*> asked_modes(std::string_view option, const std::string&
 // Everything the command line alone decides; throws Error (usage) before any file is touched.
 RenderRequest make_request(const RenderOptions& texts, const Mode& mode);
 LoadOptions load_options(const RenderOptions& texts);
+
+// What --plan and the options beside it ask for. Throws Error (usage) for one that the plan has decided.
+RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan);
 void check_crop(const RenderRequest& request, ivec2 picture);
 }

@@ -1,8 +1,11 @@
 // How files of scenes are to be understood.
 #pragma once
+#include <string>
+#include <vector>
 
 namespace tyndall {
 enum class LightUnits { spec, unitless, raw };
+inline const std::vector<std::string> light_unit_names{"spec", "unitless", "raw"};
 
 struct LoadOptions {
     // Of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts

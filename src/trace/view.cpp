@@ -30,6 +30,7 @@ int samples_of(const View& view, ivec2 pixel) {
 }
 
 int batches_of(const View& view, ivec2 pixel) {
+    if (view.leaves > 0) return view.batches;
     const int factor = view.allotted ? view.allotted->at(pixel / tile_side) : 1;
     return view.batches * (factor >= many_allotted && factor % more_batches == 0 ? more_batches : 1);
 }

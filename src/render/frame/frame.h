@@ -46,6 +46,14 @@ struct FrameOptions {
     std::shared_ptr<const Prepared> prepared{};
 };
 
+// A mode with Surfaces::post works on the image of this view, and adds to it what its own view shows.
+View view_before_post(const View& view);
+void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Layers& layers,
+              FrameStats& stats);
+
+// Alpha is 1 where the background is part of the image.
+void cover_background(const View& view, const Snapshot& snapshot, Layers& layers);
+
 // Throws Error (internal) when cancelled.
 Layers render_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options, FrameStats& stats);

@@ -40,6 +40,13 @@ struct Layers {
     Image<vec3> ambient, emission, multiple;
 };
 
+// Layers of fog light by where it comes from. Lights of one name share one; dark lights of the scene have theirs, so
+// that every frame holds the same layers.
+struct LightLayers {
+    std::vector<std::string> names;
+    std::vector<int> of_light; // which of them each light goes into
+};
+
 // Makes fog light, and then colour, the float sums of the parts there are: surface + background + inscatter, and the
 // lights in their order + ambient + emission + multiple.
 void add_up(Layers& layers);
@@ -74,6 +81,7 @@ struct FrameStats {
     std::optional<Noise> error() const; // noise, integrator and orders together
 
     void add(const FrameStats& other); // counts and times
+    void drop(ivec2 pixel);            // a sample of it that is not finite
 };
 
 // How much of each tile of 4×4 pixels another picture is.

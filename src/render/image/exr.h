@@ -11,6 +11,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,23 @@ const std::vector<std::string>& layer_names();
 
 // Throws Error (usage) naming a layer there is none of.
 void check_layer_names(const ExrOptions& options);
+
+// Where the pixels lie in the image.
+struct ExrWindow {
+    ivec2 display{0}, low{0}, size{0};
+};
+
+// Floats of an image, `stride` apart.
+struct ExrChannel {
+    std::string name;
+    const float* values;
+    size_t stride;
+    bool full_float; // else half
+};
+
+// Channels of any names. Throws Error (unwritable, internal).
+void write_exr_channels(const std::filesystem::path& file, const ExrWindow& window,
+                        std::span<const ExrChannel> channels, const Provenance& provenance);
 
 // Names of the channels a picture gets, sorted: what write_exr will write for these lights.
 std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options);

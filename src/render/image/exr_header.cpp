@@ -79,12 +79,12 @@ template<class T> const T* value_of(const Imf::Attribute& attribute) {
 }
 }
 
-Imf::Header make_exr_header(const Layers& layers, const Provenance& provenance) {
+Imf::Header make_exr_header(const ExrWindow& window, const Provenance& provenance) {
     const Camera& camera = provenance.camera;
-    const ivec2 last = layers.low + layers.size - 1;
-    const Imath::Box2i display({0, 0}, {layers.display.x - 1, layers.display.y - 1});
-    const Imath::Box2i data({layers.low.x, layers.low.y}, {last.x, last.y});
-    Imf::Header header(display, data, 1, {0, 0}, screen_window(camera, layers.display).x, Imf::INCREASING_Y,
+    const ivec2 last = window.low + window.size - 1;
+    const Imath::Box2i display({0, 0}, {window.display.x - 1, window.display.y - 1});
+    const Imath::Box2i data({window.low.x, window.low.y}, {last.x, last.y});
+    Imf::Header header(display, data, 1, {0, 0}, screen_window(camera, window.display).x, Imf::INCREASING_Y,
                        Imf::ZIP_COMPRESSION);
     header.zipCompressionLevel() = 4;
 
@@ -97,7 +97,7 @@ Imf::Header make_exr_header(const Layers& layers, const Provenance& provenance) 
 
     const Imath::M44f to_camera = world_to_camera(camera);
     Imf::addWorldToCamera(header, to_camera);
-    Imf::addWorldToNDC(header, to_camera * camera_to_ndc(camera, layers.display));
+    Imf::addWorldToNDC(header, to_camera * camera_to_ndc(camera, window.display));
     for (const auto& [name, text] : provenance.attributes) header.insert(name, Imf::StringAttribute(text));
     return header;
 }

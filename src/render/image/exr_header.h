@@ -8,7 +8,7 @@
 #include <string_view>
 
 namespace tyndall {
-Imf::Header make_exr_header(const Layers& layers, const Provenance& provenance);
+Imf::Header make_exr_header(const ExrWindow& window, const Provenance& provenance);
 
 // A header's tyndall:check is the hash of its file with this in its place.
 inline constexpr const char* check_name = "tyndall:check";

@@ -40,14 +40,6 @@ private:
     uint64_t position_ = 0;
 };
 
-// One channel: floats of an image, `stride` apart.
-struct Channel {
-    std::string name;
-    const float* values;
-    size_t stride;
-    bool full_float;
-};
-
 bool wants(const ExrOptions& options, std::string_view layer) {
     return std::ranges::find(options.layers, layer) != options.layers.end();
 }
@@ -73,19 +65,20 @@ std::vector<std::string> light_layer_names(const Layers& layers) {
     return result;
 }
 
-void add_color(std::vector<Channel>& channels, const std::string& prefix, const Image<vec3>& image, bool full_float) {
+void add_color(std::vector<ExrChannel>& channels, const std::string& prefix, const Image<vec3>& image,
+               bool full_float) {
     const float* first = image.empty() ? nullptr : &image.pixels[0].x;
     for (int c = 0; c < 3; ++c) channels.push_back({prefix + "RGB"[c], first ? first + c : nullptr, 3, full_float});
 }
 
-void add_value(std::vector<Channel>& channels, const std::string& name, const Image<float>& image, bool full_float) {
+void add_value(std::vector<ExrChannel>& channels, const std::string& name, const Image<float>& image, bool full_float) {
     channels.push_back({name, image.pixels.data(), 1, full_float});
 }
 
 // The channels of a file. `depth` holds what goes into Z.
-std::vector<Channel> make_channels(const Layers& layers, const Image<float>& depth, const ExrOptions& options) {
+std::vector<ExrChannel> make_channels(const Layers& layers, const Image<float>& depth, const ExrOptions& options) {
     const bool wide = options.full_float;
-    std::vector<Channel> channels;
+    std::vector<ExrChannel> channels;
     add_color(channels, "", layers.color, wide);
     add_value(channels, "A", layers.alpha, wide);
     if (wants(options, "Z")) add_value(channels, "Z", depth, true);
@@ -110,7 +103,7 @@ std::vector<Channel> make_channels(const Layers& layers, const Image<float>& dep
 
 float clamped_to_half(float value) { return std::clamp(value, -65504.0f, 65504.0f); }
 
-std::vector<half> as_half(const Channel& channel, size_t count, uint64_t& clamped) {
+std::vector<half> as_half(const ExrChannel& channel, size_t count, uint64_t& clamped) {
     std::vector<half> result(count);
     for (size_t i = 0; i < count; ++i) {
         const float value = channel.values[i * channel.stride], inside = clamped_to_half(value);
@@ -127,22 +120,18 @@ void add_check(std::vector<std::byte>& file) {
     std::memcpy(file.data() + bytes.find(before_check) + before_check.size(), hash.data(), hash.size());
 }
 
-std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,
-                               const ExrOptions& options) {
-    Image<float> depth = layers.depth;
-    for (float& z : depth.pixels)
-        if (std::isinf(z)) z = no_surface_z;
-    const std::vector<Channel> channels = make_channels(layers, depth, options);
-    for ([[maybe_unused]] const Channel& channel : channels) assert(channel.values); // the layer was rendered
+std::vector<std::byte> encoded(const std::filesystem::path& file, const ExrWindow& frame,
+                               std::span<const ExrChannel> channels, const Provenance& provenance) {
+    for ([[maybe_unused]] const ExrChannel& channel : channels) assert(channel.values); // the layer was rendered
 
     // Slices point at the image's own floats, or at halves made here.
-    Imf::Header header = make_exr_header(layers, provenance);
+    Imf::Header header = make_exr_header(frame, provenance);
     const Imath::Box2i window = header.dataWindow();
-    const size_t width = static_cast<size_t>(layers.size.x), count = width * static_cast<size_t>(layers.size.y);
+    const size_t width = static_cast<size_t>(frame.size.x), count = width * static_cast<size_t>(frame.size.y);
     Imf::FrameBuffer buffer;
     std::deque<std::vector<half>> halves;
     uint64_t clamped = 0;
-    for (const Channel& channel : channels) {
+    for (const ExrChannel& channel : channels) {
         const Imf::PixelType type = channel.full_float ? Imf::FLOAT : Imf::HALF;
         const void* first = channel.values;
         size_t step = channel.stride * sizeof(float);
@@ -154,12 +143,6 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
         buffer.insert(channel.name, Imf::Slice::Make(type, first, window, step, step * width));
     }
     header.insert("tyndall:clamped", Imf::StringAttribute(std::to_string(clamped)));
-    if (wants(options, "lights")) {
-        std::string names;
-        for (const std::string& name : light_layer_names(layers)) names += (names.empty() ? "" : " ") + name;
-        header.insert("tyndall:lights", Imf::StringAttribute(names));
-    }
-
     header.insert(check_name, Imf::StringAttribute(std::string(no_check)));
 
     MemoryStream stream(file.c_str());
@@ -169,7 +152,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const Layers& 
         Imf::setGlobalThreadCount(threads);
         Imf::OutputFile output(stream, header, threads);
         output.setFrameBuffer(buffer);
-        output.writePixels(layers.size.y);
+        output.writePixels(frame.size.y);
     }
     add_check(stream.data);
     return std::move(stream.data);
@@ -196,7 +179,7 @@ std::vector<std::string> channel_names(const std::vector<std::string>& lights, c
         if (std::ranges::find(layers.lights, light, [](const auto& l) { return l.first; }) == layers.lights.end())
             layers.lights.emplace_back(light, Image<vec3>());
     std::vector<std::string> names;
-    for (const Channel& channel : make_channels(layers, layers.depth, options)) names.push_back(channel.name);
+    for (const ExrChannel& channel : make_channels(layers, layers.depth, options)) names.push_back(channel.name);
     std::ranges::sort(names);
     return names;
 }
@@ -209,12 +192,26 @@ Image<vec3> stored_color(const Layers& layers, const ExrOptions& options) {
     return result;
 }
 
-void write_exr(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,
+void write_exr(const std::filesystem::path& file, const Layers& layers, const Provenance& given,
                const ExrOptions& options) {
     check_layer_names(options);
+    Image<float> depth = layers.depth;
+    for (float& z : depth.pixels)
+        if (std::isinf(z)) z = no_surface_z;
+    Provenance provenance = given;
+    if (wants(options, "lights")) {
+        std::string& names = provenance.attributes["tyndall:lights"];
+        for (const std::string& name : light_layer_names(layers)) names += (names.empty() ? "" : " ") + name;
+    }
+    write_exr_channels(file, {layers.display, layers.low, layers.size}, make_channels(layers, depth, options),
+                       provenance);
+}
+
+void write_exr_channels(const std::filesystem::path& file, const ExrWindow& window,
+                        std::span<const ExrChannel> channels, const Provenance& provenance) {
     std::vector<std::byte> bytes;
     try {
-        bytes = encoded(file, layers, provenance, options);
+        bytes = encoded(file, window, channels, provenance);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {

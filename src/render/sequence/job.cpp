@@ -122,7 +122,11 @@ View view_of(const Scene& scene, const RenderRequest& request, const Settings& s
     for (const char* layer : {"lights", "ambient", "emission", "multiple"})
         view.fog_parts |= wants_layer(request, layer);
     view.seed = request.seed, view.frame = frame;
-    if (measures_noise(request)) view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
+    const Grouping& grouping = request.grouping;
+    if (grouping.groups > 0)
+        view.batches = grouping.groups, view.leaves = grouping.leaves, view.allotted = grouping.counts;
+    else if (measures_noise(request))
+        view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;
 }
 }

@@ -18,7 +18,20 @@ namespace tyndall {
 struct Choice;
 struct Mode;
 struct Scene;
+struct TileFactors;
 struct View;
+
+// Samples in groups, as a saved plan has them, and the part of them that is wanted.
+struct Grouping {
+    int groups = 0;                              // each scrambled by itself; 0 = samples come in no groups
+    int leaves = 1;                              // of a group, a power of two
+    std::shared_ptr<const TileFactors> counts{}; // of samples, where the plan tells them for every tile
+    std::string plan_hash;
+    std::filesystem::path plan_file;
+    int part = 0, parts = 0; // counted from 1; 0 = all of them in one run
+    int more = 0;            // groups beyond the plan's, instead of its own
+};
+inline bool is_part(const Grouping& grouping) { return grouping.parts > 0; }
 
 // What is asked for: of what, how, and where to.
 struct RenderRequest {
@@ -45,6 +58,7 @@ struct RenderRequest {
     int history = 0;         // frames before each that a mode with a history looks at first
     bool background = true;  // in the picture
     bool png = false, resume = false;
+    Grouping grouping{};
     std::string unsaved; // edits that the scene's files do not have; for hash and header
 };
 

@@ -99,12 +99,10 @@ std::string option_text(const RenderRequest& request, const Settings& settings) 
     if (!request.camera.empty()) text += " --camera " + quoted_for_shell(request.camera);
     if (request.crop_low != request.crop_high)
         text += " --crop " + pair_text(request.crop_low, ",") + "," + pair_text(request.crop_high, ",");
-    constexpr const char* missing[] = {"error", "hold", "skip"};
     if (request.missing != MissingFrame::error)
-        text += std::string(" --missing ") + missing[static_cast<int>(request.missing)];
-    constexpr const char* units[] = {"spec", "unitless", "raw"};
+        text += " --missing " + missing_frame_names[static_cast<size_t>(request.missing)];
     if (request.light_units != LightUnits::spec)
-        text += std::string(" --light-units ") + units[static_cast<int>(request.light_units)];
+        text += " --light-units " + light_unit_names[static_cast<size_t>(request.light_units)];
 
     const Settings usual = settings_for(request.quality);
     // How many samples are usual depends on the mode: they are always said.
@@ -182,6 +180,7 @@ std::string frame_hash(const Scene& scene, const RenderRequest& request, const R
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
     text += request.exr.full_float ? "float\n" : "half\n";
     text += scene_text(scene) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
+    if (!request.grouping.plan_hash.empty()) text += "plan=" + request.grouping.plan_hash + "\n";
     if (!request.unsaved.empty()) text += "edits=" + request.unsaved + "\n";
     return content_hash(text);
 }

@@ -10,6 +10,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/png.h"
+#include "render/parts/part_file.h"
 #include "render/sequence/auto_exposure.h"
 #include "render/sequence/job.h"
 #include "render/sequence/provenance.h"
@@ -36,6 +37,7 @@ struct Work {
     View view;
     Snapshot snapshot;
     Layers layers;
+    FramePart part{};               // instead of layers, where one was asked for
     std::optional<RenderPlan> by{}; // rendered by, where that is not the sequence's
 };
 
@@ -101,6 +103,12 @@ WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
 // Keeps a frame that is already there and right; its PNG is made anew, since that carries no hash.
 bool keep(Pipeline& pipeline, Work& work) {
     std::string why;
+    if (is_part(pipeline.request.grouping)) {
+        work.report.kept = is_finished_part(work.report.file, work.hash, pipeline.request.grouping, why);
+        if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
+        if (work.report.kept) say(pipeline, work, "kept " + work.report.file);
+        return work.report.kept;
+    }
     const std::optional<ExrFile> exr = finished_frame(work.report.file, wanted_frame(pipeline, work), why);
     if (!exr) {
         if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
@@ -144,6 +152,8 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
         work.index = pipeline.next++;
         const int frame = work.report.frame = pipeline.request.frames[work.index];
         work.report.file = frame_name(pipeline.request.output, frame);
+        if (is_part(pipeline.request.grouping))
+            work.report.file = part_name(work.report.file, pipeline.request.grouping);
         try {
             work.view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, frame);
             work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, pipeline.files);
@@ -213,6 +223,13 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
         render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
 }
 
+// The part of the frame's samples that was asked for.
+void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work& work) {
+    const Mode& mode = *pipeline.plan.mode;
+    const PartRange range = range_of(pipeline.request.grouping, mode, work.view);
+    work.part = render_part(mode, work.view, work.snapshot, pipeline.plan.settings, options, range, work.report.stats);
+}
+
 void render(Pipeline& pipeline, Work& work) {
     const RenderRequest& request = pipeline.request;
     const RenderPlan& plan = pipeline.plan;
@@ -231,9 +248,12 @@ void render(Pipeline& pipeline, Work& work) {
                         plan.wanted,
                         work.index == 0 ? plan.orders : std::nullopt};
         options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
-        work.layers = has_goal(request)
-                          ? render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats)
-                          : render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
+        if (is_part(request.grouping))
+            render_own_part(pipeline, options, work);
+        else if (has_goal(request))
+            work.layers = render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats);
+        else
+            work.layers = render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
         if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
@@ -265,7 +285,10 @@ void write(Pipeline& pipeline, Work& work) {
     try {
         const Provenance provenance = provenance_of(pipeline.scene, request, work.by ? *work.by : pipeline.plan,
                                                     work.view, work.hash, report.stats);
-        write_exr(report.file, work.layers, provenance, request.exr);
+        if (is_part(request.grouping))
+            write_part(report.file, work.part, provenance, request.grouping);
+        else
+            write_exr(report.file, work.layers, provenance, request.exr);
         if (request.png) write_picture(pipeline, stored_color(work.layers, request.exr), report);
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);

@@ -8,6 +8,7 @@
 namespace tyndall {
 enum class SequenceMode { hold, loop, ping_pong, clip }; // before the first and after the last file
 enum class MissingFrame { error, hold, skip };           // a gap inside: stop · use the nearest earlier · no fog
+inline const std::vector<std::string> missing_frame_names{"error", "hold", "skip"};
 
 struct VdbSequence {
     std::string pattern; // a file, or a name with a frame token (####, %04d, $F4, @@@@, <F4>)

@@ -1,0 +1,153 @@
+#include "render/frame/frame_task.h"
+
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "modes/mode.h"
+#include "scene/scene.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
+#include "trace/view.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace tyndall {
+Layers make_layers(const View& view, bool halves) {
+    const bool cropped = view.crop_low != view.crop_high;
+    Layers layers;
+    layers.display = view.size;
+    layers.low = cropped ? view.crop_low : ivec2(0);
+    layers.size = (cropped ? view.crop_high : view.size) - layers.low;
+    assert(layers.size.x > 0 && layers.size.y > 0 && layers.low.x >= 0 && layers.low.y >= 0);
+    assert(layers.low.x + layers.size.x <= view.size.x && layers.low.y + layers.size.y <= view.size.y);
+    layers.color = layers.inscatter = Image<vec3>(layers.size);
+    layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
+    if (view.batches > 1) {
+        layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
+        layers.variance_error = layers.inscatter_variance_error = layers.work = Image<float>(layers.size);
+    }
+    if (view.surface_parts || view.fog_parts) layers.surface = layers.background = Image<vec3>(layers.size);
+    if (view.fog_parts) layers.ambient = layers.emission = layers.multiple = Image<vec3>(layers.size);
+    if (halves) layers.half_a = layers.half_b = Image<vec3>(layers.size);
+    return layers;
+}
+
+LightLayers light_layers(const Snapshot& snapshot) {
+    LightLayers result;
+    const auto find_or_add = [&](const std::string& name) {
+        for (size_t i = 0; i < result.names.size(); ++i)
+            if (result.names[i] == name) return static_cast<int>(i);
+        result.names.push_back(name);
+        return static_cast<int>(result.names.size()) - 1;
+    };
+    if (snapshot.scene)
+        for (const LightSource& light : snapshot.scene->lights) find_or_add(light.name);
+    for (const Light& light : snapshot.lights) result.of_light.push_back(find_or_add(light.name));
+    return result;
+}
+
+std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers) {
+    for (const std::string& name : lights.names) layers.lights.emplace_back(name, Image<vec3>(layers.size));
+    std::vector<Image<vec3>*> result;
+    for (const int light : lights.of_light) result.push_back(&layers.lights[static_cast<size_t>(light)].second);
+    result.insert(result.end(), {&layers.ambient, &layers.emission, &layers.multiple});
+    return result;
+}
+
+bool contains(const Layers& layers, ivec2 pixel) {
+    const ivec2 p = pixel - layers.low;
+    return p.x >= 0 && p.y >= 0 && p.x < layers.size.x && p.y < layers.size.y;
+}
+
+namespace {
+// Counts the time of every call.
+ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<double>> seconds) {
+    return [scatter = std::move(scatter), seconds](const RayBatch& batch, std::span<Scatter> results) {
+        const double start = steady_seconds();
+        scatter(batch, results);
+        seconds->fetch_add(steady_seconds() - start, std::memory_order_relaxed);
+    };
+}
+
+}
+
+FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                    const FrameOptions& options) {
+    // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
+    Layers layers = make_layers(view, options.halves);
+    std::shared_ptr<const Prepared> prepared = options.prepared;
+    if (!prepared)
+        prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
+    auto scatter_seconds = std::make_shared<std::atomic<double>>(0);
+    FrameTask task{prepared,
+                   {view, snapshot, timed(prepared->scatter, scatter_seconds), mode.surfaces,
+                    settings.terms.light_points, prepared->light_depths},
+                   options.prepared ? 0 : prepared->mode_seconds,
+                   scatter_seconds,
+                   std::move(layers),
+                   {}};
+    return task;
+}
+
+Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                       History* history) {
+    const double start = steady_seconds();
+    Prepared result{mode.prepare(view, snapshot, settings, history), {}, 0};
+    result.mode_seconds = steady_seconds() - start;
+    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
+        for (const Light& light : snapshot.lights)
+            result.light_depths.push_back(
+                make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
+    return result;
+}
+
+namespace {
+constexpr int block_side = 32; // a task's pixels
+
+// Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
+struct Blocks {
+    ivec2 first, count;
+
+    int64_t all() const { return int64_t{count.x} * count.y; }
+    ivec2 corner(int64_t block) const { return (first + ivec2(block % count.x, block / count.x)) * block_side; }
+};
+
+Blocks blocks_of(ivec2 low, ivec2 size) {
+    const ivec2 first = low / block_side;
+    return {first, (low + size - 1) / block_side - first + 1};
+}
+
+PixelTile tile_at(ivec2 corner, ivec2 display) {
+    PixelTile tile{corner, {}, 0};
+    const ivec2 end = glm::min(corner + tile_side, display);
+    for (int y = corner.y; y < end.y; ++y)
+        for (int x = corner.x; x < end.x; ++x) tile.pixels[tile.count++] = {x, y};
+    return tile;
+}
+}
+
+int64_t count_blocks(ivec2 low, ivec2 size) { return blocks_of(low, size).all(); }
+
+FrameStats for_each_tile(const Layers& layers, const FrameOptions& options,
+                         const std::function<void(const PixelTile&, int64_t, FrameStats&)>& render) {
+    const Blocks blocks = blocks_of(layers.low, layers.size);
+    std::vector<FrameStats> block_stats(static_cast<size_t>(blocks.all()));
+    std::atomic<int64_t> done = 0;
+    parallel_for(blocks.all(), [&](int64_t b) {
+        const ivec2 low = blocks.corner(b), high = glm::min(low + block_side, layers.display);
+        for (int y = low.y; y < high.y; y += tile_side)
+            for (int x = low.x; x < high.x; x += tile_side) {
+                if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
+                const PixelTile tile = tile_at({x, y}, layers.display);
+                if (std::any_of(tile.pixels, tile.pixels + tile.count, [&](ivec2 p) { return contains(layers, p); }))
+                    render(tile, b, block_stats[static_cast<size_t>(b)]);
+            }
+        if (options.progress) options.progress(static_cast<double>(++done) / static_cast<double>(blocks.all()));
+    });
+    FrameStats stats;
+    for (const FrameStats& block : block_stats) stats.add(block);
+    return stats;
+}
+}

@@ -1,0 +1,45 @@
+// What all tiles of a frame share, and the loop over them. For the files of this folder only.
+#pragma once
+#include "render/frame/frame.h"
+#include "render/frame/samples.h"
+
+namespace tyndall {
+inline constexpr int tile_side = 4; // a tile's 16 rays are traced together
+
+// What all blocks of a frame share.
+struct FrameTask {
+    std::shared_ptr<const Prepared> prepared; // holds what the tracer points at
+    FrameTracer tracer;
+    double mode_seconds = 0;                              // its preparation
+    std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
+    Layers layers;
+    std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
+};
+
+FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                    const FrameOptions& options);
+
+// Black layers of the view's crop window.
+Layers make_layers(const View& view, bool halves);
+
+LightLayers light_layers(const Snapshot& snapshot);
+
+// Adds the layers, black. Where the parts of fog light go: for each light, then ambient, emission and multiple.
+std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers);
+
+// The pixels of a tile that lie in the picture; those outside its crop too, since a mode may let neighbours share
+// steps.
+struct PixelTile {
+    ivec2 corner{0};
+    ivec2 pixels[16];
+    size_t count = 0;
+};
+
+bool contains(const Layers& layers, ivec2 pixel);
+
+// Calls `render` for each tile that shows in the layers, blocks of tiles in parallel, with the number of the block and
+// statistics that only that block adds to. Returns those of all blocks. Throws Error (internal) when cancelled.
+FrameStats for_each_tile(const Layers& layers, const FrameOptions& options,
+                         const std::function<void(const PixelTile&, int64_t block, FrameStats&)>& render);
+int64_t count_blocks(ivec2 low, ivec2 size);
+}

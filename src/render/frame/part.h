@@ -1,0 +1,73 @@
+// A frame's samples in parts that are rendered apart, and the frame they make together.
+//
+// The samples of a pixel come in groups, each scrambled by itself; those of a group, in their order, are cut into
+// leaves. The samples of a leaf are summed in their order, leaves in a binary tree that is rounded to floats at every
+// node: whoever adds up a node, its bits are the same. A part holds a range of leaves, as the largest nodes that lie in
+// it. Where there are more parts than leaves, each leaf is cut into slices, every slice with some of the blocks of
+// pixels; then a part's nodes are leaves.
+#pragma once
+#include "render/frame/frame.h"
+
+#include <compare>
+#include <span>
+
+namespace tyndall {
+struct FrameTask;
+struct PixelTile;
+
+// The leaves index·2^level to (index + 1)·2^level of a group.
+struct SumNode {
+    int group = 0, level = 0, index = 0;
+    auto operator<=>(const SumNode&) const = default;
+};
+
+// Slices of leaves, counted leaf by leaf and group by group: from `first`, not including `last`.
+struct PartRange {
+    int64_t first = 0, last = 0;
+    int slices = 1; // of a leaf
+};
+
+// Blocks of pixels that may be told apart. `view` as for render_part().
+int64_t count_blocks(const Mode& mode, const View& view);
+
+// The share of part `part` of `parts`, counted from 1, of so many groups. Throws Error (usage) where there are more
+// parts than slices: a leaf has no more of them than the frame has blocks.
+PartRange part_range(int part, int parts, int first_group, int groups, int leaves, int64_t blocks);
+
+// The nodes of a part, in order.
+std::vector<SumNode> nodes_of(const PartRange& range, int leaves);
+
+// Sums of the samples of a pixel: surface, background and fog light (RGB each), weight, alpha, transmittance and
+// validity, samples kept and samples taken; then RGB of each part of the fog light.
+inline constexpr size_t fixed_sums = 15;
+
+struct FramePart {
+    ivec2 display{0}, low{0}, size{0};
+    PartRange range;
+    int leaves = 1;       // of a group
+    size_t numbers = 0;   // of a pixel and node
+    bool covered = false; // whether the background is part of the image: then alpha is 1
+    LightLayers lights;   // where those are wanted
+    std::vector<SumNode> nodes;
+    std::vector<std::vector<float>> sums; // of each node, pixel by pixel
+    Image<float> depth, off_center;       // at the sample nearest the pixel's centre, and how far away, pixels squared
+};
+
+// The image that parts make together which hold groups 0 to `groups` without gaps, in order, before what a mode does
+// with finished images. `view` is the one they were rendered with.
+Layers merge_parts(const View& view, bool halves, std::span<const FramePart> parts, int groups, FrameStats& stats);
+
+// Throws Error (internal) when cancelled. `view` has leaves; its batches are the groups of the plan, of which a part
+// may go beyond.
+FramePart render_part(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                      const FrameOptions& options, const PartRange& range, FrameStats& stats);
+
+// A tile of a frame whose samples come in groups, in one go.
+void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats);
+
+// Writes a pixel from the sums of its groups, one after the other; `parts` are where those of the fog light go.
+void store_groups(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
+                  std::span<Image<vec3>* const> parts);
+
+int mean_samples(uint64_t samples, const Layers& layers);
+}

@@ -1,0 +1,168 @@
+#include "render/parts/part_file.h"
+
+#include "base/error.h"
+#include "base/io/json_values.h"
+#include "base/text.h"
+#include "render/sequence/job.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tyndall {
+namespace {
+constexpr const char* fixed_names[fixed_sums] = {"surface.R",    "surface.G",    "surface.B",   "background.R",
+                                                 "background.G", "background.B", "inscatter.R", "inscatter.G",
+                                                 "inscatter.B",  "weight",       "alpha",       "transmittance",
+                                                 "validity",     "kept",         "taken"};
+
+std::string channel_name(const SumNode& node, size_t number) {
+    const std::string prefix = formatted("g%d_%d_%d.", node.group, node.level, node.index);
+    if (number < fixed_sums) return prefix + fixed_names[number];
+    const size_t light = (number - fixed_sums) / 3;
+    return prefix + formatted("light%zu.%c", light, "RGB"[(number - fixed_sums) % 3]);
+}
+
+std::string range_text(const PartRange& range) {
+    return formatted("%lld %lld %d", static_cast<long long>(range.first), static_cast<long long>(range.last),
+                     range.slices);
+}
+
+std::string label(const Grouping& grouping) { return formatted("%d/%d", grouping.part, grouping.parts); }
+
+// What a part's header says that its image's does not.
+void add_attributes(const FramePart& part, const Grouping& grouping, const std::filesystem::path& file,
+                    std::map<std::string, std::string>& attributes) {
+    const auto absolute = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    attributes["tyndall:part"] = label(grouping);
+    attributes["tyndall:partRange"] = range_text(part.range);
+    attributes["tyndall:partLeaves"] = std::to_string(part.leaves);
+    attributes["tyndall:partCovered"] = part.covered ? "1" : "0";
+    attributes["tyndall:planHash"] = grouping.plan_hash;
+    attributes["tyndall:planFile"] =
+        absolute(grouping.plan_file).lexically_relative(absolute(file).parent_path()).string();
+    const std::vector<std::string>& names = part.lights.names;
+    attributes["tyndall:partLights"] =
+        format_json(json_object({{"names", json_list(names, [](const std::string& name) { return Json(name); })},
+                                 {"of_light", part.lights.of_light}}));
+}
+
+struct Header {
+    const std::map<std::string, std::string>& attributes;
+    std::string file;
+
+    const std::string& text(const char* name) const {
+        const auto found = attributes.find(name);
+        if (found == attributes.end())
+            refuse(file, "is no part of a planned frame: its header lacks " + std::string(name));
+        return found->second;
+    }
+};
+
+void read_range(const Header& header, FramePart& part) {
+    long long first = 0, last = 0;
+    const std::string &range = header.text("tyndall:partRange"), &leaves = header.text("tyndall:partLeaves");
+    constexpr long long most = 1 << 30;
+    if (std::sscanf(range.c_str(), "%lld %lld %d", &first, &last, &part.range.slices) != 3 || first < 0 ||
+        last <= first || last > most || part.range.slices < 1)
+        refuse(header.file, "tyndall:partRange: expected three numbers; got '" + printable(range, 40) + "'");
+    part.range.first = first, part.range.last = last;
+    part.leaves = parsed<int>(leaves).value_or(0);
+    if (part.leaves < 1 || part.leaves > 64 || (part.leaves & (part.leaves - 1)) != 0)
+        refuse(header.file, "tyndall:partLeaves: expected a power of two; got '" + printable(leaves, 40) + "'");
+}
+
+void read_lights(const Header& header, FramePart& part) {
+    const Json json = parse_json(header.text("tyndall:partLights"), header.file);
+    const Json *names = json.find("names"), *of_light = json.find("of_light");
+    if (!names || !of_light) refuse(header.file, "tyndall:partLights: expected names and of_light");
+    for (const Json& name : names->items) part.lights.names.push_back(name.string);
+    for (const Json& light : of_light->items) {
+        if (light.number < 0 || light.number >= static_cast<double>(names->items.size()))
+            refuse(header.file, "tyndall:partLights: there is no such layer");
+        part.lights.of_light.push_back(static_cast<int>(light.number));
+    }
+}
+
+const Image<float>& channel_of(const ExrFile& exr, const std::string& name, const std::string& file) {
+    const Image<float>* channel = exr.channel(name);
+    if (!channel) refuse(file, "damaged: there is no channel " + name);
+    return *channel;
+}
+
+void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
+    part.nodes = nodes_of(part.range, part.leaves);
+    part.numbers = fixed_sums;
+    while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
+    for (const SumNode& node : part.nodes) {
+        std::vector<float>& sums = part.sums.emplace_back(exr.channels[0].second.pixels.size() * part.numbers);
+        for (size_t k = 0; k < part.numbers; ++k) {
+            const Image<float>& values = channel_of(exr, channel_name(node, k), file);
+            for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
+        }
+    }
+    part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
+}
+}
+
+PartRange range_of(const Grouping& grouping, const Mode& mode, const View& view) {
+    const bool more = grouping.more > 0;
+    return part_range(grouping.part, grouping.parts, more ? grouping.groups : 0, more ? grouping.more : grouping.groups,
+                      grouping.leaves, count_blocks(mode, view));
+}
+
+std::string part_name(const std::string& frame_file, const Grouping& grouping) {
+    const int digits = static_cast<int>(std::to_string(grouping.parts).size());
+    std::string word = formatted("part-%0*d-of-%d", digits, grouping.part, grouping.parts);
+    if (grouping.more > 0) word = formatted("groups-%d-more.", grouping.more) + word;
+    return std::filesystem::path(frame_file).replace_extension(word + ".exr").string();
+}
+
+void write_part(const std::filesystem::path& file, const FramePart& part, Provenance provenance,
+                const Grouping& grouping) {
+    add_attributes(part, grouping, file, provenance.attributes);
+    std::vector<ExrChannel> channels;
+    for (size_t n = 0; n < part.nodes.size(); ++n)
+        for (size_t k = 0; k < part.numbers; ++k)
+            channels.push_back({channel_name(part.nodes[n], k), part.sums[n].data() + k, part.numbers, true});
+    channels.push_back({"Z", part.depth.pixels.data(), 1, true});
+    channels.push_back({"offset", part.off_center.pixels.data(), 1, true});
+    write_exr_channels(file, {part.display, part.low, part.size}, channels, provenance);
+}
+
+PartFile read_part(const std::filesystem::path& file) {
+    const ExrFile exr = read_exr(file);
+    const Header header{exr.attributes, file.string()};
+    PartFile result{file,
+                    file.parent_path() / header.text("tyndall:planFile"),
+                    {},
+                    header.text("tyndall:hash"),
+                    header.text("tyndall:planHash"),
+                    header.text("tyndall:part"),
+                    0};
+    if (!exr.is_unchanged) refuse(file.string(), "damaged: its bytes are not those that were written");
+    result.frame = parsed<int>(header.text("imageCounter")).value_or(0);
+    FramePart& part = result.part;
+    part.display = exr.display, part.low = exr.low, part.size = exr.size;
+    part.covered = header.text("tyndall:partCovered") == "1";
+    read_range(header, part), read_lights(header, part), read_sums(exr, file.string(), part);
+    return result;
+}
+
+bool is_finished_part(const std::filesystem::path& file, const std::string& hash, const Grouping& grouping,
+                      std::string& why) {
+    if (!std::filesystem::exists(file)) return false;
+    try {
+        const ExrFile exr = read_exr(file);
+        const Header header{exr.attributes, file.string()};
+        if (!exr.is_unchanged)
+            why = "damaged";
+        else if (header.text("tyndall:hash") != hash || header.text("tyndall:part") != label(grouping))
+            why = "of other inputs, settings or plan";
+    } catch (const Error& error) {
+        why = error.what();
+    }
+    return why.empty();
+}
+}

@@ -1,0 +1,152 @@
+#include "render/parts/plan_file.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+#include "base/io/json_values.h"
+#include "base/text.h"
+#include "modes/mode.h"
+#include "plan_schema.h"
+#include "scene/scene.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tyndall {
+namespace {
+constexpr int usual_groups = 8, max_leaves = 8;
+
+Json settings_json(const Settings& settings) {
+    JsonMembers members;
+    for (const SettingRow& row : setting_rows()) members.emplace_back(row.name, std::string_view(row.get(settings)));
+    return json_object(std::move(members));
+}
+
+// As seen from the folder of the plan.
+std::string scene_name(const std::filesystem::path& scene, const std::filesystem::path& plan) {
+    const auto absolute = [](const std::filesystem::path& path) {
+        return std::filesystem::absolute(path).lexically_normal();
+    };
+    return absolute(scene).lexically_relative(absolute(plan).parent_path()).string();
+}
+
+Json plan_json(const std::filesystem::path& file, const Scene& scene, const SavedPlan& saved) {
+    const RenderRequest& request = saved.request;
+    const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    const ivec2 low = request.crop_low, high = request.crop_high;
+    return json_object({{"tyndall_plan", 1},
+                        {"version", TYNDALL_VERSION},
+                        {"build", saved.build},
+                        {"isa", request.isa},
+                        {"scene", scene_name(request.scene_file, file)},
+                        {"inputs", json_list(scene.inputs, [](const InputFile& input) { return Json(input.hash); })},
+                        {"frames", format_frames(request.frames)},
+                        {"mode", saved.plan.mode->name},
+                        {"quality", name_of(request.quality)},
+                        {"settings", settings_json(saved.plan.settings)},
+                        {"camera", request.camera},
+                        {"resolution", size},
+                        {"crop", std::vector{low.x, low.y, high.x, high.y}},
+                        {"seed", request.seed},
+                        {"missing", missing_frame_names[static_cast<size_t>(request.missing)]},
+                        {"light_units", light_unit_names[static_cast<size_t>(request.light_units)]},
+                        {"layers", json_list(request.exr.layers, [](const std::string& layer) { return Json(layer); })},
+                        {"float", request.exr.full_float},
+                        {"background", request.background},
+                        {"groups", request.grouping.groups},
+                        {"leaves", request.grouping.leaves}});
+}
+
+size_t index_in(const std::vector<std::string>& names, const std::string& name) {
+    return static_cast<size_t>(std::ranges::find(names, name) - names.begin());
+}
+
+int integer(const Json& value) { return static_cast<int>(value.number); }
+
+RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
+    RenderRequest request;
+    request.scene_file = file.parent_path() / json.string_or("scene", "");
+    request.frames = parse_frames(json.string_or("frames", ""));
+    request.mode = json.string_or("mode", "");
+    request.quality = quality_named(json.string_or("quality", ""));
+    for (const auto& [name, value] : json.find("settings")->members)
+        apply_setting(request.settings, name + "=" + value.string);
+    request.camera = json.string_or("camera", "");
+    const auto& size = json.find("resolution")->items;
+    request.resolution = {integer(size[0]), integer(size[1])};
+    const auto& crop = json.find("crop")->items;
+    request.crop_low = {integer(crop[0]), integer(crop[1])}, request.crop_high = {integer(crop[2]), integer(crop[3])};
+    request.seed = static_cast<uint32_t>(json.number_or("seed", 0));
+    request.isa = json.string_or("isa", "");
+    request.missing = static_cast<MissingFrame>(index_in(missing_frame_names, json.string_or("missing", "")));
+    request.light_units = static_cast<LightUnits>(index_in(light_unit_names, json.string_or("light_units", "")));
+    request.exr.layers.clear();
+    for (const Json& layer : json.find("layers")->items) request.exr.layers.push_back(layer.string);
+    check_layer_names(request.exr);
+    request.exr.full_float = json.boolean_or("float", false);
+    request.background = json.boolean_or("background", true);
+    request.grouping.groups = static_cast<int>(json.number_or("groups", 1));
+    request.grouping.leaves = static_cast<int>(json.number_or("leaves", 1));
+    request.grouping.plan_file = file;
+    return request;
+}
+
+// Errors of the command line are errors of the file here.
+RenderRequest checked_request(const Json& json, const std::filesystem::path& file) {
+    try {
+        RenderRequest request = request_of(json, file);
+        find_mode(request.mode);
+        const int samples = request.settings.pixel.samples, groups = request.grouping.groups;
+        if (samples % groups != 0)
+            refuse("/settings/pixel.samples", formatted("expected a multiple of the %d groups", groups));
+        return request;
+    } catch (const Error& error) {
+        refuse(file.string(), error.what());
+    }
+}
+}
+
+Grouping grouping_of(int& samples) {
+    Grouping grouping;
+    grouping.groups = std::min(samples, usual_groups);
+    const int of_group = (samples + grouping.groups - 1) / grouping.groups;
+    samples = of_group * grouping.groups;
+    grouping.leaves = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::min(of_group, max_leaves))));
+    return grouping;
+}
+
+std::string build_name() {
+    static const std::string name = content_hash(read_file("/proc/self/exe", uint64_t{1} << 30));
+    return name;
+}
+
+void save_plan(const std::filesystem::path& file, const Scene& scene, const SavedPlan& plan) {
+    write_file_atomically(file, format_json(plan_json(file, scene, plan)) + "\n");
+}
+
+SavedPlan load_plan(const std::filesystem::path& file) {
+    const std::string text = read_file(file);
+    const Json json = parse_json(text, file.string());
+    check_schema(json, plan_schema, file.string());
+    SavedPlan plan{checked_request(json, file), {}, {}, json.string_or("build", "")};
+    if (const std::string version = json.string_or("version", ""); version != TYNDALL_VERSION)
+        refuse(file.string() + ": /version",
+               "made by Tyndall " + printable(version, 20) + "; this is " TYNDALL_VERSION);
+    if (plan.build != build_name())
+        refuse(file.string() + ": /build",
+               "made by another build of this version, whose bits may differ: plan again, or use that build");
+    for (const Json& input : json.find("inputs")->items) plan.inputs.push_back(input.string);
+    plan.request.grouping.plan_hash = content_hash(text);
+    plan.plan = plan_as_asked(plan.request);
+    return plan;
+}
+
+void check_inputs(const SavedPlan& plan, const Scene& scene) {
+    const auto same = [](const std::string& hash, const InputFile& input) { return hash == input.hash; };
+    if (std::ranges::equal(plan.inputs, scene.inputs, same)) return;
+    std::string changed = scene.file.string();
+    for (size_t i = 0; i < std::min(plan.inputs.size(), scene.inputs.size()); ++i)
+        if (plan.inputs[i] != scene.inputs[i].hash) changed = scene.inputs[i].path.string();
+    refuse(changed, "has changed since " + plan.request.grouping.plan_file.string() + " was made: plan again");
+}
+}

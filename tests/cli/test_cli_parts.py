@@ -1,0 +1,154 @@
+"""Frames rendered in parts from a saved plan: the bits of one run, and no other parts among them."""
+import json
+import random
+import unittest
+
+from exr import read_channels
+from program import ProgramTest, lit_scene, run
+from test_cli_layers import LAMPS, PARTS, fog, panes
+from program import TRIANGLE
+
+ALL_LAYERS = f"Z,transmittance,validity,variance,halves,{PARTS}"
+
+
+class PartsTest(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("triangle.bin", TRIANGLE)
+        self.write("panes.gltf", panes())
+        self.scene = self.write("scene.json", lit_scene(
+            gltf="panes.gltf", lights=LAMPS, ambient=[0.1, 0.2, 0.3], media=[fog(), fog(extinction=0.3)],
+            resolution=[70, 37]))
+
+    def plan(self, *options, name="plan.json", mode="march"):
+        self.succeed("plan", self.scene, "--mode", mode, "--save", self.path(name), "-q", *options)
+        return self.path(name)
+
+    def render_part(self, plan, part, parts, *options, name="frame.exr"):
+        self.succeed("render", "--plan", plan, "-o", self.path(name), "--part", f"{part}/{parts}", "-q", *options)
+
+    def parts(self, plan, count, *options, name="frame.exr"):
+        """Renders all parts; returns their files in the order of the parts."""
+        for part in range(1, count + 1):
+            self.render_part(plan, part, count, *options, name=name)
+        return sorted(self.directory.glob(f"{name[:-4]}.part-*-of-{count}.exr"))
+
+    def merge(self, files, name="merged.exr", *options):
+        return self.succeed("merge", *files, "-o", self.path(name), "-q", *options)
+
+    def one_run(self, plan, *options):
+        self.succeed("render", "--plan", plan, "-o", self.path("one.exr"), "-q", *options)
+        return read_channels(self.path("one.exr"))
+
+    def test_parts_make_the_bits_of_one_run_in_every_mode(self):
+        chance = random.Random(3)
+        for mode in json.loads(self.succeed("modes", "--json").stdout)["modes"]:
+            layers = PARTS if mode["name"] == "radial-blur" else ALL_LAYERS
+            plan = self.plan("--samples", 16, "--aov", layers, "--float", "--crop", "5,3,66,35", mode=mode["name"])
+            one = self.one_run(plan, "--threads", 1)
+            for count in (1, 3, 8):
+                files = self.parts(plan, count, "--threads", 2)
+                chance.shuffle(files)
+                self.merge(files)
+                with self.subTest(mode=mode["name"], parts=count):
+                    self.assertEqual(read_channels(self.path("merged.exr")), one)
+
+    def test_more_parts_than_leaves_share_them_block_by_block(self):
+        plan = self.plan("--samples", 2, "--orders", "all", "--aov", ALL_LAYERS, "--float")
+        one = self.one_run(plan)
+        for count in (2, 7, 12):  # two groups of one leaf, six blocks
+            self.merge(self.parts(plan, count))
+            self.assertEqual(read_channels(self.path("merged.exr")), one, count)
+        self.refuse(2, ["--part", "12 parts at most"], "render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/13")
+
+    def test_groups_can_be_added(self):
+        few, many = self.plan("--samples", 8), self.plan("--samples", 8, name="other.json")
+        files = self.parts(few, 2)
+        self.merge(files)
+        before = self.attributes("merged.exr")
+        for part in (1, 2):
+            self.render_part(few, part, 2, "--more", 24)
+        files += sorted(self.directory.glob("frame.groups-24-more.part-*.exr"))
+        self.merge(files)
+        after = self.attributes("merged.exr")
+        self.assertGreater(float(after["tyndall:samples"]), 3.9 * float(before["tyndall:samples"]))
+        share = float(after["tyndall:achievedError"]) / float(before["tyndall:achievedError"])
+        self.assertAlmostEqual(share, 0.5, delta=0.1)
+
+    def test_what_does_not_belong_together_is_refused_by_name(self):
+        plan = self.plan("--samples", 8)
+        a, b, c = self.parts(plan, 3)
+        out = self.path("merged.exr")
+        self.refuse(3, [b, "holds samples that", "holds as well"], "merge", a, b, b, c, "-o", out)
+        self.refuse(3, [a, "a part is missing", "leaves"], "merge", a, c, "-o", out)
+        self.refuse(3, [b, "a part is missing"], "merge", c, b, "-o", out)
+        self.refuse(3, [b, "a part is missing"], "merge", a, b, "-o", out)
+
+        other = self.plan("--samples", 8, "--seed", 1, name="other.json")
+        d = self.parts(other, 3, name="other.exr")[1]
+        self.refuse(3, [d, "another plan"], "merge", a, d, c, "-o", out)
+        self.refuse(3, ["frame.part-1-of-3.exr", "is not of"], "merge", a, b, c, "-o", out, "--plan", other)
+        whole = self.path("whole.exr")
+        self.succeed("render", "--plan", plan, "-o", whole, "-q")
+        self.refuse(3, [whole, "is no part"], "merge", a, whole, c, "-o", out)
+
+    def test_every_damage_is_seen(self):
+        plan = self.plan("--samples", 8)
+        a, b = self.parts(plan, 2)
+        data, chance = b.read_bytes(), random.Random(1)
+        for size in range(0, len(data), 4096):
+            b.write_bytes(data[:size])
+            self.assertIn(run("merge", a, b, "-o", self.path("merged.exr")).returncode, (3, 4), size)
+        for _ in range(40):
+            at, bit = chance.randrange(len(data)), chance.randrange(8)
+            b.write_bytes(data[:at] + bytes([data[at] ^ 1 << bit]) + data[at + 1:])
+            self.refuse(3, [b], "merge", a, b, "-o", self.path("merged.exr"))
+        b.write_bytes(data)
+        self.merge([a, b])
+
+    def test_a_plan_is_only_for_what_it_was_made_of(self):
+        plan = self.plan("--samples", 8)
+        files = self.parts(plan, 2)
+        text = plan.read_text()
+        for key, value in (("build", "0"), ("version", "0.0.0")):
+            self.write("changed.json", json.dumps(json.loads(text) | {key: value}))
+            self.refuse(3, ["changed.json", f"/{key}", "made by"], "render", "--plan", self.path("changed.json"), "-o",
+                        self.path("x.exr"))
+        self.write("changed.json", json.dumps(json.loads(text) | {"groups": "8"}))
+        self.refuse(3, ["changed.json", "/groups"], "render", "--plan", self.path("changed.json"), "-o", self.path("x.exr"))
+        self.write("panes.gltf", self.path("panes.gltf").read_text() + " ")
+        self.refuse(3, ["panes.gltf", "has changed since"], "render", "--plan", plan, "-o", self.path("x.exr"), "--part", "1/2")
+        self.refuse(3, ["panes.gltf", "has changed since"], "merge", *files, "-o", self.path("x.exr"))
+
+    def test_options_that_a_plan_decides_are_refused_beside_it(self):
+        plan = self.plan("--samples", 8)
+        for option in (("--samples", 4), ("--mode", "path"), ("--seed", 1), ("--res", "8x8"), ("--float",), (self.scene,)):
+            self.refuse(2, ["the plan has decided it"], "render", "--plan", plan, "-o", self.path("x.exr"), *option)
+        self.refuse(2, ["--part", "needs --plan"], "render", self.scene, "-o", self.path("x.exr"), "--part", "1/2")
+        for part in ("0/2", "3/2", "1", "a/b", "1/0"):
+            self.refuse(2, ["--part"], "render", "--plan", plan, "-o", self.path("x.exr"), "--part", part)
+        self.refuse(2, ["--png"], "render", "--plan", plan, "-o", self.path("x.exr"), "--part", "1/2", "--png")
+        self.refuse(2, ["--frames", "frame 9 is not in the plan"], "render", "--plan", plan, "-o", self.path("x.exr"),
+                    "--frames", 9)
+
+    def test_parts_that_are_there_are_kept(self):
+        plan = self.plan("--samples", 8)
+        self.render_part(plan, 1, 2)
+        again = self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/2", "--resume").stderr
+        self.assertIn("kept", again)
+        part = self.path("frame.part-1-of-2.exr")
+        part.write_bytes(part.read_bytes()[:-100])
+        again = self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/2", "--resume").stderr
+        self.assertIn("is rendered again", again)
+
+    def test_parts_are_removed_only_when_asked_to(self):
+        plan = self.plan("--samples", 8)
+        files = self.parts(plan, 2)
+        self.merge(files)
+        self.assertTrue(all(file.exists() for file in files))
+        self.merge(files, "merged.exr", "--remove-parts")
+        self.assertFalse(any(file.exists() for file in files))
+
+
+if __name__ == "__main__":
+    unittest.main()
