@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
-#include "render/image/png.h"
+#include "render/adaptive/planned.h"
 #include "render/parts/merge.h"
 #include "scene/scene.h"
 
@@ -40,6 +40,22 @@ Json frame_json(int frame, const std::string& file, const FrameStats& stats, int
     return json_object(std::move(members));
 }
 
+// Whether a frame misses the plan's target; then says what gets there.
+bool say_lacking(const SavedPlan& plan, const FrameStats& stats, int groups, int frame, const std::string& file) {
+    const double lacking = groups_lacking(plan.request.grouping.error, stats, groups);
+    if (lacking == 0) return false;
+    const std::string place = formatted("frame %d: ", frame);
+    if (lacking > 1e6) {
+        say(place + "more samples do not help: steps, maps or grids are too coarse; plan again with a finer quality");
+        return true;
+    }
+    const int planned = plan.request.grouping.groups;
+    say(place + formatted("lacks %g groups: tyndall render --plan ", lacking) +
+        quoted_for_shell(plan.request.grouping.plan_file.string()) + " -o " + quoted_for_shell(file) +
+        formatted(" --frames %d --more %g", frame, lacking + groups - planned));
+    return true;
+}
+
 int run_merge(const Options& texts, const Globals& globals) {
     check_pattern(texts.output, ".exr", false);
     std::map<int, std::vector<PartFile>> frames = read_parts(texts.parts);
@@ -58,6 +74,7 @@ int run_merge(const Options& texts, const Globals& globals) {
 
     std::vector<Json> reports;
     uint64_t non_finite = 0;
+    int missed = 0;
     for (auto& [frame, parts] : frames) {
         stop_if_cancelled();
         const double start = steady_seconds();
@@ -69,6 +86,7 @@ int run_merge(const Options& texts, const Globals& globals) {
         if (texts.remove)
             for (const std::filesystem::path& part : merged) std::filesystem::remove(part);
         non_finite += result.stats.non_finite;
+        missed += say_lacking(plan, result.stats, groups[frame], frame, file);
         reports.push_back(frame_json(frame, file, result.stats, groups[frame]));
         std::string noise;
         if (const auto error = result.stats.error())
@@ -82,6 +100,10 @@ int run_merge(const Options& texts, const Globals& globals) {
     if (non_finite > 0)
         fail(ExitCode::non_finite, plan.request.scene_file.string(),
              count_text(non_finite, "sample") + " were not finite numbers and were left out");
+    if (missed > 0)
+        fail(ExitCode::differs, plan.request.scene_file.string(),
+             formatted("all frames were written, but the error of %d of them may be larger than %g", missed,
+                       plan.request.target_error));
     return 0;
 }
 }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
+#include "render/adaptive/planned.h"
 #include "render/parts/plan_file.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/sequence.h"
@@ -19,7 +20,7 @@ namespace tyndall {
 namespace {
 struct Options {
     RenderOptions render; // those that plan shares with it
-    std::string frame, save;
+    std::string frame, save, groups;
 };
 
 Json term_json(const Term& term) {
@@ -85,24 +86,51 @@ std::string command_of(const Plan& plan, const RenderRequest& request, bool one_
     return text;
 }
 
+// The counts of samples for a target, by the first of the frames.
+PlannedSamples counted(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, int groups) {
+    const Snapshot snapshot = load_first_frame(scene, request).snapshot;
+    View view = view_of(scene, request, plan.settings, request.frames[0]);
+    view.batches = groups;
+    Goal goal{request.target_error, 0, request.quality, {}, plan.choice};
+    const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
+    return plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
+}
+
 // The plan as a file that render --plan takes.
-void save(const std::string& file, const Scene& scene, const RenderRequest& asked, RenderPlan plan,
-          const Globals& globals) {
+int save(const std::string& file, const Scene& scene, const RenderRequest& asked, RenderPlan plan, int groups,
+         const Globals& globals) {
     RenderRequest request = asked;
+    if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
     int& samples = plan.settings.pixel.samples;
     const int wanted = samples;
-    request.grouping = grouping_of(samples);
-    if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
+    if (request.target_error > 0) {
+        const PlannedSamples planned = counted(scene, request, plan, groups);
+        plan.settings = planned.settings, samples = groups;
+        request.grouping.groups = groups, request.grouping.leaves = leaves_for(groups, planned.samples);
+        request.grouping.counts = planned.counts;
+        request.grouping.error = planned.error;
+        if (!globals.quiet)
+            say(formatted("frame %d needs %.3g samples per pixel, one run of it about ", request.frames[0],
+                          planned.samples) +
+                seconds_text(planned.seconds) + " here");
+    } else {
+        request.grouping = grouping_of(samples, groups);
+    }
     drop_absent_layers(scene, plan, request);
     check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     save_plan(file, scene, {request, plan, {}, build_name()});
-    if (globals.quiet) return;
-    if (samples != wanted)
+    const std::optional<Integrator>& integrator = request.grouping.error.integrator;
+    if (integrator && integrator->error.bound >= request.target_error)
+        fail(ExitCode::differs, request.scene_file.string(),
+             formatted("%s was written, but the mode's own error is %.3g, at most %.3g: samples do not help",
+                       printable(file, 100).c_str(), integrator->error.error, integrator->error.bound));
+    if (globals.quiet) return 0;
+    if (samples != wanted && !request.grouping.counts)
         say(formatted("note: %d camera rays per pixel instead of %d: they come in %d equal groups", samples, wanted,
                       request.grouping.groups));
     say(printable(file) + ": " + count_text(request.frames.size(), "frame") + " by " + std::string(plan.mode->name) +
-        formatted(", %d samples per pixel in %d groups of %d leaves", samples, request.grouping.groups,
-                  request.grouping.leaves));
+        formatted(", samples in %d groups of %d leaves", request.grouping.groups, request.grouping.leaves));
+    return 0;
 }
 
 // What stands in the way of a plan whose bits depend on nothing but it.
@@ -113,14 +141,19 @@ void check_saved(const RenderOptions& texts) {
         fail(ExitCode::usage, "--history", "planned frames are rendered one by one, without those before them");
 }
 
+int groups_option(const Options& texts) {
+    const bool target = !texts.render.target_error.empty() || texts.render.mode == automatic;
+    return texts.groups.empty() ? (target ? groups_for_target : usual_groups)
+                                : static_cast<int>(integer_option("--groups", texts.groups, 1, max_groups));
+}
+
 int save_as_asked(const Options& texts, const Globals& globals) {
     check_saved(texts.render);
     const Mode& mode = find_mode(texts.render.mode, "--mode");
     const RenderRequest request = make_request(texts.render, mode);
     const Scene scene = load_scene(request.scene_file, load_options(texts.render));
     find_camera(scene, request.camera);
-    save(texts.save, scene, request, plan_as_asked(request), globals);
-    return 0;
+    return save(texts.save, scene, request, plan_as_asked(request), groups_option(texts), globals);
 }
 
 int run_plan(const Options& texts, const Globals& globals) {
@@ -143,6 +176,14 @@ int run_plan(const Options& texts, const Globals& globals) {
     const Plan plan = make_plan(modes(), view, snapshot, request.settings,
                                 {request.target_error, request.time_budget, request.quality, {}, {}}, control);
     progress.finish();
+    if (!texts.save.empty()) {
+        RenderRequest asked = make_request(texts.render, *plan.chosen.mode);
+        asked.mode = plan.chosen.mode->name;
+        RenderPlan chosen = plan_as_asked(asked);
+        chosen.settings = plan.settings, chosen.certificate = plan.certificate();
+        chosen.choice = std::make_shared<const Choice>(plan.chosen.choice);
+        save(texts.save, scene, asked, chosen, groups_option(texts), globals);
+    }
     if (globals.json) {
         print_report(plan_json(plan, request));
     } else {
@@ -166,6 +207,11 @@ Run add_plan(const Command& program) {
     render.mode = automatic, render.output = "out.####.exr";
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
+    command.option("--groups", texts->groups,
+                   "with --save: how many groups of samples, each scrambled by itself: more of them\n"
+                   "tell noise better, fewer have less of it (default: 8 for an error that is wanted,\n"
+                   "else 2)",
+                   "K");
     command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");
     command.option("--mode", render.mode, "with --save: a mode, instead of the one that is found", "NAME");
     add_planned_options(command, render);

@@ -1,12 +1,12 @@
 """Frames rendered in parts from a saved plan: the bits of one run, and no other parts among them."""
 import json
 import random
+import re
 import unittest
 
 from exr import read_channels
-from program import ProgramTest, lit_scene, run
+from program import TRIANGLE, ProgramTest, lit_scene, run
 from test_cli_layers import LAMPS, PARTS, fog, panes
-from program import TRIANGLE
 
 ALL_LAYERS = f"Z,transmittance,validity,variance,halves,{PARTS}"
 
@@ -41,10 +41,11 @@ class PartsTest(ProgramTest):
         return read_channels(self.path("one.exr"))
 
     def test_parts_make_the_bits_of_one_run_in_every_mode(self):
+        """At any number of threads, in any order, all layers."""
         chance = random.Random(3)
         for mode in json.loads(self.succeed("modes", "--json").stdout)["modes"]:
             layers = PARTS if mode["name"] == "radial-blur" else ALL_LAYERS
-            plan = self.plan("--samples", 16, "--aov", layers, "--float", "--crop", "5,3,66,35", mode=mode["name"])
+            plan = self.plan("--samples", 16, "--groups", 4, "--aov", layers, "--float", "--crop", "5,3,66,35", mode=mode["name"])
             one = self.one_run(plan, "--threads", 1)
             for count in (1, 3, 8):
                 files = self.parts(plan, count, "--threads", 2)
@@ -62,7 +63,7 @@ class PartsTest(ProgramTest):
         self.refuse(2, ["--part", "12 parts at most"], "render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/13")
 
     def test_groups_can_be_added(self):
-        few, many = self.plan("--samples", 8), self.plan("--samples", 8, name="other.json")
+        few = self.plan("--samples", 8, "--groups", 8)
         files = self.parts(few, 2)
         self.merge(files)
         before = self.attributes("merged.exr")
@@ -75,12 +76,45 @@ class PartsTest(ProgramTest):
         share = float(after["tyndall:achievedError"]) / float(before["tyndall:achievedError"])
         self.assertAlmostEqual(share, 0.5, delta=0.1)
 
+    def test_a_target_is_planned_for_and_checked_when_merged(self):
+        for mode, target in (("march", 0.04), ("froxel", 0.2), ("path", 0.1)):
+            plan = self.plan("--target-error", target, "--float", mode=mode)
+            one = self.one_run(plan)
+            files = self.parts(plan, 3)
+            self.merge(files)
+            self.assertEqual(read_channels(self.path("merged.exr")), one, mode)
+            said = self.attributes("merged.exr")
+            self.assertEqual(said["tyndall:errorBound"], self.attributes("one.exr")["tyndall:errorBound"])
+            self.assertLessEqual(float(said["tyndall:errorBound"]), target, mode)
+            self.succeed("render", self.scene, "-o", self.path("truth.exr"), "--float", "--quality", "final", "-q",
+                         *(("--mode", "path", "--samples", 4096) if mode == "path" else ("--samples", 512)))
+            far = json.loads(run("compare", self.path("merged.exr"), self.path("truth.exr"), "--json").stdout)
+            self.assertLessEqual(far["metrics"]["E"], 1.05 * float(said["tyndall:errorBound"]), mode)
+        counts = self.path("plan.counts")
+        counts.write_bytes(counts.read_bytes()[:-1] + b"\1")
+        self.refuse(3, ["plan.counts", "damaged"], "render", "--plan", self.path("plan.json"), "-o", self.path("x.exr"))
+
+    def test_a_missed_target_names_the_groups_that_are_lacking(self):
+        plan = self.plan("--target-error", 0.05, "--groups", 4)
+        planned = json.loads(plan.read_text())
+        planned["target"]["error"] = 0.02  # further than it was planned for
+        plan.write_text(json.dumps(planned))
+        files = self.parts(plan, 2)
+        missed = run("merge", *files, "-o", self.path("merged.exr"))
+        self.assertEqual(missed.returncode, 1, missed.stderr)
+        self.assertTrue(self.path("merged.exr").exists())
+        more = re.search(r"lacks \d+ groups: tyndall render --plan \S+ -o \S+ --frames 1 --more (\d+)", missed.stderr)
+        self.assertTrue(more, missed.stderr)
+        self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--more", more[1], "-q")
+        self.merge(files + list(self.directory.glob("frame.groups-*")))
+        self.assertLessEqual(float(self.attributes("merged.exr")["tyndall:errorBound"]), 0.02)
+
     def test_what_does_not_belong_together_is_refused_by_name(self):
         plan = self.plan("--samples", 8)
         a, b, c = self.parts(plan, 3)
         out = self.path("merged.exr")
         self.refuse(3, [b, "holds samples that", "holds as well"], "merge", a, b, b, c, "-o", out)
-        self.refuse(3, [a, "a part is missing", "leaves"], "merge", a, c, "-o", out)
+        self.refuse(3, [a, "a part is missing beside 1/3", "leaf"], "merge", a, c, "-o", out)
         self.refuse(3, [b, "a part is missing"], "merge", c, b, "-o", out)
         self.refuse(3, [b, "a part is missing"], "merge", a, b, "-o", out)
 

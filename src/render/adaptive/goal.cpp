@@ -1,5 +1,7 @@
 #include "render/adaptive/goal.h"
+#include "base/clock.h"
 #include "modes/mode.h"
+#include "render/adaptive/orders.h"
 
 #include <algorithm>
 #include <cassert>
@@ -11,8 +13,9 @@ namespace tyndall {
 namespace {
 // Shares of the time that measuring may take.
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
-constexpr double truth_work_share = 0.2; // of the picture's work, where no time is given
-constexpr int truth_marches = 64;        // from so many nodes of a ray the truth marches to each light
+constexpr double truth_work_share = 0.2;  // of the picture's work, where no time is given
+constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
+constexpr int truth_marches = 64;         // from so many nodes of a ray the truth marches to each light
 
 // Whether a finer candidate is as wrong as the one before.
 bool gains_nothing(const Choice& next, const Choice& before) {
@@ -126,6 +129,26 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
 
 bool has_rivals(const Choice& choice, const Mode& mode) {
     return choice.scout && choice.scout->mode->name != mode.name;
+}
+
+double noise_target(const Choice& choice, double error) {
+    const double bound = choice.has_integrator ? choice.measured.integrator.bound : 0;
+    if (bound == 0) return error;
+    const double squared = error * error;
+    if (bound < squared) return std::sqrt(squared - bound);
+    return std::max(error * integrator_share, 0.1 * std::sqrt(bound));
+}
+
+std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
+                                         const Settings& settings, Goal& goal, const FrameOptions& options) {
+    if (!takes_fluence(mode, settings)) return {};
+    const double start = goal.clock ? goal.clock() : steady_seconds();
+    std::function<bool()> stop;
+    if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
+    const OrdersError orders =
+        goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
+    if (goal.error > 0) goal.error = error_beside(orders, goal.error).value_or(goal.error); // else it is missed
+    return orders;
 }
 
 bool leaves_room(const Choice& choice, double error) {

@@ -47,6 +47,14 @@ inline constexpr double integrator_share = 0.7;
 // Whether a mode's choice was made beside other modes, by what the first image of the main one shows.
 bool has_rivals(const Choice& choice, const Mode& mode);
 
+// What a choice's integrator leaves of an error for noise; where it leaves nothing, noise need not be smaller than a
+// tenth of it.
+double noise_target(const Choice& choice, double error);
+
+// How far light of several orders is off, where it is part of the image; the goal is left what that leaves of it.
+std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
+                                         const Settings& settings, Goal& goal, const FrameOptions& options);
+
 // Whether what samples do not remove leaves enough of the error wanted for noise.
 bool leaves_room(const Choice& choice, double error);
 

@@ -16,10 +16,9 @@ namespace {
 // Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
 // which show by then.
 constexpr double max_first_samples = 64;
-constexpr double max_check_share = 0.2;   // of the seconds there are
-constexpr double longest_seconds = 600;   // where none are given, and an error is far
-constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
-constexpr uint32_t max_checks = 3;        // of finished pictures; each but the last may ask for a finer candidate
+constexpr double max_check_share = 0.2; // of the seconds there are
+constexpr double longest_seconds = 600; // where none are given, and an error is far
+constexpr uint32_t max_checks = 3;      // of finished pictures; each but the last may ask for a finer candidate
 
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.
@@ -57,14 +56,7 @@ struct Rounds {
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
 
-    // What the integrator leaves of the error; where it leaves nothing, noise need not be smaller than a tenth of it.
-    double noise_target() const {
-        const double bound = choice && choice->has_integrator ? choice->measured.integrator.bound : 0;
-        if (bound == 0) return goal.error;
-        const double squared = goal.error * goal.error;
-        if (bound < squared) return std::sqrt(squared - bound);
-        return std::max(goal.error * integrator_share, 0.1 * std::sqrt(bound));
-    }
+    double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 
     // The view of so much work, and the work it is. What is allotted may come in parts.
     View round_view(double& work, int round, const AllottedPart* part) const {
@@ -339,28 +331,13 @@ void render_rounds(Rounds& rounds, const Rendering& rendering, double work, Laye
 }
 }
 
-namespace {
-// How far light of several orders is off, where it is part of the image; the goal is left what that leaves of it.
-std::optional<OrdersError> orders_for(const Mode& mode, const View& view, const Snapshot& snapshot,
-                                      const Settings& settings, Goal& goal, const FrameOptions& options) {
-    if (!takes_fluence(mode, settings)) return {};
-    const double start = goal.clock();
-    std::function<bool()> stop;
-    if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
-    const OrdersError orders =
-        goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
-    if (goal.error > 0) goal.error = error_beside(orders, goal.error).value_or(goal.error); // else it is missed
-    return orders;
-}
-}
-
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                         Goal goal, const FrameOptions& options, FrameStats& stats) {
     assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
     if (!goal.clock) goal.clock = steady_seconds;
     const double start = goal.clock();
     const bool is_timed = goal.seconds > 0;
-    const std::optional<OrdersError> orders = orders_for(mode, view, snapshot, settings, goal, options);
+    const std::optional<OrdersError> orders = orders_beside(mode, view, snapshot, settings, goal, options);
     Rounds rounds = rounds_of(mode, view, goal);
     rounds.start = start;
     Rendering rendering{mode, snapshot, options, settings, nullptr};

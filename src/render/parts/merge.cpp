@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "modes/mode.h"
+#include "render/adaptive/planned.h"
 #include "render/sequence/provenance.h"
 #include "render/sequence/sequence.h"
 #include "scene/scene.h"
@@ -92,13 +93,18 @@ MergedFrame merge_frame(std::vector<PartFile> files, int groups, const Scene& sc
     merged.layers =
         merge_parts(post ? view_before_post(view) : view, wants_layer(request, "halves"), parts, groups, merged.stats);
     parts.clear();
-    if (post) {
+    const PlannedError& planned = request.grouping.error;
+    LoadedFrame frame;
+    if (post || (planned.integrator && !planned.is_truth)) {
         RenderRequest of_frame = request;
         of_frame.frames = {view.frame};
-        const LoadedFrame frame = load_first_frame(scene, of_frame);
+        frame = load_first_frame(scene, of_frame);
+    }
+    if (post) {
         add_post(*plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, merged.stats);
         merged.stats.noise.reset();
     }
+    judge_planned(planned, *plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, {}, merged.stats);
     if (covered) std::ranges::fill(merged.layers.alpha.pixels, 1.0f);
     merged.provenance = provenance_of(scene, request, plan.plan, view, hash, merged.stats);
     return merged;

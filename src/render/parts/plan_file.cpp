@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "modes/mode.h"
 #include "plan_schema.h"
+#include "render/parts/counts_file.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int usual_groups = 8, max_leaves = 8;
+constexpr int max_leaves = 64; // of all groups
 
 Json settings_json(const Settings& settings) {
     JsonMembers members;
@@ -30,31 +31,52 @@ std::string scene_name(const std::filesystem::path& scene, const std::filesystem
     return absolute(scene).lexically_relative(absolute(plan).parent_path()).string();
 }
 
-Json plan_json(const std::filesystem::path& file, const Scene& scene, const SavedPlan& saved) {
+Json error_json(const Noise& error) { return std::vector{error.error, error.bound}; }
+
+// Where the error decides how many samples there are; writes the counts beside the plan.
+Json target_json(const std::filesystem::path& file, const Grouping& grouping) {
+    const std::filesystem::path counts = std::filesystem::path(file).replace_extension(".counts");
+    const PlannedError& planned = grouping.error;
+    JsonMembers members{{"error", planned.target},
+                        {"counts", counts.filename().string()},
+                        {"counts_hash", save_counts(counts, *grouping.counts)},
+                        {"truth", planned.is_truth}};
+    if (planned.integrator) {
+        members.emplace_back("candidate", planned.integrator->candidate);
+        members.emplace_back("integrator", error_json(planned.integrator->error));
+    }
+    if (planned.orders) {
+        members.emplace_back("orders", error_json(planned.orders->tiles));
+        members.emplace_back("orders_mean", planned.orders->mean);
+    }
+    return json_object(std::move(members));
+}
+
+JsonMembers plan_json(const std::filesystem::path& file, const Scene& scene, const SavedPlan& saved) {
     const RenderRequest& request = saved.request;
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     const ivec2 low = request.crop_low, high = request.crop_high;
-    return json_object({{"tyndall_plan", 1},
-                        {"version", TYNDALL_VERSION},
-                        {"build", saved.build},
-                        {"isa", request.isa},
-                        {"scene", scene_name(request.scene_file, file)},
-                        {"inputs", json_list(scene.inputs, [](const InputFile& input) { return Json(input.hash); })},
-                        {"frames", format_frames(request.frames)},
-                        {"mode", saved.plan.mode->name},
-                        {"quality", name_of(request.quality)},
-                        {"settings", settings_json(saved.plan.settings)},
-                        {"camera", request.camera},
-                        {"resolution", size},
-                        {"crop", std::vector{low.x, low.y, high.x, high.y}},
-                        {"seed", request.seed},
-                        {"missing", missing_frame_names[static_cast<size_t>(request.missing)]},
-                        {"light_units", light_unit_names[static_cast<size_t>(request.light_units)]},
-                        {"layers", json_list(request.exr.layers, [](const std::string& layer) { return Json(layer); })},
-                        {"float", request.exr.full_float},
-                        {"background", request.background},
-                        {"groups", request.grouping.groups},
-                        {"leaves", request.grouping.leaves}});
+    return {{"tyndall_plan", 1},
+            {"version", TYNDALL_VERSION},
+            {"build", saved.build},
+            {"isa", request.isa},
+            {"scene", scene_name(request.scene_file, file)},
+            {"inputs", json_list(scene.inputs, [](const InputFile& input) { return Json(input.hash); })},
+            {"frames", format_frames(request.frames)},
+            {"mode", saved.plan.mode->name},
+            {"quality", name_of(request.quality)},
+            {"settings", settings_json(saved.plan.settings)},
+            {"camera", request.camera},
+            {"resolution", size},
+            {"crop", std::vector{low.x, low.y, high.x, high.y}},
+            {"seed", request.seed},
+            {"missing", missing_frame_names[static_cast<size_t>(request.missing)]},
+            {"light_units", light_unit_names[static_cast<size_t>(request.light_units)]},
+            {"layers", json_list(request.exr.layers, [](const std::string& layer) { return Json(layer); })},
+            {"float", request.exr.full_float},
+            {"background", request.background},
+            {"groups", request.grouping.groups},
+            {"leaves", request.grouping.leaves}};
 }
 
 size_t index_in(const std::vector<std::string>& names, const std::string& name) {
@@ -62,6 +84,19 @@ size_t index_in(const std::vector<std::string>& names, const std::string& name) 
 }
 
 int integer(const Json& value) { return static_cast<int>(value.number); }
+
+void read_target(const Json& target, const std::filesystem::path& file, RenderRequest& request) {
+    const auto error_of = [](const Json& pair) { return Noise{pair.items[0].number, pair.items[1].number}; };
+    PlannedError& planned = request.grouping.error;
+    planned.target = request.target_error = target.number_or("error", 0),
+    planned.is_truth = target.boolean_or("truth", false);
+    if (const Json* integrator = target.find("integrator"))
+        planned.integrator = {error_of(*integrator), target.string_or("candidate", ""), request.settings};
+    if (const Json* orders = target.find("orders"))
+        planned.orders = OrdersError{target.number_or("orders_mean", 0), error_of(*orders)};
+    request.grouping.counts =
+        load_counts(file.parent_path() / target.string_or("counts", ""), target.string_or("counts_hash", ""));
+}
 
 RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     RenderRequest request;
@@ -106,12 +141,17 @@ RenderRequest checked_request(const Json& json, const std::filesystem::path& fil
 }
 }
 
-Grouping grouping_of(int& samples) {
+int leaves_for(int groups, double samples) {
+    const int most = std::max(static_cast<int>(std::min(samples, 1.0 * max_leaves)) / groups, 1);
+    return static_cast<int>(std::bit_floor(static_cast<unsigned>(most)));
+}
+
+Grouping grouping_of(int& samples, int groups) {
     Grouping grouping;
-    grouping.groups = std::min(samples, usual_groups);
+    grouping.groups = std::min(samples, groups);
     const int of_group = (samples + grouping.groups - 1) / grouping.groups;
     samples = of_group * grouping.groups;
-    grouping.leaves = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::min(of_group, max_leaves))));
+    grouping.leaves = leaves_for(grouping.groups, samples);
     return grouping;
 }
 
@@ -121,7 +161,9 @@ std::string build_name() {
 }
 
 void save_plan(const std::filesystem::path& file, const Scene& scene, const SavedPlan& plan) {
-    write_file_atomically(file, format_json(plan_json(file, scene, plan)) + "\n");
+    JsonMembers members = plan_json(file, scene, plan);
+    if (plan.request.grouping.counts) members.emplace_back("target", target_json(file, plan.request.grouping));
+    write_file_atomically(file, json_line(std::move(members)));
 }
 
 SavedPlan load_plan(const std::filesystem::path& file) {
@@ -129,6 +171,7 @@ SavedPlan load_plan(const std::filesystem::path& file) {
     const Json json = parse_json(text, file.string());
     check_schema(json, plan_schema, file.string());
     SavedPlan plan{checked_request(json, file), {}, {}, json.string_or("build", "")};
+    if (const Json* target = json.find("target")) read_target(*target, file, plan.request);
     if (const std::string version = json.string_or("version", ""); version != TYNDALL_VERSION)
         refuse(file.string() + ": /version",
                "made by Tyndall " + printable(version, 20) + "; this is " TYNDALL_VERSION);

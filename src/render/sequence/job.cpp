@@ -77,7 +77,9 @@ RenderPlan plan_as_asked(const RenderRequest& request) {
     return {&find_mode(request.mode), request.settings, {}, {}, {}, {}};
 }
 
-bool has_goal(const RenderRequest& request) { return request.target_error > 0 || request.time_budget > 0; }
+bool has_goal(const RenderRequest& request) {
+    return request.grouping.groups == 0 && (request.target_error > 0 || request.time_budget > 0);
+}
 
 bool measures_noise(const RenderRequest& request) {
     return wants_layer(request, "variance") || wants_layer(request, "halves");

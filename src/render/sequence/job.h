@@ -1,6 +1,7 @@
 // Frames to be rendered to files: what is asked for, and what is decided for it. What comes out is a RenderReport.
 #pragma once
 #include "modes/settings.h"
+#include "render/adaptive/planned_error.h"
 #include "render/frame/layers.h"
 #include "render/image/exr.h"
 #include "render/image/view_transform.h"
@@ -30,6 +31,7 @@ struct Grouping {
     std::filesystem::path plan_file;
     int part = 0, parts = 0; // counted from 1; 0 = all of them in one run
     int more = 0;            // groups beyond the plan's, instead of its own
+    PlannedError error{};
 };
 inline bool is_part(const Grouping& grouping) { return grouping.parts > 0; }
 

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "modes/history.h"
 #include "modes/mode.h"
+#include "render/adaptive/planned.h"
 #include "render/adaptive/to_target.h"
 #include "render/image/png.h"
 #include "render/parts/part_file.h"
@@ -254,6 +255,9 @@ void render(Pipeline& pipeline, Work& work) {
             work.layers = render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats);
         else
             work.layers = render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
+        if (!is_part(request.grouping))
+            judge_planned(request.grouping.error, *plan.mode, work.view, work.snapshot, plan.settings, work.layers,
+                          options, stats);
         if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);

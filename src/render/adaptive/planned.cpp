@@ -1,0 +1,147 @@
+#include "render/adaptive/planned.h"
+
+#include "base/clock.h"
+#include "base/random.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "trace/view.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int pilot_samples = 8;        // per pixel, each with random numbers of its own
+constexpr uint32_t max_checks = 3;      // of the candidate; each but the last may ask for a finer one
+constexpr uint32_t image_check = 1;     // the tiles of a finished image; those of checks beforehand follow it
+constexpr uint32_t use_pilot = 0x9170u; // none of the frame's samples may be those that it was planned by
+
+FrameOptions without_report(const FrameOptions& options) {
+    FrameOptions result = options;
+    result.halves = false, result.progress = nullptr, result.forecast = nullptr;
+    return result;
+}
+
+std::shared_ptr<const TileFactors> counts_of(const Allotment& allotment, int groups) {
+    auto counts =
+        std::make_shared<TileFactors>(TileFactors{allotment.low, Image<uint16_t>(allotment.samples.size, uint16_t{1})});
+    for (size_t i = 0; i < allotment.samples.pixels.size(); ++i)
+        counts->factors.pixels[i] = static_cast<uint16_t>(
+            std::clamp(std::ceil(allotment.samples.pixels[i] / static_cast<float>(groups)), 1.0f, 65535.0f));
+    return counts;
+}
+
+// The frame's view with as many samples everywhere.
+View even_frame(const View& view) {
+    View even = even_view(view, 1, 1);
+    even.leaves = 0, even.allotted = nullptr;
+    return even;
+}
+
+struct PilotImage {
+    Layers layers;
+    FrameStats stats;
+};
+
+// By the candidate, where there is one.
+PilotImage pilot_image(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                       const std::optional<Choice>& choice, const FrameOptions& options) {
+    View even = even_view(even_frame(view), pilot_samples, pilot_samples);
+    even.seed = hash(view.seed, use_pilot);
+    FrameOptions prepared = options;
+    if (choice) prepared.prepared = choice->measured.prepared;
+    PilotImage pilot;
+    pilot.layers =
+        render_frame(mode, even, snapshot, choice ? choice->candidate.settings : settings, prepared, pilot.stats);
+    return pilot;
+}
+
+void note_choice(const Choice& choice, PlannedSamples& planned) {
+    planned.settings = choice.candidate.settings, planned.error.is_truth = choice.is_truth;
+    const SquaredError& error = choice.measured.integrator;
+    if (choice.has_integrator)
+        planned.error.integrator = {
+            {std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, planned.settings};
+}
+
+double mean_of(const TileFactors& counts) {
+    double sum = 0;
+    for (const uint16_t count : counts.factors.pixels) sum += count;
+    return sum / static_cast<double>(counts.factors.pixels.size());
+}
+}
+
+PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                            const Goal& asked, const FrameOptions& given) {
+    const FrameOptions options = without_report(given);
+    Goal goal = asked;
+    if (!goal.clock) goal.clock = steady_seconds;
+    PlannedSamples planned{settings, nullptr, {goal.error, {}, false, {}}};
+    planned.error.orders = orders_beside(mode, view, snapshot, settings, goal, options);
+
+    std::optional<Choice> choice;
+    if (has_integrator(mode))
+        choice = goal.choice ? *goal.choice : choose(mode, view, snapshot, settings, goal, goal.clock(), options);
+    PilotImage pilot = pilot_image(mode, view, snapshot, settings, choice, options);
+    for (uint32_t check = 1; choice && check <= max_checks; ++check) {
+        const double noise = noise_target(*choice, goal.error);
+        const Choice after = checked(*choice, pilot.layers, {noise, noise, noise}, pilot_samples, infinity, mode,
+                                     even_frame(view), snapshot, settings, goal, image_check + check, options);
+        const bool finer = after.candidate.name != choice->candidate.name;
+        choice = after;
+        if (!finer) break;
+        pilot = pilot_image(mode, view, snapshot, settings, choice, options);
+    }
+    if (choice) note_choice(*choice, planned);
+    const double target = choice ? noise_target(*choice, goal.error) : goal.error;
+    const Layers& layers = pilot.layers;
+    const FrameStats& stats = pilot.stats;
+
+    // Noise falls fastest at first: half of the way as the choice says, half as 1 / n.
+    const double power = choice ? (1 + std::clamp(choice->power, 1.0, 1.5)) / 2 : 1;
+    const double pixels = static_cast<double>(layers.color.pixels.size());
+    const double sure = stats.noise->error > 0 ? stats.noise->settled / stats.noise->error : 1;
+    const Enough enough{std::pow(target / sure, 2) / 1.05, max_target_samples * pixels};
+    planned.counts = counts_of(allot(layers, pilot_samples, enough, power, view.batches), view.batches);
+    planned.samples = view.batches * mean_of(*planned.counts);
+    planned.seconds = stats.render_seconds / pilot_samples * planned.samples;
+    return planned;
+}
+
+namespace {
+Integrator checked_integrator(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
+                              const Settings& settings, const Layers& image, const Noise& noise,
+                              const FrameOptions& options) {
+    const Noise& before = planned.integrator->error;
+    Choice choice;
+    choice.candidate = {planned.integrator->candidate, settings}, choice.has_integrator = true;
+    choice.measured.integrator.value = before.error * before.error;
+    choice.measured.integrator.bound = before.bound * before.bound;
+    Goal goal{planned.target, infinity, Quality::preview}; // no finer candidate is looked for
+    goal.clock = steady_seconds;
+    View even = even_view(view, 1, 1);
+    even.leaves = 0, even.allotted = nullptr;
+    constexpr uint32_t salt = 1;
+    const Choice after =
+        checked(choice, image, noise, 1, infinity, mode, even, snapshot, settings, goal, salt, options);
+    const SquaredError& error = after.measured.integrator;
+    return {{std::sqrt(error.value), std::sqrt(error.bound)}, planned.integrator->candidate, settings};
+}
+}
+
+void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
+                   const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
+    if (planned.target == 0 || !stats.noise) return;
+    stats.orders = planned.orders, stats.integrator = planned.integrator;
+    if (planned.integrator && !planned.is_truth)
+        stats.integrator =
+            checked_integrator(planned, mode, view, snapshot, settings, image, *stats.noise, without_report(options));
+}
+
+double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups) {
+    if (planned.target == 0 || !stats.noise || stats.error()->bound <= planned.target) return 0;
+    const double all = stats.error()->bound, noise = stats.noise->bound;
+    const double left = planned.target * planned.target - (all * all - noise * noise);
+    if (!(left > 0)) return infinity;
+    return std::max(std::ceil(1.05 * groups * noise * noise / left) - groups, 1.0);
+}
+}
