@@ -247,8 +247,10 @@ std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
 
 // By a plan, or as the command line alone says.
 std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional<SavedPlan>& plan) {
+    if (texts.scene.empty() && texts.plan.empty())
+        fail(ExitCode::usage, "SCENE", "a scene file or --plan is required (tyndall render --help)");
+    if (texts.output.empty()) fail(ExitCode::usage, "--output", "is required (tyndall render --help)");
     if (!texts.plan.empty()) return {planned_request(texts, plan.emplace())};
-    if (texts.scene.empty()) fail(ExitCode::usage, "SCENE", "a scene file or --plan is required");
     for (const auto& [name, text] : {std::pair{"--part", &texts.part}, {"--more", &texts.more}})
         if (!text->empty()) fail(ExitCode::usage, name, "needs --plan");
     return make_requests(texts);
