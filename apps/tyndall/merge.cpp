@@ -52,7 +52,7 @@ bool say_lacking(const SavedPlan& plan, const FrameStats& stats, int groups, int
     const int planned = plan.request.grouping.groups;
     say(place + formatted("lacks %g groups: tyndall render --plan ", lacking) +
         quoted_for_shell(plan.request.grouping.plan_file.string()) + " -o " + quoted_for_shell(file) +
-        formatted(" --frames %d --more %g", frame, lacking + groups - planned));
+        formatted(" --frames %d --more %g", frame, lacking) + (groups > planned ? formatted("@%d", groups) : ""));
     return true;
 }
 

@@ -198,7 +198,10 @@ void add_shares(const Command& command, RenderOptions& texts) {
            "part i of N of each frame's samples, into an EXR part beside the frame;\n"
            "tyndall merge puts parts together",
            "i/N");
-    option("--more", texts.more, "so many groups of samples beyond those of the plan, as parts", "M");
+    option("--more", texts.more,
+           "M groups of samples beyond those of the plan, as parts; M@G: beyond the first\n"
+           "G groups, where some were added before",
+           "M[@G]");
 }
 }
 
@@ -346,7 +349,12 @@ RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
     Grouping& grouping = request.grouping;
     if (!texts.part.empty()) read_part_option(texts.part, grouping);
     if (!texts.more.empty()) {
-        grouping.more = static_cast<int>(integer_option("--more", texts.more, 1, 1 << 16));
+        const size_t at = texts.more.find('@');
+        grouping.more = static_cast<int>(integer_option("--more", texts.more.substr(0, at), 1, 1 << 16));
+        grouping.after = grouping.groups;
+        if (at != texts.more.npos)
+            grouping.after =
+                static_cast<int>(integer_option("--more", texts.more.substr(at + 1), grouping.groups, 1 << 20));
         if (texts.part.empty()) grouping.part = grouping.parts = 1;
     }
     if (is_part(grouping) && texts.png) fail(ExitCode::usage, "--png", "a part is no image: merge shows it");

@@ -107,15 +107,15 @@ void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
 }
 
 PartRange range_of(const Grouping& grouping, const Mode& mode, const View& view) {
-    const bool more = grouping.more > 0;
-    return part_range(grouping.part, grouping.parts, more ? grouping.groups : 0, more ? grouping.more : grouping.groups,
-                      grouping.leaves, count_blocks(mode, view));
+    return part_range(grouping.part, grouping.parts, grouping.after,
+                      grouping.more > 0 ? grouping.more : grouping.groups, grouping.leaves, count_blocks(mode, view));
 }
 
 std::string part_name(const std::string& frame_file, const Grouping& grouping) {
     const int digits = static_cast<int>(std::to_string(grouping.parts).size());
     std::string word = formatted("part-%0*d-of-%d", digits, grouping.part, grouping.parts);
-    if (grouping.more > 0) word = formatted("groups-%d-more.", grouping.more) + word;
+    if (grouping.more > 0)
+        word = formatted("groups-%d-to-%d.", grouping.after + 1, grouping.after + grouping.more) + word;
     return std::filesystem::path(frame_file).replace_extension(word + ".exr").string();
 }
 

@@ -30,7 +30,7 @@ struct Grouping {
     std::string plan_hash;
     std::filesystem::path plan_file;
     int part = 0, parts = 0; // counted from 1; 0 = all of them in one run
-    int more = 0;            // groups beyond the plan's, instead of its own
+    int more = 0, after = 0; // so many groups beyond the first so many, instead of the plan's own
     PlannedError error{};
 };
 inline bool is_part(const Grouping& grouping) { return grouping.parts > 0; }
