@@ -40,20 +40,16 @@ Json frame_json(int frame, const std::string& file, const FrameStats& stats, int
     return json_object(std::move(members));
 }
 
-// Whether a frame misses the plan's target; then says what gets there.
-bool say_lacking(const SavedPlan& plan, const FrameStats& stats, int groups, int frame, const std::string& file) {
-    const double lacking = groups_lacking(plan.request.grouping.error, stats, groups);
-    if (lacking == 0) return false;
+// How a frame that misses the plan's target gets there.
+void say_lacking(const SavedPlan& plan, double lacking, int groups, int frame, const std::string& file) {
     const std::string place = formatted("frame %d: ", frame);
-    if (lacking > 1e6) {
-        say(place + "more samples do not help: steps, maps or grids are too coarse; plan again with a finer quality");
-        return true;
-    }
+    if (lacking > 1e6)
+        return say(place +
+                   "more samples do not help: steps, maps or grids are too coarse; plan again with a finer quality");
     const int planned = plan.request.grouping.groups;
     say(place + formatted("lacks %g groups: tyndall render --plan ", lacking) +
         quoted_for_shell(plan.request.grouping.plan_file.string()) + " -o " + quoted_for_shell(file) +
         formatted(" --frames %d --more %g", frame, lacking) + (groups > planned ? formatted("@%d", groups) : ""));
-    return true;
 }
 
 int run_merge(const Options& texts, const Globals& globals) {
@@ -83,10 +79,11 @@ int run_merge(const Options& texts, const Globals& globals) {
         for (const PartFile& part : parts) merged.push_back(part.file);
         const MergedFrame result = merge_frame(std::move(parts), groups[frame], scene, plan);
         write_exr(file, result.layers, result.provenance, plan.request.exr);
-        if (texts.remove)
+        const double lacking = groups_lacking(plan.request.grouping.error, result.stats, groups[frame]);
+        if (lacking > 0 && !globals.quiet) say_lacking(plan, lacking, groups[frame], frame, file);
+        if (texts.remove && lacking == 0) // where more groups come, these parts are needed again
             for (const std::filesystem::path& part : merged) std::filesystem::remove(part);
-        non_finite += result.stats.non_finite;
-        missed += say_lacking(plan, result.stats, groups[frame], frame, file);
+        non_finite += result.stats.non_finite, missed += lacking > 0;
         reports.push_back(frame_json(frame, file, result.stats, groups[frame]));
         std::string noise;
         if (const auto error = result.stats.error())
@@ -115,7 +112,8 @@ Run add_merge(const Command& program) {
     command.option("-o,--output", texts->output, "files to write; #### stands for the frame number", "out.####.exr")
         .required();
     command.option("--plan", texts->plan, "the plan, where it is not where the parts were rendered by it", "FILE");
-    command.flag("--remove-parts", texts->remove, "remove the parts of a frame once it is written");
+    command.flag("--remove-parts", texts->remove,
+                 "remove the parts of a frame once it is written and\nmeets its target");
     command.footer("Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"
                    "Every sample has to be there exactly once: parts that are missing, doubled, damaged or of other\n"
                    "inputs end it with exit code 3 and the name of the file, and nothing is written.");

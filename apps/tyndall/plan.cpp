@@ -134,10 +134,11 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
 }
 
 // What stands in the way of a plan whose bits depend on nothing but it.
-void check_saved(const RenderOptions& texts) {
-    if (!texts.time_budget.empty())
+void check_saved(const Options& texts) {
+    if (!texts.frame.empty()) fail(ExitCode::usage, "--frame", "with --save the first of --frames is measured");
+    if (!texts.render.time_budget.empty())
         fail(ExitCode::usage, "--time-budget", "a saved plan does not go by the clock: use --samples");
-    if (!texts.history.empty())
+    if (!texts.render.history.empty())
         fail(ExitCode::usage, "--history", "planned frames are rendered one by one, without those before them");
 }
 
@@ -148,7 +149,7 @@ int groups_option(const Options& texts) {
 }
 
 int save_as_asked(const Options& texts, const Globals& globals) {
-    check_saved(texts.render);
+    check_saved(texts);
     const Mode& mode = find_mode(texts.render.mode, "--mode");
     const RenderRequest request = make_request(texts.render, mode);
     const Scene scene = load_scene(request.scene_file, load_options(texts.render));
@@ -160,11 +161,11 @@ int run_plan(const Options& texts, const Globals& globals) {
     if (texts.render.mode != automatic && texts.save.empty())
         fail(ExitCode::usage, "--mode", "a plan finds the mode by itself; with --save it can be given");
     if (texts.render.mode != automatic) return save_as_asked(texts, globals);
-    if (!texts.save.empty()) check_saved(texts.render);
+    if (!texts.save.empty()) check_saved(texts);
     RenderRequest request = make_request(texts.render, main_mode());
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(request.scene_file, options);
-    request.frames = {scene.first_frame};
+    request.frames = {request.frames.empty() ? scene.first_frame : request.frames[0]};
     if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");

@@ -118,11 +118,8 @@ Integrator checked_integrator(const PlannedError& planned, const Mode& mode, con
     choice.measured.integrator.bound = before.bound * before.bound;
     Goal goal{planned.target, infinity, Quality::preview}; // no finer candidate is looked for
     goal.clock = steady_seconds;
-    View even = even_view(view, 1, 1);
-    even.leaves = 0, even.allotted = nullptr;
-    constexpr uint32_t salt = 1;
-    const Choice after =
-        checked(choice, image, noise, 1, infinity, mode, even, snapshot, settings, goal, salt, options);
+    const Choice after = checked(choice, image, noise, 1, infinity, mode, even_frame(view), snapshot, settings, goal,
+                                 image_check, options);
     const SquaredError& error = after.measured.integrator;
     return {{std::sqrt(error.value), std::sqrt(error.bound)}, planned.integrator->candidate, settings};
 }

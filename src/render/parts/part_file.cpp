@@ -6,7 +6,9 @@
 #include "render/sequence/job.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <span>
 
 namespace tyndall {
 namespace {
@@ -91,7 +93,20 @@ const Image<float>& channel_of(const ExrFile& exr, const std::string& name, cons
     return *channel;
 }
 
+// Numbers of samples are whole, and no more are kept than taken.
+void check_counts(std::span<const float> sums, size_t numbers, const std::string& file) {
+    for (size_t at = 0; at < sums.size(); at += numbers) {
+        const float kept = sums[at + 13], taken = sums[at + 14];
+        const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
+        if (!(whole && kept >= 0 && kept <= taken && taken <= 1 << 24))
+            refuse(file, "damaged: it holds numbers of samples that cannot be");
+    }
+}
+
 void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
+    const int64_t leaves = (part.range.last - part.range.first) / part.range.slices;
+    if (leaves / part.leaves > static_cast<int64_t>(exr.channels.size()))
+        refuse(file, "damaged: it has fewer channels than tyndall:partRange asks for");
     part.nodes = nodes_of(part.range, part.leaves);
     part.numbers = fixed_sums;
     while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
@@ -101,6 +116,7 @@ void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
             const Image<float>& values = channel_of(exr, channel_name(node, k), file);
             for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
         }
+        check_counts(sums, part.numbers, file);
     }
     part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
 }
