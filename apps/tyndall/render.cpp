@@ -29,8 +29,9 @@
 
 namespace tyndall {
 namespace {
-void choose_frames(const Scene& scene, RenderRequest& request) {
+void choose_frames(const Scene& scene, const std::string& order, RenderRequest& request) {
     if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
+    if (order == "spread") request.frames = spread_frames(request.frames);
     check_pattern(request.output, ".exr", request.frames.size() > 1);
 }
 
@@ -260,6 +261,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     std::optional<SavedPlan> saved;
     std::vector<RenderRequest> requests = requests_of(texts, saved);
     const bool several = requests.size() > 1;
+    choice_among("--order", texts.order, {"listed", "spread"});
     const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
     if (!several && !texts.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
@@ -278,7 +280,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     if (saved) check_inputs(*saved, scene);
     stop_if_cancelled();
     for (RenderRequest& request : requests) {
-        choose_frames(scene, request);
+        choose_frames(scene, texts.order, request);
         places.check(request.output, request.frames);
         find_camera(scene, request.camera);
         check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);

@@ -180,6 +180,12 @@ void add_results(const Command& command, RenderOptions& texts) {
         .group(group);
     command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
     command
+        .option("--order", texts.order,
+                "of frames: listed (default), or spread: the first, the last, then the middle\n"
+                "of every gap, to see the whole shot early",
+                "WHAT")
+        .group(group);
+    command
         .option("--stats-json", texts.stats,
                 "write times and counts of every frame to a file; with several modes each\n"
                 "writes its own, FILE with the mode in its name",
@@ -202,6 +208,10 @@ void add_shares(const Command& command, RenderOptions& texts) {
            "M groups of samples beyond those of the plan, as parts; M@G: beyond the first\n"
            "G groups, where some were added before",
            "M[@G]");
+    option("--checkpoint", texts.checkpoint,
+           "with --part: keep what is rendered of it in a file every so many minutes\n"
+           "(default: 10) and when stopped by SIGTERM; --resume goes on from there",
+           "MINUTES");
 }
 }
 

@@ -4,8 +4,10 @@
 
 #include <charconv>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <unordered_set>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -121,6 +123,20 @@ std::vector<int> frames_between(int first, int last) {
     std::vector<int> frames;
     for (int frame = first; frame <= last; ++frame) frames.push_back(frame);
     return frames;
+}
+
+std::vector<int> spread_frames(const std::vector<int>& frames) {
+    if (frames.size() < 3) return frames;
+    std::vector<int> result{frames.front(), frames.back()};
+    std::deque<std::pair<size_t, size_t>> gaps{{0, frames.size() - 1}};
+    for (; !gaps.empty(); gaps.pop_front()) {
+        const auto [low, high] = gaps.front();
+        if (high - low < 2) continue;
+        const size_t middle = (low + high) / 2;
+        result.push_back(frames[middle]);
+        gaps.insert(gaps.end(), {{low, middle}, {middle, high}});
+    }
+    return result;
 }
 
 std::string format_frames(const std::vector<int>& frames) {

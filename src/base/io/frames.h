@@ -11,6 +11,10 @@ std::vector<int> parse_frames(std::string_view text);
 // All of them, first and last too.
 std::vector<int> frames_between(int first, int last);
 
+// The first, the last, then again and again the middle of what is left between two: whenever a render stops, what is
+// there is spread over the shot.
+std::vector<int> spread_frames(const std::vector<int>& frames);
+
 // "1-48", "1-9x2,20": the shortest way back.
 std::string format_frames(const std::vector<int>& frames);
 

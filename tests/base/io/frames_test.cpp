@@ -172,6 +172,18 @@ TEST(FramePattern, SignsAndLongNumbersAreKept) {
     EXPECT_EQ(frame_name("##", INT_MIN), "-2147483648");
 }
 
+TEST(Frames, SpreadLeavesNoGapLongerThanTheOneBefore) {
+    EXPECT_EQ(spread_frames({}), std::vector<int>());
+    EXPECT_EQ(spread_frames({7}), std::vector<int>{7});
+    EXPECT_EQ(spread_frames(frames_between(1, 9)), (std::vector<int>{1, 9, 5, 3, 7, 2, 4, 6, 8}));
+    EXPECT_EQ(spread_frames({40, 10, 30}), (std::vector<int>{40, 30, 10}));
+    for (const int count : {2, 3, 10, 97, 100}) {
+        std::vector<int> frames = spread_frames(frames_between(1001, 1000 + count));
+        std::ranges::sort(frames);
+        EXPECT_EQ(frames, frames_between(1001, 1000 + count));
+    }
+}
+
 TEST(FramePattern, WithoutAToken) {
     for (const char* pattern :
          {"a.exr", "", "a@.exr", "$HOME/a.exr", "$FPS.exr", "$Fold.exr", "$", "<UDIM>", "<F4", "<Fx>", "a<"}) {
