@@ -15,6 +15,7 @@ namespace tyndall {
 namespace {
 const double started = steady_seconds();
 std::atomic<const char*> remark_of_stop{""};
+std::atomic<unsigned> time_to_stop = 1;
 }
 
 double program_start() { return started; }
@@ -28,7 +29,8 @@ void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
 }
 
-void set_stop_remark(const char* remark) { remark_of_stop = remark; }
+void set_stop_remark(const char* remark, unsigned seconds) { remark_of_stop = remark, time_to_stop = seconds; }
+unsigned seconds_to_stop() { return time_to_stop; }
 const char* stop_remark() { return remark_of_stop; }
 
 int exit_code_of(const std::function<int()>& work) {
