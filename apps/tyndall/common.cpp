@@ -15,6 +15,7 @@ namespace tyndall {
 namespace {
 const double started = steady_seconds();
 std::atomic<const char*> remark_of_stop{""};
+bool openjd_hears = false;
 }
 
 double program_start() { return started; }
@@ -31,9 +32,12 @@ void stop_if_cancelled() {
 void set_stop_remark(const char* remark) { remark_of_stop = remark; }
 const char* stop_remark() { return remark_of_stop; }
 
+void report_failure_to_openjd(bool wanted) { openjd_hears = wanted; }
+
 int exit_code_of(const std::function<int()>& work) {
     const auto report = [](std::string_view text, ExitCode code) {
         say("error: " + printable(text, 480));
+        if (openjd_hears) std::printf("openjd_fail: %s\n", printable(text, 480).c_str());
         return static_cast<int>(code);
     };
     try {
