@@ -16,6 +16,7 @@ namespace {
 const double started = steady_seconds();
 std::atomic<const char*> remark_of_stop{""};
 std::atomic<unsigned> time_to_stop = 1;
+bool openjd_hears = false;
 }
 
 double program_start() { return started; }
@@ -33,9 +34,12 @@ void set_stop_remark(const char* remark, unsigned seconds) { remark_of_stop = re
 unsigned seconds_to_stop() { return time_to_stop; }
 const char* stop_remark() { return remark_of_stop; }
 
+void report_failure_to_openjd(bool wanted) { openjd_hears = wanted; }
+
 int exit_code_of(const std::function<int()>& work) {
     const auto report = [](std::string_view text, ExitCode code) {
         say("error: " + printable(text, 480));
+        if (openjd_hears) std::printf("openjd_fail: %s\n", printable(text, 480).c_str());
         return static_cast<int>(code);
     };
     try {

@@ -30,6 +30,8 @@ Run add_check(const Command& program);
 Run add_modes(const Command& program);
 Run add_compare(const Command& program);
 Run add_merge(const Command& program);
+Run add_submit(const Command& program);
+Run add_status(const Command& program);
 Run add_verify(const Command& program);
 Run add_plan(const Command& program);
 Run add_explain(const Command& program);
@@ -56,6 +58,9 @@ const char* stop_remark();  // empty where nothing is kept
 // Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
 // that a signal has caused.
 int exit_code_of(const std::function<int()>& work);
+
+// Whether an error also becomes an openjd_fail line on stdout.
+void report_failure_to_openjd(bool wanted);
 
 // One line for people on stderr; foreign text in it has to be printable already.
 void say(std::string_view line);

@@ -77,8 +77,9 @@ void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
         .group(global_group);
     program
         .option("--progress", texts.progress,
-                "how progress is shown: alf (ALF_PROGRESS lines for render farms), json,\n"
-                "bar, none (default: bar on a terminal, alf elsewhere)",
+                "how progress is shown: alf (ALF_PROGRESS lines for render farms), openjd\n"
+                "(for Open Job Description), json, bar, none (default: bar on a terminal,\n"
+                "alf elsewhere)",
                 "STYLE")
         .group(global_group);
     program.flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr").group(global_group);
@@ -88,12 +89,13 @@ void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
 }
 
 void apply_globals(Globals& globals, const GlobalTexts& texts) {
-    const std::vector<std::string> styles{"alf", "json", "bar", "none"};
-    constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::json, ProgressStyle::bar,
-                                        ProgressStyle::none};
+    const std::vector<std::string> styles{"alf", "openjd", "json", "bar", "none"};
+    constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::openjd, ProgressStyle::json,
+                                        ProgressStyle::bar, ProgressStyle::none};
     if (!texts.progress.empty()) globals.progress = values[choice_among("--progress", texts.progress, styles)];
     if (globals.quiet && (texts.progress.empty() || globals.progress == ProgressStyle::none))
         globals.progress = ProgressStyle::silent;
+    report_failure_to_openjd(globals.progress == ProgressStyle::openjd);
     set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
     if (globals.verbose && !globals.quiet) say(formatted("threads: %d", thread_count()));
 }
@@ -106,10 +108,10 @@ int run(int argc, char** argv) {
     Globals globals;
     GlobalTexts texts;
     add_globals(program, globals, texts);
-    const std::vector<Run> commands{add_bake(program),  add_render(program),  add_info(program),   add_check(program),
-                                    add_modes(program), add_compare(program), add_verify(program), add_plan(program),
-                                    add_merge(program), add_explain(program), add_stress(program), add_chart(program),
-                                    add_view(program)};
+    const std::vector<Run> commands{
+        add_bake(program),    add_render(program),  add_info(program),   add_check(program), add_modes(program),
+        add_compare(program), add_verify(program),  add_plan(program),   add_merge(program), add_submit(program),
+        add_status(program),  add_explain(program), add_stress(program), add_chart(program), add_view(program)};
     program.end_every_footer("\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
     if (!program.read(argc, argv)) return 0;
     apply_globals(globals, texts);

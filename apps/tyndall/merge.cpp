@@ -20,9 +20,28 @@ namespace tyndall {
 namespace {
 struct Options {
     std::vector<std::string> parts;
-    std::string output, plan, wait;
+    std::string output, plan, wait, count, frames;
     bool remove = false, partial = false;
 };
+
+// The files that PARTS name: they themselves, or all parts of frames with those names.
+std::vector<std::string> files_of(const Options& texts) {
+    if (texts.count.empty()) {
+        if (!texts.frames.empty()) fail(ExitCode::usage, "--frames", "needs --parts");
+        return texts.parts;
+    }
+    Grouping grouping;
+    grouping.parts = static_cast<int>(integer_option("--parts", texts.count, 1, 1 << 16));
+    std::vector<std::string> files;
+    for (const std::string& pattern : texts.parts) {
+        if (has_frame_token(pattern) == texts.frames.empty())
+            fail(ExitCode::usage, "--frames", "goes with a name that has #### in it, and the other way round");
+        for (const int frame : texts.frames.empty() ? std::vector{0} : parse_frames(texts.frames))
+            for (grouping.part = 1; grouping.part <= grouping.parts; ++grouping.part)
+                files.push_back(part_name(frame_name(pattern, frame), grouping));
+    }
+    return files;
+}
 
 // Those of the files that are there, at once or within so many seconds: some file systems show new files late.
 std::vector<std::string> found(std::vector<std::string> names, double seconds, bool all) {
@@ -139,7 +158,7 @@ int outcome(const Merge& merge) {
 int run_merge(const Options& texts, const Globals& globals) {
     check_pattern(texts.output, ".exr", false);
     const double wait = texts.wait.empty() ? 0 : number_option("--wait", texts.wait, 0, 86400);
-    const std::vector<std::string> names = found(texts.parts, wait, !texts.partial);
+    const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
     if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, nor any other part");
     std::map<int, std::vector<PartFile>> frames = read_parts(names);
     if (frames.size() > 1) check_pattern(texts.output, ".exr", true);
@@ -172,6 +191,10 @@ Run add_merge(const Command& program) {
     command.options("PARTS", texts->parts, "EXR parts that tyndall render --plan ... --part i/N wrote", "").required();
     command.option("-o,--output", texts->output, "files to write; #### stands for the frame number", "out.####.exr")
         .required();
+    command.option("--parts", texts->count, "how many parts a frame has: PARTS are then names that render -o was given",
+                   "N");
+    command.option("--frames", texts->frames, "with --parts: the frames whose parts are meant, where names have ####",
+                   "RANGE");
     command.option("--plan", texts->plan, "the plan, where it is not where the parts were rendered by it", "FILE");
     command.option("--wait", texts->wait,
                    "wait for parts that are named and not there yet, so many seconds at most: a\n"
@@ -183,6 +206,8 @@ Run add_merge(const Command& program) {
     command.flag("--remove-parts", texts->remove,
                  "remove the parts of a frame once it is written and\nmeets its target");
     command.footer("Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"
+                   "Frames with all their parts: tyndall merge out/window.####.exr --parts 8 --frames 1-24 -o "
+                   "out/window.####.exr\n"
                    "Every sample has to be there exactly once: parts that are missing, doubled, damaged or of other\n"
                    "inputs end it with exit code 3 and the name of the file, and nothing is written.");
     return [texts](const Globals& globals) { return run_merge(*texts, globals); };

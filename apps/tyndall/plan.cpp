@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
+#include "plan_as_asked.h"
 #include "render/adaptive/planned.h"
 #include "render/parts/plan_file.h"
 #include "render/sequence/provenance.h"
@@ -149,7 +150,6 @@ int groups_option(const Options& texts) {
 }
 
 int save_as_asked(const Options& texts, const Globals& globals) {
-    check_saved(texts);
     const Mode& mode = find_mode(texts.render.mode, "--mode");
     const RenderRequest request = make_request(texts.render, mode);
     const Scene scene = load_scene(request.scene_file, load_options(texts.render));
@@ -160,8 +160,8 @@ int save_as_asked(const Options& texts, const Globals& globals) {
 int run_plan(const Options& texts, const Globals& globals) {
     if (texts.render.mode != automatic && texts.save.empty())
         fail(ExitCode::usage, "--mode", "a plan finds the mode by itself; with --save it can be given");
-    if (texts.render.mode != automatic) return save_as_asked(texts, globals);
     if (!texts.save.empty()) check_saved(texts);
+    if (texts.render.mode != automatic) return save_as_asked(texts, globals);
     RenderRequest request = make_request(texts.render, main_mode());
     const LoadOptions options = load_options(texts.render);
     const Scene scene = load_scene(request.scene_file, options);
@@ -201,6 +201,25 @@ int run_plan(const Options& texts, const Globals& globals) {
 }
 }
 
+void check_for_plan(const RenderOptions& render, const std::string& groups) {
+    const Options texts{render, {}, {}, groups};
+    check_saved(texts);
+    groups_option(texts);
+    make_request(render, render.mode == automatic ? main_mode() : find_mode(render.mode, "--mode"));
+}
+
+int save_plan_as_asked(const RenderOptions& render, const std::string& groups, const std::string& file,
+                       const Globals& globals) {
+    return save_as_asked({render, {}, file, groups}, globals);
+}
+
+void add_groups_option(const Command& command, std::string& groups) {
+    command.option("--groups", groups,
+                   "how many groups of samples, each scrambled by itself: more of them tell noise\n"
+                   "better, fewer have less of it (default: 8 for an error that is wanted, else 2)",
+                   "K");
+}
+
 Run add_plan(const Command& program) {
     const Command command = program.command("plan", "which model a scene needs at an error or in a time, and why");
     auto texts = std::make_shared<Options>();
@@ -208,11 +227,7 @@ Run add_plan(const Command& program) {
     render.mode = automatic, render.output = "out.####.exr";
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
     command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
-    command.option("--groups", texts->groups,
-                   "with --save: how many groups of samples, each scrambled by itself: more of them\n"
-                   "tell noise better, fewer have less of it (default: 8 for an error that is wanted,\n"
-                   "else 2)",
-                   "K");
+    add_groups_option(command, texts->groups);
     command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");
     command.option("--mode", render.mode, "with --save: a mode, instead of the one that is found", "NAME");
     add_planned_options(command, render);

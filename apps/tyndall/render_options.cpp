@@ -61,7 +61,7 @@ void check_samples(const RenderRequest& request, const Mode& mode) {
 
 void add_what(const Command& command, RenderOptions& texts) {
     command.option("--frames", texts.frames,
-                   "frames to render: 1-48, 1-48x2 (every second), 1,5,9\n"
+                   "frames to render: 1-48, 1-48x2 or 1-48:2 (every second), 1,5,9\n"
                    "(default: the scene's range)",
                    "RANGE");
     command.option("--camera", texts.camera, "camera by name (default: the scene's)", "NAME");
@@ -230,6 +230,24 @@ void add_planned_options(const Command& command, RenderOptions& texts) {
     add_what(command, texts);
     add_how(command, texts);
     add_layers(command, texts);
+}
+
+std::vector<std::string> planned_words(const RenderOptions& texts) {
+    const RenderOptions usual;
+    std::vector<std::string> words;
+    const auto add = [&](const char* name, std::string RenderOptions::*text) {
+        if (texts.*text != usual.*text) words.insert(words.end(), {name, texts.*text});
+    };
+    words.insert(words.end(), {"--mode", texts.mode});
+    add("--camera", &RenderOptions::camera), add("--res", &RenderOptions::resolution);
+    add("--crop", &RenderOptions::crop), add("--missing", &RenderOptions::missing);
+    add("--light-units", &RenderOptions::light_units), add("--quality", &RenderOptions::quality);
+    add("--samples", &RenderOptions::samples), add("--target-error", &RenderOptions::target_error);
+    add("--orders", &RenderOptions::orders), add("--seed", &RenderOptions::seed), add("--isa", &RenderOptions::isa);
+    add("--aov", &RenderOptions::aov), add("--background", &RenderOptions::background);
+    for (const std::string& setting : texts.settings) words.insert(words.end(), {"--set", setting});
+    if (texts.full_float) words.emplace_back("--float");
+    return words;
 }
 
 void check_crop(const RenderRequest& request, ivec2 picture) {

@@ -20,6 +20,9 @@ void add_render_options(const Command& command, RenderOptions& texts);
 // Those that a saved plan decides, but scene and mode.
 void add_planned_options(const Command& command, RenderOptions& texts);
 
+// Those again as words of a command line, with the mode, as far as they were given.
+std::vector<std::string> planned_words(const RenderOptions& texts);
+
 // The modes of an option: a name, several with commas between, or all. Throws Error (usage).
 std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text);
 

@@ -55,14 +55,14 @@ struct Range {
     int64_t count() const { return (last - first) / step + 1; }
 };
 
-// item := INT | INT '-' INT | INT '-' INT 'x' INT
+// item := INT | INT '-' INT | INT '-' INT ('x' | ':') INT
 Range parse_item(Reader& reader) {
     const size_t start = reader.column();
     const int64_t first = reader.integer("a frame number");
     if (!reader.take('-')) return {first, first, 1};
     const int64_t last = reader.integer("a frame number");
     const size_t step_column = reader.column();
-    if (!reader.take('x')) {
+    if (!reader.take('x') && !reader.take(':')) {
         if (last < first)
             reader.complain(start, "the range runs backwards; " + std::to_string(first) + "-" + std::to_string(last) +
                                        "x-1 counts down");
@@ -92,7 +92,7 @@ std::vector<int> parse_frames(std::string_view text) {
         }
     } while (reader.take(','));
     if (reader.at_end()) return frames;
-    if (reader.take(':')) reader.complain(reader.column() - 1, "use x for a step, as in 1-10x2");
+    if (reader.take(':')) reader.complain(reader.column() - 1, "expected FIRST-LAST before the step, as in 1-10x2");
     reader.complain(reader.column(), "unexpected '" + printable(reader.rest().substr(0, 1)) + "'; expected - x or ,");
 }
 

@@ -1,4 +1,4 @@
-// Frame ranges (1-10, 1-10x2, 1,5,9, -3-4) and numbered file names (####, %04d, $F4, @@@@, <F4>).
+// Frame ranges (1-10, 1-10x2 or 1-10:2, 1,5,9, -3-4) and numbered file names (####, %04d, $F4, @@@@, <F4>).
 #pragma once
 #include <string>
 #include <string_view>

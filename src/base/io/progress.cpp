@@ -84,6 +84,10 @@ void Progress::line(std::string_view text) {
     std::fflush(stream);
     std::fprintf(stderr, "%s\n", printable(text, 480).c_str());
     std::fflush(stderr);
+    if (style_ == ProgressStyle::openjd) {
+        std::fprintf(stream, "openjd_status: %s\n", printable(text, 480).c_str());
+        std::fflush(stream);
+    }
     if (drawn) print(true);
 }
 
@@ -122,6 +126,8 @@ void Progress::print(bool last) {
         std::fprintf(stream, "{\"what\":%s,\"progress\":%.4f,\"elapsed\":%.1f,\"left\":%s}\n",
                      quote_json(what_).c_str(), fraction, elapsed,
                      left >= 0 ? formatted("%.1f", left).c_str() : "null");
+    } else if (style_ == ProgressStyle::openjd) {
+        std::fprintf(stream, "openjd_progress: %d\n", percent);
     } else {
         std::fprintf(stream, "ALF_PROGRESS %d%%\n", percent);
     }

@@ -1,5 +1,6 @@
 // Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise. Where
-// only stderr is a terminal, as with "> report.txt", the bar is there.
+// only stderr is a terminal, as with "> report.txt", the bar is there. The style openjd is what Open Job Description
+// calls messages of an action: openjd_progress, and openjd_status for human lines.
 #pragma once
 #include <cstddef>
 #include <mutex>
@@ -7,7 +8,7 @@
 #include <string_view>
 
 namespace tyndall {
-enum class ProgressStyle { automatic, alf, json, bar, none, silent }; // silent: no finished frames either
+enum class ProgressStyle { automatic, alf, openjd, json, bar, none, silent }; // silent: no finished frames either
 
 // Thread-safe. `to_stderr` keeps stdout free for a report that programs read.
 class Progress {

@@ -1,0 +1,209 @@
+// tyndall submit: a job for a render farm, as files of its engine.
+#include "automatic.h"
+#include "plan_as_asked.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+#include "modes/mode.h"
+#include "render/farm/farm_status.h"
+#include "render/farm/inputs.h"
+#include "render/farm/openjd.h"
+#include "render/farm/slurm.h"
+#include "render/parts/part_file.h"
+#include "render/parts/plan_file.h"
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tyndall {
+namespace {
+struct Options {
+    RenderOptions render; // those that a plan takes; its output is the folder
+    std::string engine, groups, parts, chunk, cpus, memory, folder;
+    bool dry_run = false, run = false, remove_parts = false;
+};
+
+int number_or(const char* name, const std::string& text, int otherwise, int high) {
+    return text.empty() ? otherwise : static_cast<int>(integer_option(name, text, 1, high));
+}
+
+FarmJob job_of(const Options& texts, const Scene& scene) {
+    std::error_code ignored;
+    FarmJob job;
+    job.folder = std::filesystem::absolute(texts.folder).lexically_normal();
+    if (!job.folder.has_filename()) job.folder = job.folder.parent_path(); // out/ is out
+    job.engine = texts.engine;
+    job.program = std::filesystem::read_symlink("/proc/self/exe", ignored).string();
+    job.scene = std::filesystem::absolute(texts.render.scene).lexically_normal().string();
+    job.name = job_name_of(job.scene);
+    job.frames = texts.render.frames.empty() ? frames_between(scene.first_frame, scene.last_frame)
+                                             : parse_frames(texts.render.frames);
+    std::ranges::sort(job.frames);
+    job.parts = number_or("--parts", texts.parts, 1, 1 << 16);
+    job.chunk = number_or("--chunk", texts.chunk, 1, 1000000);
+    job.cpus = number_or("--cpus", texts.cpus, 0, 1024);
+    job.memory = number_or("--memory", texts.memory, 0, 1 << 30);
+    job.plan_for_each_frame = texts.render.mode == automatic || !texts.render.target_error.empty();
+    job.plan_options = planned_words(texts.render);
+    if (!texts.groups.empty()) job.plan_options.insert(job.plan_options.end(), {"--groups", texts.groups});
+    job.remove_parts = texts.remove_parts;
+    if (job.plan_for_each_frame && job.chunk > 1)
+        fail(ExitCode::usage, "--chunk", "with an error that is wanted each frame has a plan, and a task, of its own");
+    return job;
+}
+
+// What the folder gets beside job.json and the plan, in the order in which it is written.
+using FarmFiles = std::vector<std::pair<std::string, std::string>>;
+FarmFiles files_of(const FarmJob& job, const Scene& scene, const RenderRequest& request) {
+    if (job.engine == "slurm") return {{"task.sh", slurm_task_script(job)}, {"submit.sh", slurm_submit_script(job)}};
+    return {{"asset_references.yaml", openjd_asset_references(job, input_files(scene, job.frames, request.missing))},
+            {"template.json", openjd_template(job)}};
+}
+
+std::vector<std::string> run_words(const FarmJob& job) {
+    if (job.engine == "slurm") return {"bash", (job.folder / "submit.sh").string()};
+    return {"openjd", "run", (job.folder / "template.json").string(), "--step", "Merge", "--run-dependencies"};
+}
+
+std::string shell_text(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + quoted_for_shell(word);
+    return text;
+}
+
+// Waits for the engine's own program, whose output goes where ours does.
+void run(std::vector<std::string> words) {
+    std::vector<char*> pointers;
+    for (std::string& word : words) pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+    pid_t child = 0;
+    if (const int error = posix_spawnp(&child, pointers[0], nullptr, nullptr, pointers.data(), environ))
+        fail(ExitCode::unreadable, words[0], std::strerror(error));
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0)
+        if (errno != EINTR) fail(ExitCode::internal, words[0], std::strerror(errno));
+    if (status != 0)
+        fail(ExitCode::differs, words[0],
+             WIFEXITED(status) ? formatted("ended with exit code %d; the job's files are written", WEXITSTATUS(status))
+                               : formatted("was ended by signal %d; the job's files are written", WTERMSIG(status)));
+}
+
+// A job that is there already may be written again, but no other one over it.
+void check_folder(const FarmJob& job) {
+    const std::filesystem::path file = job.folder / "job.json";
+    std::error_code ignored;
+    if (std::filesystem::exists(file, ignored) && read_file(file) != job_text(job))
+        fail(ExitCode::usage, "--output",
+             printable(job.folder.string(), 200) + " holds another job: name another folder");
+}
+
+// Everything a part needs is in the plan by then: that it can be rendered shows before anything is handed over.
+void check_parts_of(const FarmJob& job, const Scene& scene) {
+    SavedPlan plan = load_plan(job.folder / "plan.json");
+    plan.request.grouping.parts = plan.request.grouping.part = job.parts;
+    range_of(plan.request.grouping, *plan.plan.mode,
+             view_of(scene, plan.request, plan.plan.settings, plan.request.frames[0]));
+}
+
+void write_job(const FarmJob& job, const FarmFiles& files, const Options& texts, const Scene& scene,
+               const Globals& globals) {
+    for (const char* name : {"parts", "frames", "logs", "plans"})
+        if (job.plan_for_each_frame || std::string_view(name) != "plans") check_output(job.folder / name / job.name);
+    if (!job.plan_for_each_frame) {
+        Globals quiet = globals;
+        quiet.quiet = true;
+        RenderOptions render = texts.render;
+        render.frames = format_frames(job.frames);
+        save_plan_as_asked(render, texts.groups, (job.folder / "plan.json").string(), quiet);
+        check_parts_of(job, scene);
+    }
+    for (const auto& [name, text] : files) write_file_atomically(job.folder / name, text);
+    save_job(job);
+}
+
+// The arrays of a job of which nothing is there yet, where its engine has such.
+std::string arrays_of_new(const FarmJob& job, const std::string& step) {
+    if (job.engine != "slurm") return {};
+    FarmStatus nothing;
+    for (const int frame : job.frames) {
+        FarmFrame& missing = nothing.frames.emplace_back(FarmFrame{frame, !job.plan_for_each_frame, false, {}});
+        for (int part = 1; part <= job.parts; ++part) missing.missing.push_back(part);
+    }
+    return joined(slurm_arrays(missing_tasks(job, nothing, step)), "\n");
+}
+
+void say_dry(const FarmJob& job, const FarmFiles& files) {
+    std::string report;
+    const auto add = [&](const std::string& name, const std::string& text) {
+        report += "--- " + printable((job.folder / name).string(), 400) + "\n" + text + "\n";
+    };
+    add("job.json", job_text(job));
+    for (const auto& [name, text] : files) add(name, text);
+    for (const char* step : {"plan", "parts", "merge"})
+        if (const std::string arrays = arrays_of_new(job, step); !arrays.empty())
+            report += formatted("--- tasks of %s: FIRST and --array\n", step) + arrays + "\n";
+    print_report(report + "--- to hand it over\n" + shell_text(run_words(job)) + "\n");
+}
+
+int run_submit(const Options& texts, const Globals& globals) {
+    choice_among("ENGINE", texts.engine, {"slurm", "openjd"});
+    if (texts.dry_run && texts.run) fail(ExitCode::usage, "--run", "does not go with --dry-run");
+    check_for_plan(texts.render, texts.groups);
+    const RenderRequest request = make_request(
+        texts.render, texts.render.mode == automatic ? main_mode() : find_mode(texts.render.mode, "--mode"));
+    const Scene scene = load_scene(request.scene_file, load_options(texts.render));
+    find_camera(scene, request.camera);
+    const FarmJob job = job_of(texts, scene);
+    check_folder(job);
+    const FarmFiles files = files_of(job, scene, request);
+    if (texts.dry_run) {
+        say_dry(job, files);
+        return 0;
+    }
+    write_job(job, files, texts, scene, globals);
+    if (!globals.quiet) {
+        say(printable(job.folder.string(), 300) + ": " + count_text(job.frames.size(), "frame") + " in " +
+            count_text(static_cast<uint64_t>(job.parts), "part") + ", " + job.engine);
+        say((texts.run ? "runs: " : "to hand it over: ") + printable(shell_text(run_words(job)), 400));
+    }
+    if (texts.run) run(run_words(job));
+    return 0;
+}
+}
+
+Run add_submit(const Command& program) {
+    const Command command = program.command("submit", "write a job for a render farm, and hand it over with --run");
+    auto texts = std::make_shared<Options>();
+    RenderOptions& render = texts->render;
+    render.output = "frames.####.exr"; // for the checks of a plan; files go to the folder
+    command.option("ENGINE", texts->engine, "slurm or openjd (Open Job Description: Deadline Cloud and others)", "")
+        .required();
+    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
+    command.option("-o,--output", texts->folder, "folder of the job: scripts, plan, parts, frames, logs", "FOLDER")
+        .required();
+    command.option("--parts", texts->parts, "parts of each frame (default: 1)", "N");
+    command.option("--chunk", texts->chunk, "frames of a task (default: 1)", "N");
+    command.option("--cpus", texts->cpus, "processors of a task (default: the engine's)", "N");
+    command.option("--memory", texts->memory, "memory of a task, MiB (default: the engine's)", "N");
+    command.flag("--remove-parts", texts->remove_parts, "remove the parts of a frame once it is merged");
+    command.flag("--dry-run", texts->dry_run, "print what would be written, and write nothing");
+    command.flag("--run", texts->run, "hand the job over: by sbatch, or to openjd run on this machine");
+    command.option("--mode", render.mode, "rendering technique (default: march), or auto: found for each frame",
+                   "NAME");
+    add_groups_option(command, texts->groups);
+    add_planned_options(command, render);
+    command.footer(
+        "Example: tyndall submit slurm scenes/window.json --frames 1-24 --parts 3 --samples 64 -o out/window\n"
+        "With --target-error, or --mode auto, tasks make a plan for each frame first. tyndall status FOLDER\n"
+        "tells what is finished, and how to render what is not.");
+    return [texts](const Globals& globals) { return run_submit(*texts, globals); };
+}
+}

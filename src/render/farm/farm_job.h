@@ -1,0 +1,43 @@
+// A job for a farm: the frames of a scene in parts, and the folder that holds all of it.
+//
+//   job.json               what was submitted
+//   plan.json              the plan, or plans/plan.FRAME.json where each frame has its own
+//   parts/NAME.####.part-i-of-N.exr
+//   frames/NAME.####.exr   merged
+//   logs/                  of the engine
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tyndall {
+struct FarmJob {
+    std::filesystem::path folder; // absolute
+    std::string engine;           // slurm or openjd
+    std::string program, scene;   // absolute
+    std::string name;             // of the frames
+    std::vector<int> frames;      // ascending
+    int parts = 1, chunk = 1;     // parts of a frame, frames of a task
+    int cpus = 0, memory = 0;     // of a task, MiB; 0 = left to the engine
+    bool plan_for_each_frame = false;
+    std::vector<std::string> plan_options; // words of tyndall plan, but for scene, frames and file
+    bool remove_parts = false;             // once merged
+};
+
+// Of a scene, as a name that shells, engines and frame patterns leave as it is.
+std::string job_name_of(const std::filesystem::path& scene);
+
+// Throws Error (unwritable).
+void save_job(const FarmJob& job);
+// Throws Error (unreadable, refused).
+FarmJob load_job(const std::filesystem::path& folder);
+std::string job_text(const FarmJob& job); // the content of job.json
+
+// Names within the folder; patterns have #### for the frame.
+std::string plan_name(const FarmJob& job, int frame);
+std::string part_pattern(const FarmJob& job);
+std::string frame_pattern(const FarmJob& job);
+
+// The frames of each task, in order.
+std::vector<std::vector<int>> chunks_of(const FarmJob& job);
+}

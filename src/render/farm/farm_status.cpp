@@ -1,0 +1,162 @@
+#include "render/farm/farm_status.h"
+
+#include "base/error.h"
+#include "base/io/file.h"
+#include "base/io/frames.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "render/farm/commands.h"
+#include "render/image/exr_glance.h"
+#include "render/parts/part_file.h"
+#include "render/sequence/job.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace tyndall {
+namespace {
+// What a part's header has to say.
+struct Expected {
+    std::string frame, part, plan_hash;
+};
+
+std::string text_of(const ExrGlance& glance, const char* name) {
+    const auto found = glance.texts.find(name);
+    return found == glance.texts.end() ? std::string() : found->second;
+}
+
+std::string disagreement(const ExrGlance& glance, const Expected& expected) {
+    if (text_of(glance, "imageCounter") != expected.frame) return "of another frame";
+    if (text_of(glance, "tyndall:part") != expected.part)
+        return expected.part.empty() ? "a part in the place of a frame" : "of another division into parts";
+    if (!expected.part.empty() && text_of(glance, "tyndall:planHash") != expected.plan_hash) return "of another plan";
+    return {};
+}
+
+// Everything there is to say against it; none where it can be used, "" where it is not there.
+std::optional<std::string> problem_of(const std::filesystem::path& file, const Expected& expected, bool verify) {
+    try {
+        const std::optional<ExrGlance> glance = glance_at_exr(file);
+        if (!glance) return "";
+        if (const std::string why = disagreement(*glance, expected); !why.empty()) return why;
+        if (verify && !expected.part.empty()) read_part(file);
+        if (verify && expected.part.empty() && !read_exr(file).is_unchanged)
+            return "damaged: its bytes are not those that were written";
+    } catch (const Error& error) {
+        const std::string what = error.what(), place = file.string() + ": ";
+        return what.starts_with(place) ? what.substr(place.size()) : what;
+    }
+    return {};
+}
+
+std::string hash_of_plan(const std::filesystem::path& file) {
+    std::error_code ignored;
+    return std::filesystem::exists(file, ignored) ? content_hash(read_file(file)) : std::string();
+}
+
+// One frame, and the files of it that are suspicious.
+FarmFrame look_at_frame(const FarmJob& job, int frame, const std::string& shared_plan, bool verify,
+                        std::vector<SuspectFile>& suspects) {
+    FarmFrame result{frame, true, false, {}};
+    Expected expected{std::to_string(frame), {}, shared_plan};
+    const auto usable = [&](const std::string& name) {
+        const std::optional<std::string> problem = problem_of(job.folder / name, expected, verify);
+        if (problem && !problem->empty()) suspects.push_back({name, *problem});
+        return !problem;
+    };
+    result.finished = usable(frame_name(frame_pattern(job), frame));
+    if (job.plan_for_each_frame) expected.plan_hash = hash_of_plan(job.folder / plan_name(job, frame));
+    result.planned = !expected.plan_hash.empty();
+    if (result.finished) return result;
+
+    Grouping grouping;
+    grouping.parts = job.parts;
+    const std::string pattern = frame_name(part_pattern(job), frame);
+    for (grouping.part = 1; grouping.part <= job.parts; ++grouping.part) {
+        expected.part = formatted("%d/%d", grouping.part, job.parts);
+        if (!usable(part_name(pattern, grouping))) result.missing.push_back(grouping.part);
+    }
+    return result;
+}
+
+// Files beside parts and frames that are none.
+void count_others(const FarmJob& job, FarmStatus& status) {
+    for (const char* folder : {"plans", "parts", "frames"}) {
+        std::error_code error;
+        for (std::filesystem::directory_iterator entry(job.folder / folder, error), end; !error && entry != end;
+             entry.increment(error)) {
+            const std::string name = entry->path().filename().string();
+            status.temporaries += name.starts_with('.') && name.ends_with(".tmp");
+            status.checkpoints += name.ends_with(".checkpoint");
+        }
+    }
+}
+
+std::string command_text(const FarmJob& job, const CommandWords& words) {
+    std::string text = quoted_for_shell(job.program);
+    for (const std::string& word : words) text += " " + quoted_for_shell(word);
+    return text;
+}
+}
+
+FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& cancel) {
+    FarmStatus status;
+    const std::string shared_plan =
+        job.plan_for_each_frame ? std::string() : content_hash(read_file(job.folder / "plan.json"));
+    status.frames.resize(job.frames.size());
+    std::vector<std::vector<SuspectFile>> suspects(job.frames.size());
+    parallel_for(static_cast<int64_t>(job.frames.size()), [&](int64_t i) {
+        const size_t index = static_cast<size_t>(i);
+        if (!cancel) status.frames[index] = look_at_frame(job, job.frames[index], shared_plan, verify, suspects[index]);
+    });
+    for (std::vector<SuspectFile>& some : suspects) std::ranges::move(some, std::back_inserter(status.suspects));
+    count_others(job, status);
+    return status;
+}
+
+std::vector<int> missing_tasks(const FarmJob& job, const FarmStatus& status, const std::string& step) {
+    std::vector<int> tasks;
+    for (size_t i = 0; i < status.frames.size(); ++i) {
+        const FarmFrame& frame = status.frames[i];
+        const int chunk = static_cast<int>(i) / job.chunk;
+        if (step == "plan" && !frame.planned && !frame.finished) tasks.push_back(chunk);
+        if (step == "merge" && !frame.finished) tasks.push_back(chunk);
+        if (step == "parts")
+            for (const int part : frame.missing) tasks.push_back(chunk * job.parts + part - 1);
+    }
+    std::ranges::sort(tasks);
+    tasks.erase(std::ranges::unique(tasks).begin(), tasks.end());
+    return tasks;
+}
+
+std::vector<std::string> missing_commands(const FarmJob& job, const FarmStatus& status) {
+    std::vector<std::string> commands;
+    CommandBlanks blanks{job.folder.string() + "/", job.scene, {}, {}};
+    // Frames that share a plan go together.
+    const auto add = [&](const std::vector<int>& frames, const auto& words) {
+        std::vector<std::string> ranges;
+        if (job.plan_for_each_frame)
+            for (const int frame : frames) ranges.push_back(std::to_string(frame));
+        else if (!frames.empty())
+            ranges.push_back(format_frames(frames));
+        for (const std::string& range : ranges) {
+            blanks.frames = range;
+            commands.push_back(command_text(job, words(job, blanks)));
+        }
+    };
+    const auto frames_where = [&](const auto& is_meant) {
+        std::vector<int> frames;
+        for (const FarmFrame& frame : status.frames)
+            if (!frame.finished && is_meant(frame)) frames.push_back(frame.frame);
+        return frames;
+    };
+    if (job.plan_for_each_frame) add(frames_where([](const FarmFrame& frame) { return !frame.planned; }), plan_words);
+    for (int part = 1; part <= job.parts; ++part) {
+        blanks.part = std::to_string(part);
+        add(frames_where([&](const FarmFrame& frame) { return std::ranges::count(frame.missing, part) > 0; }),
+            render_words);
+    }
+    add(frames_where([](const FarmFrame&) { return true; }), merge_words);
+    return commands;
+}
+}
