@@ -2,14 +2,12 @@
 // of thousands of files take a second.
 #pragma once
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 
 namespace tyndall {
 struct ExrGlance {
-    std::map<std::string, std::string> texts; // attributes that are strings or whole numbers
-    uint64_t bytes = 0;
+    std::string frame, part, plan_hash; // imageCounter, tyndall:part and tyndall:planHash; empty where there is none
 };
 
 // None where there is no file. Throws Error (unreadable, refused): no EXR of scanlines, or one that does not end where
