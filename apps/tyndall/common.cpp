@@ -15,6 +15,7 @@ namespace tyndall {
 namespace {
 const double started = steady_seconds();
 std::atomic<const char*> remark_of_stop{""};
+std::atomic<unsigned> time_to_stop = 1;
 bool openjd_hears = false;
 }
 
@@ -29,7 +30,8 @@ void stop_if_cancelled() {
     if (cancel_flag()) fail(ExitCode::internal, "", "stopped");
 }
 
-void set_stop_remark(const char* remark) { remark_of_stop = remark; }
+void set_stop_remark(const char* remark, unsigned seconds) { remark_of_stop = remark, time_to_stop = seconds; }
+unsigned seconds_to_stop() { return time_to_stop; }
 const char* stop_remark() { return remark_of_stop; }
 
 void report_failure_to_openjd(bool wanted) { openjd_hears = wanted; }

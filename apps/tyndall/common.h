@@ -51,8 +51,9 @@ std::atomic<bool>& cancel_flag();
 void stop_if_cancelled();
 
 // What the line about a stop adds for this command: what is kept, and how to go on. A text that lives on.
-void set_stop_remark(const char* remark);
-const char* stop_remark(); // empty where nothing is kept
+void set_stop_remark(const char* remark, unsigned seconds_to_stop = 1);
+unsigned seconds_to_stop(); // after a signal; then the process ends as it stands
+const char* stop_remark();  // empty where nothing is kept
 
 // Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
 // that a signal has caused.

@@ -15,14 +15,13 @@
 namespace tyndall {
 namespace {
 volatile std::sig_atomic_t stop_signal = 0;
-constexpr unsigned seconds_to_stop = 1; // after a signal; then the process ends as it stands
 
 // The first signal asks the work to stop, the second one ends the process at once.
 extern "C" void on_stop(int signal) {
     if (stop_signal) _exit(128 + signal);
     stop_signal = signal;
     cancel_flag() = true;
-    alarm(seconds_to_stop);
+    alarm(seconds_to_stop());
 }
 
 // The work did not stop in time. What it was writing keeps its temporary name, which the next run removes.

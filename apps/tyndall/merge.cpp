@@ -5,19 +5,23 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
+#include "base/parallel.h"
 #include "render/adaptive/planned.h"
 #include "render/parts/merge.h"
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <chrono>
 #include <map>
+#include <optional>
+#include <thread>
 
 namespace tyndall {
 namespace {
 struct Options {
     std::vector<std::string> parts;
-    std::string output, plan, count, frames;
-    bool remove = false;
+    std::string output, plan, wait, count, frames;
+    bool remove = false, partial = false;
 };
 
 // The files that PARTS name: they themselves, or all parts of frames with those names.
@@ -39,18 +43,38 @@ std::vector<std::string> files_of(const Options& texts) {
     return files;
 }
 
-std::map<int, std::vector<PartFile>> read_parts(const std::vector<std::string>& names) {
-    std::map<int, std::vector<PartFile>> frames;
-    for (const std::string& name : names) {
+// Those of the files that are there, at once or within so many seconds: some file systems show new files late.
+std::vector<std::string> found(std::vector<std::string> names, double seconds, bool all) {
+    const auto missing = [](const std::string& name) {
+        std::error_code error;
+        return !std::filesystem::exists(name, error);
+    };
+    const double end = steady_seconds() + seconds;
+    while (std::ranges::any_of(names, missing) && steady_seconds() < end) {
         stop_if_cancelled();
-        PartFile part = read_part(name);
-        frames[part.frame].push_back(std::move(part));
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
     }
+    if (!all) std::erase_if(names, missing);
+    return names;
+}
+
+std::map<int, std::vector<PartFile>> read_parts(const std::vector<std::string>& names) {
+    std::vector<std::optional<PartFile>> parts(names.size());
+    parallel_for(static_cast<int64_t>(names.size()), [&](int64_t i) {
+        stop_if_cancelled();
+        parts[static_cast<size_t>(i)] = read_part(names[static_cast<size_t>(i)]);
+    });
+    std::map<int, std::vector<PartFile>> frames;
+    for (std::optional<PartFile>& part : parts) frames[part->frame].push_back(std::move(*part));
     return frames;
 }
 
-Json frame_json(int frame, const std::string& file, const FrameStats& stats, int groups) {
-    JsonMembers members{{"frame", frame}, {"file", file}, {"groups", groups}, {"samples", stats.samples}};
+Json frame_json(int frame, const std::string& file, const FrameStats& stats, const PartGroups& groups) {
+    JsonMembers members{{"frame", frame},
+                        {"file", file},
+                        {"groups", groups.groups},
+                        {"share", groups.share},
+                        {"samples", stats.samples}};
     if (const std::optional<Noise> error = stats.error()) {
         members.emplace_back("error", error->error);
         members.emplace_back("bound", error->bound);
@@ -71,56 +95,93 @@ void say_lacking(const SavedPlan& plan, double lacking, int groups, int frame, c
         formatted(" --frames %d --more %g", frame, lacking) + (groups > planned ? formatted("@%d", groups) : ""));
 }
 
+// All frames of a merge, and what came of them.
+struct Merge {
+    const Options& texts;
+    const Globals& globals;
+    SavedPlan plan{};
+    std::vector<Json> reports{};
+    uint64_t non_finite = 0;
+    int missed = 0, partial = 0; // frames
+
+    void say(const std::string& line) const {
+        if (!globals.quiet) tyndall::say(line);
+    }
+};
+
+void say_merged(const Merge& merge, int frame, const std::string& file, const MergedFrame& result,
+                const PartGroups& groups, size_t parts, double seconds) {
+    std::string noise = ", its noise is not known";
+    if (const auto error = result.stats.error())
+        noise = formatted(", noise %.3g, at most %.3g", error->error, error->bound);
+    else if (groups.gap.empty())
+        noise.clear();
+    merge.say(formatted("frame %d from %s in ", frame, count_text(parts, "part").c_str()) + seconds_text(seconds) +
+              " -> " + printable(file) + noise + formatted(", %d samples per pixel", result.stats.samples));
+    if (groups.gap.empty()) return;
+    std::string line = formatted("frame %d is not complete: %s; %.3g of the samples are there", frame,
+                                 groups.gap.c_str(), groups.share);
+    if (result.empty_pixels > 0)
+        line += ", and none of " + count_text(static_cast<uint64_t>(result.empty_pixels), "pixel");
+    merge.say(line);
+}
+
+void merge_one(Merge& merge, const Scene& scene, int frame, const std::vector<PartFile>& parts,
+               const PartGroups& groups) {
+    const double start = steady_seconds();
+    const std::string file = frame_name(merge.texts.output, frame);
+    const MergedFrame result = merge_frame(parts, groups, scene, merge.plan);
+    write_exr(file, result.layers, result.provenance, merge.plan.request.exr);
+    const bool whole = groups.gap.empty();
+    const double lacking = whole ? groups_lacking(merge.plan.request.grouping.error, result.stats, groups.groups) : 0;
+    if (lacking > 0 && !merge.globals.quiet) say_lacking(merge.plan, lacking, groups.groups, frame, file);
+    if (merge.texts.remove && whole && lacking == 0) // where more groups come, these parts are needed again
+        for (const PartFile& part : parts) std::filesystem::remove(part.file);
+    merge.non_finite += result.stats.non_finite, merge.missed += lacking > 0, merge.partial += !whole;
+    merge.reports.push_back(frame_json(frame, file, result.stats, groups));
+    say_merged(merge, frame, file, result, groups, parts.size(), steady_seconds() - start);
+}
+
+int outcome(const Merge& merge) {
+    const std::string scene = merge.plan.request.scene_file.string();
+    if (merge.non_finite > 0)
+        fail(ExitCode::non_finite, scene,
+             count_text(merge.non_finite, "sample") + " were not finite numbers and were left out");
+    if (merge.partial > 0) fail(ExitCode::differs, scene, "parts are missing of " + count_text(merge.partial, "frame"));
+    if (merge.missed > 0)
+        fail(ExitCode::differs, scene,
+             formatted("all frames were written, but the error of %d of them may be larger than %g", merge.missed,
+                       merge.plan.request.target_error));
+    return 0;
+}
+
 int run_merge(const Options& texts, const Globals& globals) {
     check_pattern(texts.output, ".exr", false);
-    std::map<int, std::vector<PartFile>> frames = read_parts(files_of(texts));
+    const double wait = texts.wait.empty() ? 0 : number_option("--wait", texts.wait, 0, 86400);
+    const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
+    if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, nor any other part");
+    std::map<int, std::vector<PartFile>> frames = read_parts(names);
     if (frames.size() > 1) check_pattern(texts.output, ".exr", true);
     const PartFile& first = frames.begin()->second[0];
-    SavedPlan plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));
-    plan.request.output = texts.output;
+    Merge merge{texts, globals};
+    merge.plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));
+    merge.plan.request.output = texts.output;
     OutputPlaces places;
-    std::map<int, int> groups;
+    std::map<int, PartGroups> groups;
     for (auto& [frame, parts] : frames) {
-        groups[frame] = check_parts(parts, plan);
+        groups[frame] = check_parts(parts, merge.plan);
+        if (!groups[frame].gap.empty() && !texts.partial) refuse(groups[frame].beside.string(), groups[frame].gap);
         places.check(std::filesystem::path(frame_name(texts.output, frame)));
     }
-    const Scene scene = load_scene(plan.request.scene_file, {plan.request.light_units});
-    check_inputs(plan, scene);
+    const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});
+    check_inputs(merge.plan, scene);
 
-    std::vector<Json> reports;
-    uint64_t non_finite = 0;
-    int missed = 0;
-    for (auto& [frame, parts] : frames) {
+    for (const auto& [frame, parts] : frames) {
         stop_if_cancelled();
-        const double start = steady_seconds();
-        const std::string file = frame_name(texts.output, frame);
-        std::vector<std::filesystem::path> merged;
-        for (const PartFile& part : parts) merged.push_back(part.file);
-        const MergedFrame result = merge_frame(std::move(parts), groups[frame], scene, plan);
-        write_exr(file, result.layers, result.provenance, plan.request.exr);
-        const double lacking = groups_lacking(plan.request.grouping.error, result.stats, groups[frame]);
-        if (lacking > 0 && !globals.quiet) say_lacking(plan, lacking, groups[frame], frame, file);
-        if (texts.remove && lacking == 0) // where more groups come, these parts are needed again
-            for (const std::filesystem::path& part : merged) std::filesystem::remove(part);
-        non_finite += result.stats.non_finite, missed += lacking > 0;
-        reports.push_back(frame_json(frame, file, result.stats, groups[frame]));
-        std::string noise;
-        if (const auto error = result.stats.error())
-            noise = formatted(", noise %.3g, at most %.3g", error->error, error->bound);
-        if (!globals.quiet)
-            say(formatted("frame %d from %s in ", frame, count_text(merged.size(), "part").c_str()) +
-                seconds_text(steady_seconds() - start) + " -> " + printable(file) + noise +
-                formatted(", %d samples per pixel", result.stats.samples));
+        merge_one(merge, scene, frame, parts, groups[frame]);
     }
-    if (globals.json) print_report(json_line({{"frames", reports}}));
-    if (non_finite > 0)
-        fail(ExitCode::non_finite, plan.request.scene_file.string(),
-             count_text(non_finite, "sample") + " were not finite numbers and were left out");
-    if (missed > 0)
-        fail(ExitCode::differs, plan.request.scene_file.string(),
-             formatted("all frames were written, but the error of %d of them may be larger than %g", missed,
-                       plan.request.target_error));
-    return 0;
+    if (globals.json) print_report(json_line({{"frames", merge.reports}}));
+    return outcome(merge);
 }
 }
 
@@ -135,6 +196,13 @@ Run add_merge(const Command& program) {
     command.option("--frames", texts->frames, "with --parts: the frames whose parts are meant, where names have ####",
                    "RANGE");
     command.option("--plan", texts->plan, "the plan, where it is not where the parts were rendered by it", "FILE");
+    command.option("--wait", texts->wait,
+                   "wait for parts that are named and not there yet, so many seconds at most: a\n"
+                   "shared file system may show new files late (default: 0)",
+                   "SECONDS");
+    command.flag("--partial", texts->partial,
+                 "merge the parts that are there, where some are missing: with more noise, and\n"
+                 "exit code 1");
     command.flag("--remove-parts", texts->remove,
                  "remove the parts of a frame once it is written and\nmeets its target");
     command.footer("Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"

@@ -252,7 +252,8 @@ std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional
         fail(ExitCode::usage, "SCENE", "a scene file or --plan is required (tyndall render --help)");
     if (texts.output.empty()) fail(ExitCode::usage, "--output", "is required (tyndall render --help)");
     if (!texts.plan.empty()) return {planned_request(texts, plan.emplace())};
-    for (const auto& [name, text] : {std::pair{"--part", &texts.part}, {"--more", &texts.more}})
+    for (const auto& [name, text] :
+         {std::pair{"--part", &texts.part}, {"--more", &texts.more}, {"--checkpoint", &texts.checkpoint}})
         if (!text->empty()) fail(ExitCode::usage, name, "needs --plan");
     return make_requests(texts);
 }
@@ -265,7 +266,10 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
     if (!several && !texts.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
-    set_stop_remark("; finished frames are kept, --resume continues");
+    if (is_part(requests[0].grouping))
+        set_stop_remark("; what is finished is kept, --resume continues", 10);
+    else
+        set_stop_remark("; finished frames are kept, --resume continues");
     OutputPlaces places;
     for (RenderRequest& request : requests) {
         request.light_units = options.light_units;

@@ -385,6 +385,9 @@ RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
                 static_cast<int>(integer_option("--more", texts.more.substr(at + 1), grouping.groups, 1 << 20));
         if (texts.part.empty()) grouping.part = grouping.parts = 1;
     }
+    if (!texts.checkpoint.empty() && !is_part(grouping)) fail(ExitCode::usage, "--checkpoint", "is for --part");
+    if (!texts.checkpoint.empty())
+        request.checkpoint_seconds = 60 * number_option("--checkpoint", texts.checkpoint, 0.01, 10000);
     if (is_part(grouping) && texts.png) fail(ExitCode::usage, "--png", "a part is no image: merge shows it");
     if (!texts.frames.empty()) {
         request.frames = parse_frames(texts.frames);

@@ -1,4 +1,4 @@
-"""Reads the OpenEXR files that tyndall writes: one part of scan lines, ZIP compression, 16 and 32 bit floats."""
+"""Reads the OpenEXR files that tyndall writes: one part of scan lines, ZIP or no compression, 16 and 32 bit floats."""
 import array
 import itertools
 import pathlib
@@ -53,8 +53,8 @@ def read_channels(path):
     data = pathlib.Path(path).read_bytes()
     attributes, at = _header(data)
     low_x, low_y, high_x, high_y = struct.unpack("<4i", attributes["dataWindow"])
-    width, height, lines = high_x - low_x + 1, high_y - low_y + 1, 16
-    assert attributes["compression"] == b"\x03", "not ZIP"
+    width, height = high_x - low_x + 1, high_y - low_y + 1
+    lines = {b"\x00": 1, b"\x03": 16}[attributes["compression"]]
     channels = _channels(attributes["channels"])
     result = {name: array.array("f") for name, _ in channels}
     line_size = sum(width * (2 if kind == HALF else 4) for _, kind in channels)

@@ -2,13 +2,23 @@
 import json
 import random
 import re
+import shutil
+import signal
+import subprocess
+import time
 import unittest
 
 from exr import read_channels
-from program import TRIANGLE, ProgramTest, lit_scene, run
+from program import TRIANGLE, TYNDALL, ProgramTest, lit_scene, run
 from test_cli_layers import LAMPS, PARTS, fog, panes
 
 ALL_LAYERS = f"Z,transmittance,validity,variance,halves,{PARTS}"
+
+
+def part_of(checkpoint):
+    """How much of a part is there."""
+    finished = read_channels(checkpoint)["finished"]
+    return sum(finished) / len(finished)
 
 
 class PartsTest(ProgramTest):
@@ -178,6 +188,85 @@ class PartsTest(ProgramTest):
         part.write_bytes(part.read_bytes()[:-100])
         again = self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/2", "--resume").stderr
         self.assertIn("is rendered again", again)
+
+    def test_a_part_that_was_killed_goes_on_from_its_checkpoint(self):
+        """By SIGTERM within ten seconds; by SIGKILL from the last checkpoint; the bits are those of a part in one go."""
+        plan = self.plan("--samples", 512, "--aov", ALL_LAYERS, "--float")
+        self.render_part(plan, 1, 1, name="whole.exr")
+        whole = read_channels(self.path("whole.part-1-of-1.exr"))
+        part, checkpoint = self.path("frame.part-1-of-1.exr"), self.path("frame.part-1-of-1.checkpoint")
+        command = [TYNDALL, "render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/1", "--threads", "1",
+                   "--checkpoint", "0.01", "--resume"]
+        continued = 0
+        for stop in (signal.SIGTERM, signal.SIGKILL) * 2:
+            with subprocess.Popen(list(map(str, command)), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as run:
+                while run.poll() is None and not (checkpoint.exists() and part_of(checkpoint) > continued):
+                    time.sleep(0.05)
+                run.send_signal(stop)
+                at = time.monotonic()
+                said = run.communicate(timeout=30)[1]
+            self.assertEqual(run.returncode, 143 if stop == signal.SIGTERM else -9, said)
+            self.assertLess(time.monotonic() - at, 10)
+            self.assertEqual("goes on from" in said, continued > 0, said)
+            self.assertGreater(part_of(checkpoint), continued)
+            continued = part_of(checkpoint)
+        self.refuse(3, [checkpoint, "not finished"], "merge", checkpoint, "-o", self.path("merged.exr"))
+        self.assertFalse(part.exists())
+        self.assertIn("goes on from", self.succeed(*command[1:]).stderr)
+        self.assertFalse(checkpoint.exists())
+        self.assertEqual(read_channels(part), whole)
+
+    def test_a_checkpoint_of_something_else_is_not_taken(self):
+        plan = self.plan("--samples", 8)
+        files = self.parts(plan, 2)
+        checkpoint = self.path("frame.part-1-of-2.checkpoint")
+        shutil.copy(files[1], checkpoint)
+        files[0].unlink()
+        said = self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/2", "--resume").stderr
+        self.assertIn("begins again", said)
+        self.assertFalse(checkpoint.exists())
+        self.refuse(2, ["--checkpoint", "is for --part"], "render", "--plan", plan, "-o", self.path("x.exr"), "--checkpoint", 1)
+
+    def test_what_is_there_can_be_merged(self):
+        """With more noise, which is told where it can be; the frame is never taken for a finished one."""
+        plan = self.plan("--samples", 64, "--groups", 4, "--float")
+        one = self.one_run(plan)
+        files = self.parts(plan, 8)
+        self.merge(files, "all.exr", "--partial")
+        self.assertEqual(read_channels(self.path("all.exr")), one)
+        out = self.path("some.exr")
+        before = self.attributes("all.exr")
+        for there, known in (([0, 1, 2, 4, 5, 6, 7], True), ([0, 5], True), ([2], False)):
+            some = run("merge", *(files[i] for i in there), self.path("frame.part-9-of-8.exr"), "-o", out, "--partial",
+                       "--json")
+            self.assertEqual(some.returncode, 1, some.stderr)
+            self.assertIn("parts are missing", some.stderr)
+            frame = json.loads(some.stdout)["frames"][0]
+            self.assertAlmostEqual(frame["share"], len(there) / 8)
+            self.assertEqual("error" in frame, known)
+            if known:
+                self.assertGreater(frame["error"], 0.9 * float(before["tyndall:achievedError"]))
+            self.assertNotEqual(self.attributes("some.exr")["tyndall:hash"], before["tyndall:hash"])
+            metrics = json.loads(run("compare", out, self.path("all.exr"), "--json").stdout)["metrics"]
+            self.assertLess(metrics["E"], 0.3)
+        blocks = self.parts(self.plan("--samples", 2, "--float", name="few.json"), 12, name="few.exr")
+        some = run("merge", *blocks[1:], "-o", out, "--partial")
+        self.assertEqual(some.returncode, 1, some.stderr)
+        self.assertIn("noise is not known", some.stderr)
+        none = run("merge", blocks[0], "-o", out, "--partial")
+        self.assertIn("none of", none.stderr)
+        for values in read_channels(out).values():
+            self.assertNotIn(b"\x00\x00\xc0\x7f", values)
+
+    def test_parts_that_come_late_are_waited_for(self):
+        files = self.parts(self.plan("--samples", 8), 2)
+        late = files[1].rename(self.path("late"))
+        self.refuse(4, [files[1], "no such file"], "merge", *files, "-o", self.path("merged.exr"), "--wait", 0.5)
+        waiting = subprocess.Popen([TYNDALL, "merge", *map(str, files), "-o", str(self.path("merged.exr")), "--wait", "30"],
+                                   stderr=subprocess.PIPE)
+        time.sleep(0.5)
+        late.rename(files[1])
+        self.assertEqual(waiting.wait(20), 0, waiting.communicate()[1])
 
     def test_parts_are_removed_only_when_asked_to(self):
         plan = self.plan("--samples", 8)

@@ -87,7 +87,8 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                    options.prepared ? 0 : prepared->mode_seconds,
                    scatter_seconds,
                    std::move(layers),
-                   {}};
+                   {},
+                   options.cancel};
     return task;
 }
 

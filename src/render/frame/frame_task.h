@@ -14,6 +14,7 @@ struct FrameTask {
     std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
     Layers layers;
     std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
+    const std::atomic<bool>* cancel = nullptr;
 };
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,

@@ -2,11 +2,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "render/frame/frame_task.h"
-#include "render/frame/part.h"
+#include "render/frame/sums.h"
 #include "trace/view.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 
@@ -46,44 +46,94 @@ float nearest_depth(std::span<const FramePart> parts, size_t pixel) {
             nearest = part.off_center.pixels[pixel], depth = part.depth.pixels[pixel];
     return depth;
 }
+
+// Zeroes groups that would add noise: the mean of k group means has the variance of a sample times the sum of 1 / n
+// over k², n being the samples of each. Returns how many are left.
+int keep_helpful_groups(std::span<float> sums, size_t numbers) {
+    std::vector<float*> groups;
+    for (size_t at = 0; at < sums.size(); at += numbers)
+        if (sums[at + taken_sum] > 0) groups.push_back(&sums[at]);
+    std::ranges::stable_sort(groups, std::greater(), [](const float* group) { return group[taken_sum]; });
+    size_t best = 0;
+    double inverse = 0, least = infinity;
+    for (size_t k = 1; k <= groups.size(); ++k) {
+        inverse += 1 / static_cast<double>(groups[k - 1][taken_sum]);
+        if (const double variance = inverse / static_cast<double>(k * k); variance <= least) least = variance, best = k;
+    }
+    for (size_t k = best; k < groups.size(); ++k) std::fill_n(groups[k], numbers, 0.0f);
+    return static_cast<int>(best);
 }
 
-Layers merge_parts(const View& view, bool halves, std::span<const FramePart> parts, int groups, FrameStats& stats) {
-    const FramePart& first = parts[0];
-    const size_t numbers = first.numbers, width = static_cast<size_t>(first.size.x);
+// What all rows of a merge share.
+struct Merging {
+    const FramePart& like;
+    int groups = 0, root = 0;
+    MergedParts& merged;
+    std::vector<Image<vec3>*> lights; // of the merged layers
+    bool alone = false;               // a pixel has one group only
+    std::mutex counting{};            // held to change that and counts
+};
+
+// Row `row` of the image, which is row `row - first` of the parts.
+void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, int row, Merging& merging) {
+    const size_t numbers = merging.like.numbers, width = static_cast<size_t>(merging.like.size.x);
+    const size_t begin = static_cast<size_t>(row - first) * width;
+    std::vector<std::vector<float>> sums;
+    for (int g = 0; g < merging.groups; ++g)
+        sums.push_back(node_sums(nodes, {g, merging.root, 0}, begin * numbers, width * numbers));
+
+    FrameStats counted;
+    int64_t empty = 0;
+    bool alone = false;
+    std::vector<float> of_pixel(sums.size() * numbers);
+    for (size_t x = 0; x < width; ++x) {
+        const ivec2 p(static_cast<int>(x), row);
+        for (size_t g = 0; g < sums.size(); ++g) {
+            const std::span<const float> group = std::span(sums[g]).subspan(x * numbers, numbers);
+            std::ranges::copy(group, of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
+            counted.camera_rays += static_cast<uint64_t>(group[taken_sum]);
+            for (float dropped = group[taken_sum] - group[kept_sum]; dropped > 0; --dropped)
+                counted.drop(merging.like.low + p);
+        }
+        const int kept = keep_helpful_groups(of_pixel, numbers);
+        alone |= kept < 2, empty += kept == 0;
+        const float depth = nearest_depth(parts, begin + x);
+        if (kept > 0)
+            store_groups(of_pixel, numbers, depth, p, merging.merged.layers, merging.lights);
+        else
+            merging.merged.layers.depth.at(p.x, p.y) = infinity;
+    }
+    const std::scoped_lock lock(merging.counting);
+    merging.merged.stats.add(counted), merging.merged.empty_pixels += empty, merging.alone |= alone;
+}
+
+// Lines that are packed together lie in one band; a band's sums take some 256 MB.
+int rows_of_band(const FramePart& like, size_t nodes) {
+    constexpr size_t packed = 16, bytes = size_t{256} << 20;
+    const size_t row = nodes * like.numbers * static_cast<size_t>(like.size.x) * sizeof(float);
+    return static_cast<int>(std::max<size_t>(bytes / row / packed, 1) * packed);
+}
+}
+
+MergedParts merge_parts(const View& view, bool halves, const FramePart& like, size_t nodes, const PartRows& rows,
+                        int groups) {
     View of_all = view;
     of_all.batches = groups;
-    Layers layers = make_layers(of_all, halves);
-    std::vector<Image<vec3>*> lights;
-    if (view.fog_parts) lights = add_light_layers(first.lights, layers);
+    MergedParts merged{make_layers(of_all, halves), {}};
+    Merging merging{like, groups, root_level(like.leaves), merged, {}};
+    if (view.fog_parts) merging.lights = add_light_layers(like.lights, merged.layers);
 
-    const Nodes nodes = nodes_in(parts);
-    int root = 0;
-    while (1 << root < first.leaves) ++root;
-    std::mutex counting;
-    parallel_for(layers.size.y, [&](int64_t row) {
-        FrameStats counted;
-        std::vector<std::vector<float>> sums;
-        for (int g = 0; g < groups; ++g)
-            sums.push_back(node_sums(nodes, {g, root, 0}, static_cast<size_t>(row) * width * numbers, width * numbers));
-        std::vector<float> of_pixel(static_cast<size_t>(groups) * numbers);
-        for (size_t x = 0; x < width; ++x) {
-            const ivec2 p(static_cast<int>(x), static_cast<int>(row));
-            for (size_t g = 0; g < sums.size(); ++g) {
-                const std::span<const float> group = std::span(sums[g]).subspan(x * numbers, numbers);
-                std::ranges::copy(group, of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
-                counted.camera_rays += static_cast<uint64_t>(group[14]);
-                for (float dropped = group[14] - group[13]; dropped > 0; --dropped) counted.drop(first.low + p);
-            }
-            store_groups(of_pixel, numbers, nearest_depth(parts, static_cast<size_t>(row) * width + x), p, layers,
-                         lights);
-        }
-        const std::scoped_lock lock(counting);
-        stats.add(counted);
-    });
-    add_up(layers);
-    if (groups > 1) stats.noise = noise_of(layers);
-    stats.samples = mean_samples(stats.camera_rays, layers);
-    return layers;
+    const int step = rows_of_band(like, nodes);
+    for (int first = 0; first < like.size.y; first += step) {
+        const int count = std::min(step, like.size.y - first);
+        const std::vector<FramePart> parts = rows(first, count);
+        const Nodes found = nodes_in(parts);
+        parallel_for(count,
+                     [&](int64_t row) { merge_row(parts, found, first, first + static_cast<int>(row), merging); });
+    }
+    add_up(merged.layers);
+    if (!merging.alone) merged.stats.noise = noise_of(merged.layers);
+    merged.stats.samples = mean_samples(merged.stats.camera_rays, merged.layers);
+    return merged;
 }
 }

@@ -6,8 +6,8 @@
 #include "base/text.h"
 #include "modes/mode.h"
 #include "render/frame/edges.h"
-#include "render/frame/frame_task.h"
-#include "render/frame/pixel_sum.h"
+#include "render/frame/sums.h"
+#include "render/image/exr.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
@@ -15,6 +15,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <mutex>
+#include <shared_mutex>
+#include <utility>
 
 namespace tyndall {
 int64_t count_blocks(const Mode& mode, const View& view) {
@@ -45,152 +48,123 @@ std::vector<SumNode> nodes_of(const PartRange& range, int leaves) {
 }
 
 namespace {
-struct TileSums {
-    const FrameTask& task;
-    const PixelTile& tile;
-    FrameStats& stats;
-    const Layers& layers = task.layers; // whose pixels count
-    int leaves = task.tracer.view.leaves;
-    int group_size = samples_of(task.tracer.view, tile.corner) / task.tracer.view.batches;
-    std::vector<float> depth = std::vector<float>(16, infinity), off_center = depth;
-
-    size_t numbers() const { return fixed_sums + 3 * task.parts.size(); }
-};
-
-void add_color(vec3 color, std::span<float> sums) {
-    for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += color[c];
-}
-
-// One that is not finite counts as taken only.
-void add_sample(const PixelSample& sample, std::span<const vec3> parts, std::span<float> sums) {
-    add_color(sample.surface, sums), add_color(sample.background, sums.subspan(3));
-    add_color(sample.inscatter, sums.subspan(6));
-    const float w = sample.weight;
-    sums[9] += w, sums[10] += w * sample.alpha, sums[11] += w * sample.transmittance, sums[12] += w * sample.validity;
-    sums[13] += 1;
-    for (size_t k = 0; k < parts.size(); ++k) add_color(parts[k], sums.subspan(fixed_sums + 3 * k));
-}
-
-std::vector<float> leaf_sums(TileSums& tile, int group, int leaf) {
-    const size_t count = tile.tile.count, numbers = tile.numbers(), part_count = tile.task.parts.size();
-    std::vector<float> sums(count * numbers, 0.0f);
-    std::vector<vec3> fog_parts(part_count * count);
-    PixelSample samples[16];
-    const auto cut = [&](int at) { return static_cast<int>(int64_t{tile.group_size} * at / tile.leaves); };
-    for (int s = cut(leaf); s < cut(leaf + 1); ++s) {
-        trace_samples(tile.task.tracer, {tile.tile.pixels, count}, group * tile.group_size + s, {samples, count},
-                      fog_parts);
-        for (size_t i = 0; i < count; ++i) {
-            if (!contains(tile.layers, tile.tile.pixels[i])) continue;
-            const std::span<float> own{sums.data() + i * numbers, numbers};
-            const std::span<const vec3> parts{fog_parts.data() + i * part_count, part_count};
-            ++tile.stats.camera_rays, tile.stats.steps += static_cast<uint64_t>(samples[i].steps), own[14] += 1;
-            if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
-                tile.stats.drop(tile.tile.pixels[i]);
-                continue;
-            }
-            add_sample(samples[i], parts, own);
-            if (samples[i].off_center < tile.off_center[i])
-                tile.off_center[i] = samples[i].off_center, tile.depth[i] = samples[i].depth;
-        }
-    }
-    return sums;
-}
-
-std::vector<float> node_sums(TileSums& tile, const SumNode& node) {
-    if (node.level == 0) return leaf_sums(tile, node.group, node.index);
-    std::vector<float> left = node_sums(tile, {node.group, node.level - 1, 2 * node.index});
-    const std::vector<float> right = node_sums(tile, {node.group, node.level - 1, 2 * node.index + 1});
-    for (size_t i = 0; i < left.size(); ++i) left[i] += right[i];
-    return left;
-}
-
-int root_level(int leaves) {
-    int level = 0;
-    while (1 << level < leaves) ++level;
-    return level;
-}
-
-void add_group(std::span<const float> sums, PixelSum& pixel) {
-    const auto color = [&](size_t at) { return vec3(sums[at], sums[at + 1], sums[at + 2]); };
-    if (sums[14] == 0) return;
-    pixel.surface = color(0), pixel.background = color(3), pixel.inscatter = color(6);
-    pixel.weight += sums[9], pixel.alpha += sums[10], pixel.transmittance += sums[11], pixel.validity += sums[12];
-    pixel.kept += static_cast<int>(sums[13]);
-    pixel.end_batch(static_cast<int>(sums[14]));
-}
-}
-
-void store_groups(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
-                  std::span<Image<vec3>* const> parts) {
-    PixelSum pixel;
-    int samples = 0;
-    std::vector<vec3> part_sums(parts.size(), vec3(0));
-    for (size_t at = 0; at < sums.size(); at += numbers) {
-        const std::span<const float> group = sums.subspan(at, numbers);
-        add_group(group, pixel), samples += static_cast<int>(group[14]);
-        for (size_t k = 0; k < parts.size(); ++k)
-            part_sums[k] +=
-                vec3(group[fixed_sums + 3 * k], group[fixed_sums + 3 * k + 1], group[fixed_sums + 3 * k + 2]);
-    }
-    pixel.depth = depth;
-    store_pixel(pixel, samples, p, layers);
-    for (size_t k = 0; k < parts.size(); ++k) parts[k]->at(p.x, p.y) += part_sums[k] / static_cast<float>(samples);
-}
-
-int mean_samples(uint64_t samples, const Layers& layers) {
-    const double pixels = static_cast<double>(layers.size.x) * layers.size.y;
-    return static_cast<int>(std::lround(static_cast<double>(samples) / pixels));
-}
-
-void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats) {
-    TileSums work{task, tile, stats};
-    const size_t groups = static_cast<size_t>(task.tracer.view.batches), numbers = work.numbers();
-    std::vector<std::vector<float>> sums;
-    for (size_t g = 0; g < groups; ++g)
-        sums.push_back(node_sums(work, {static_cast<int>(g), root_level(work.leaves), 0}));
-
-    std::vector<float> of_pixel(groups * numbers);
-    for (size_t i = 0; i < tile.count; ++i) {
-        if (!contains(layers, tile.pixels[i])) continue;
-        for (size_t g = 0; g < groups; ++g)
-            std::copy_n(sums[g].begin() + static_cast<ptrdiff_t>(i * numbers), numbers,
-                        of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
-        store_groups(of_pixel, numbers, work.depth[i], tile.pixels[i] - layers.low, layers, task.parts);
-    }
-}
-
-namespace {
 // Whether a part holds a block of a leaf.
 bool holds(const PartRange& range, int64_t leaf, int64_t block) {
     const int64_t slice = leaf * range.slices + block % range.slices;
     return slice >= range.first && slice < range.last;
 }
 
-void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t block, FramePart& part, FrameStats& stats) {
-    TileSums work{task, tile, stats};
-    const auto place = [&](size_t i) {
-        const ivec2 p = tile.pixels[i] - part.low;
+// A part while all threads work on it.
+struct PartWork {
+    FramePart& part;
+    const Checkpoints& checkpoints;
+    std::shared_mutex storing{}; // shared by tiles that are stored, held alone while a checkpoint is kept
+    std::atomic<double> next = steady_seconds() + checkpoints.seconds;
+
+    size_t place(ivec2 pixel) const {
+        const ivec2 p = pixel - part.low;
         return static_cast<size_t>(p.y) * static_cast<size_t>(part.size.x) + static_cast<size_t>(p.x);
-    };
+    }
+    // Tiles are finished as a whole.
+    bool is_finished(const PixelTile& tile, const Layers& layers) const {
+        for (size_t i = 0; i < tile.count; ++i)
+            if (contains(layers, tile.pixels[i])) return part.finished.pixels[place(tile.pixels[i])] > 0;
+        return true;
+    }
+};
+
+void store_tile(const TileSums& tile, const std::vector<std::vector<float>>& sums, PartWork& work) {
+    FramePart& part = work.part;
+    const std::shared_lock lock(work.storing);
+    for (size_t i = 0; i < tile.tile.count; ++i) {
+        if (!contains(tile.layers, tile.tile.pixels[i])) continue;
+        const size_t at = work.place(tile.tile.pixels[i]);
+        for (size_t n = 0; n < sums.size(); ++n)
+            if (!sums[n].empty())
+                std::copy_n(sums[n].begin() + static_cast<ptrdiff_t>(i * part.numbers), part.numbers,
+                            part.sums[n].begin() + static_cast<ptrdiff_t>(at * part.numbers));
+        part.depth.pixels[at] = tile.depth[i], part.off_center.pixels[at] = tile.off_center[i];
+        part.finished.pixels[at] = 1;
+    }
+}
+
+// By the first thread that finds it is time.
+void keep_in_time(PartWork& work) {
+    double due = work.next;
+    if (steady_seconds() < due || !work.next.compare_exchange_strong(due, infinity)) return;
+    const std::unique_lock lock(work.storing);
+    work.checkpoints.keep(work.part);
+    work.next = steady_seconds() + work.checkpoints.seconds;
+}
+
+void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t block, PartWork& work, FrameStats& stats) {
+    const FramePart& part = work.part;
+    TileSums sums_of{task, tile, stats};
+    std::vector<std::vector<float>> sums(part.nodes.size());
     for (size_t n = 0; n < part.nodes.size(); ++n) {
         const SumNode& node = part.nodes[n];
-        if (part.range.slices > 1 && !holds(part.range, int64_t{node.group} * part.leaves + node.index, block))
-            continue;
-        const std::vector<float> sums = node_sums(work, node);
-        for (size_t i = 0; i < tile.count; ++i)
-            if (contains(task.layers, tile.pixels[i]))
-                std::copy_n(sums.begin() + static_cast<ptrdiff_t>(i * part.numbers), part.numbers,
-                            part.sums[n].begin() + static_cast<ptrdiff_t>(place(i) * part.numbers));
+        if (part.range.slices == 1 || holds(part.range, int64_t{node.group} * part.leaves + node.index, block))
+            sums[n] = node_sums(sums_of, node);
     }
-    for (size_t i = 0; i < tile.count; ++i)
-        if (contains(task.layers, tile.pixels[i]))
-            part.depth.pixels[place(i)] = work.depth[i], part.off_center.pixels[place(i)] = work.off_center[i];
+    store_tile(sums_of, sums, work);
+    keep_in_time(work);
+}
+
+// What an earlier run dropped of its samples counts as well.
+void count_dropped(const FramePart& part, FrameStats& stats) {
+    for (int y = 0; y < part.size.y; ++y)
+        for (int x = 0; x < part.size.x; ++x)
+            for (const std::vector<float>& sums : part.sums) {
+                const float* own = &sums[static_cast<size_t>(y * part.size.x + x) * part.numbers];
+                for (float dropped = own[taken_sum] - own[kept_sum]; dropped > 0; --dropped)
+                    stats.drop(part.low + ivec2(x, y));
+            }
+}
+
+bool is_same(const FramePart& a, const FramePart& b) {
+    return a.display == b.display && a.low == b.low && a.size == b.size && a.range == b.range && a.leaves == b.leaves &&
+           a.numbers == b.numbers && a.covered == b.covered && a.lights.names == b.lights.names;
+}
+
+// Throws Error (usage) for a part that no EXR file holds.
+void check_size(const FramePart& part) {
+    const size_t channels = nodes_of(part.range, part.leaves).size() * part.numbers + 3; // Z, offset and finished
+    const double bytes = sizeof(float) * static_cast<double>(channels) * part.size.x * part.size.y;
+    if (bytes > static_cast<double>(max_decoded_bytes) || channels > max_channels)
+        fail(ExitCode::usage, "--part",
+             formatted("a part of this frame would take %zu channels and %.1f GiB; %d channels and 4 GiB are the most: "
+                       "more parts or fewer layers make it smaller",
+                       channels, bytes / (1 << 30), max_channels));
+}
+
+// The part without its samples, or with those that an earlier run has left of it.
+FramePart begun_part(FramePart part, std::optional<FramePart> last) {
+    if (last && is_same(*last, part)) return std::move(*last);
+    part.nodes = nodes_of(part.range, part.leaves);
+    const size_t pixels = static_cast<size_t>(part.size.x) * static_cast<size_t>(part.size.y);
+    part.sums.assign(part.nodes.size(), std::vector<float>(pixels * part.numbers, 0.0f));
+    part.depth = part.off_center = Image<float>(part.size, infinity);
+    part.finished = Image<float>(part.size, 0.0f);
+    return part;
+}
+
+// All tiles that are not there yet.
+FrameStats render_tiles(const FrameTask& task, const FrameOptions& options, const Checkpoints& checkpoints,
+                        FramePart& part) {
+    PartWork work{part, checkpoints};
+    try {
+        return for_each_tile(task.layers, options, [&](const PixelTile& tile, int64_t block, FrameStats& stats) {
+            if (!work.is_finished(tile, task.layers)) render_part_tile(task, tile, block, work, stats);
+        });
+    } catch (const Error&) {
+        if (checkpoints.keep && options.cancel && *options.cancel) checkpoints.keep(part);
+        throw;
+    }
 }
 }
 
 FramePart render_part(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings,
-                      const FrameOptions& options, const PartRange& range, FrameStats& stats) {
+                      const FrameOptions& options, const PartRange& range, Checkpoints checkpoints, FrameStats& stats) {
     View view = given;
     assert(view.leaves > 0 && view.pixel_samples % view.batches == 0);
     if (mode.surfaces == Surfaces::shared) view.lamps = lamps_in(view, snapshot);
@@ -200,24 +174,23 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     const LightLayers lights = view.fog_parts ? light_layers(snapshot) : LightLayers{};
     if (view.fog_parts) task.parts = add_light_layers(lights, task.layers);
     const double prepared = steady_seconds();
-    FrameStats probed;
-    if (mode.surfaces == Surfaces::shared)
-        view.edges = edge_factors(task.tracer, task.layers.low, task.layers.low + task.layers.size, probed);
-
     FramePart part;
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;
-    part.range = range, part.leaves = view.leaves, part.nodes = nodes_of(range, view.leaves);
-    part.covered = given.background && has_background(snapshot.background), part.lights = lights;
-    part.numbers = fixed_sums + 3 * task.parts.size();
-    const size_t pixels = task.layers.color.pixels.size();
-    part.sums.assign(part.nodes.size(), std::vector<float>(pixels * part.numbers, 0.0f));
-    part.depth = part.off_center = Image<float>(part.size, infinity);
-    stats = for_each_tile(task.layers, options, [&](const PixelTile& tile, int64_t block, FrameStats& block_stats) {
-        render_part_tile(task, tile, block, part, block_stats);
-    });
+    part.range = range, part.leaves = view.leaves;
+    part.numbers = fixed_sums + 3 * task.parts.size(), part.lights = lights;
+    part.covered = given.background && has_background(snapshot.background);
+    check_size(part);
+    part = begun_part(std::move(part), std::exchange(checkpoints.last, {}));
+
+    FrameStats probed;
+    count_dropped(part, probed);
+    if (mode.surfaces == Surfaces::shared)
+        view.edges = edge_factors(task.tracer, task.layers.low, task.layers.low + task.layers.size, probed);
+    stats = render_tiles(task, options, checkpoints, part);
     stats.prepare_seconds = prepared - start, stats.render_seconds = steady_seconds() - prepared;
     stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
     stats.add(probed);
+    part.finished = {};
     return part;
 }
 }

@@ -9,6 +9,8 @@
 #include "render/frame/frame.h"
 
 #include <compare>
+#include <functional>
+#include <optional>
 #include <span>
 
 namespace tyndall {
@@ -25,6 +27,7 @@ struct SumNode {
 struct PartRange {
     int64_t first = 0, last = 0;
     int slices = 1; // of a leaf
+    bool operator==(const PartRange&) const = default;
 };
 
 // Blocks of pixels that may be told apart. `view` as for render_part().
@@ -37,9 +40,20 @@ PartRange part_range(int part, int parts, int first_group, int groups, int leave
 // The nodes of a part, in order.
 std::vector<SumNode> nodes_of(const PartRange& range, int leaves);
 
-// Sums of the samples of a pixel: surface, background and fog light (RGB each), weight, alpha, transmittance and
-// validity, samples kept and samples taken; then RGB of each part of the fog light.
-inline constexpr size_t fixed_sums = 15;
+// Where the sums of a pixel's samples lie: colours as RGB, those of camera paths weighted by the pixel filter, samples
+// kept and samples taken; after them RGB of each part of the fog light.
+enum PixelSums : size_t {
+    surface_sum = 0,
+    background_sum = 3,
+    inscatter_sum = 6,
+    weight_sum = 9,
+    alpha_sum,
+    transmittance_sum,
+    validity_sum,
+    kept_sum,
+    taken_sum,
+    fixed_sums
+};
 
 struct FramePart {
     ivec2 display{0}, low{0}, size{0};
@@ -51,16 +65,38 @@ struct FramePart {
     std::vector<SumNode> nodes;
     std::vector<std::vector<float>> sums; // of each node, pixel by pixel
     Image<float> depth, off_center;       // at the sample nearest the pixel's centre, and how far away, pixels squared
+    Image<float> finished;                // while it is rendered: 1 where all samples of the part are there, else 0
 };
 
-// The image that parts make together which hold groups 0 to `groups` without gaps, in order, before what a mode does
-// with finished images. `view` is the one they were rendered with.
-Layers merge_parts(const View& view, bool halves, std::span<const FramePart> parts, int groups, FrameStats& stats);
+// So many rows of all parts, from one on, with their sums.
+using PartRows = std::function<std::vector<FramePart>(int first, int count)>;
+
+// The image that parts make together which hold groups 0 to `groups`, in order, before what a mode does with finished
+// images; `like` tells what all of them have in common, `nodes` is how many they have in all. `view` is the one they
+// were rendered with. Few rows are in memory at once.
+//
+// Where samples are missing, a pixel leaves out groups that have too few to lower its noise. Pixels without samples are
+// black and not valid; there is no noise where one has fewer than two groups.
+struct MergedParts {
+    Layers layers;
+    FrameStats stats;
+    int64_t empty_pixels = 0;
+};
+MergedParts merge_parts(const View& view, bool halves, const FramePart& like, size_t nodes, const PartRows& rows,
+                        int groups);
+
+// How a part that is being rendered outlives its process.
+struct Checkpoints {
+    double seconds = infinity; // between two
+    // Gets what there is of the part: every so many seconds, and when cancelled. Nothing changes it meanwhile.
+    std::function<void(const FramePart&)> keep{};
+    std::optional<FramePart> last{}; // of an earlier run: the same part, to go on from
+};
 
 // Throws Error (internal) when cancelled. `view` has leaves; its batches are the groups of the plan, of which a part
 // may go beyond.
 FramePart render_part(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                      const FrameOptions& options, const PartRange& range, FrameStats& stats);
+                      const FrameOptions& options, const PartRange& range, Checkpoints checkpoints, FrameStats& stats);
 
 // A tile of a frame whose samples come in groups, in one go.
 void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats);

@@ -50,9 +50,12 @@ struct ExrChannel {
     bool full_float; // else half
 };
 
+enum class ExrPacking { none, zip };
+
 // Channels of any names. Throws Error (unwritable, internal).
 void write_exr_channels(const std::filesystem::path& file, const ExrWindow& window,
-                        std::span<const ExrChannel> channels, const Provenance& provenance);
+                        std::span<const ExrChannel> channels, const Provenance& provenance,
+                        ExrPacking packing = ExrPacking::zip);
 
 // Names of the channels a picture gets, sorted: what write_exr will write for these lights.
 std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options);
@@ -80,4 +83,14 @@ Image<vec3> color_of(const ExrFile& exr);
 
 // Every pixel is decoded. Throws Error (unreadable, refused): flat, single part, NONE/RLE/ZIPS/ZIP only; limits apply.
 ExrFile read_exr(const std::filesystem::path& file);
+
+inline constexpr int max_channels = 1024;
+inline constexpr uint64_t max_decoded_bytes = uint64_t{4} << 30; // as floats
+
+// The same checks, but of the channels the names only.
+ExrFile read_exr_header(const std::filesystem::path& file);
+
+// So many rows from one on, counted from the top of the pixels that are there, of a file that has been checked. Throws
+// Error (unreadable, refused).
+ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count);
 }

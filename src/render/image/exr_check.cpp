@@ -1,6 +1,7 @@
 #include "render/image/exr_check.h"
 
 #include "base/error.h"
+#include "render/image/exr.h"
 
 #include <zlib.h>
 
@@ -11,9 +12,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int largest_side = 16384, max_channels = 1024, max_attributes = 4096;
+constexpr int largest_side = 16384, max_attributes = 4096;
 constexpr int largest_coordinate = 1 << 24;
-constexpr uint64_t max_decoded_bytes = uint64_t{4} << 30;
 constexpr uint64_t best_ratio = 1032; // of deflate; run lengths reach 64
 
 enum Compression { none, run_lengths, zip_lines, zip_blocks }; // as files number them

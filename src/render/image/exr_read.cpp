@@ -35,36 +35,66 @@ private:
 };
 
 // Whether the bytes are those that tyndall:check was made of.
-bool is_unchanged(std::string bytes) {
+bool is_unchanged(std::string_view bytes) {
     const size_t name = bytes.find(before_check), value = name + before_check.size();
     if (name == bytes.npos || value + no_check.size() > bytes.size()) return false;
-    const std::string check = bytes.substr(value, no_check.size());
-    return content_hash(bytes.replace(value, no_check.size(), no_check)) == check;
+    const std::string_view pieces[] = {bytes.substr(0, value), no_check, bytes.substr(value + no_check.size())};
+    return content_hash(pieces) == bytes.substr(value, no_check.size());
 }
 
-ExrFile decoded(const std::string& file, std::string_view bytes, const ExrClaims& claims) {
-    MemoryStream stream(file.c_str(), bytes);
-    Imf::InputFile input(stream, 0);
-    const Imf::Header& header = input.header();
-    const Imath::Box2i window = header.dataWindow();
-
-    constexpr const char* compressions[] = {"none", "rle", "zips", "zip"};
+// Where the pixels lie, and the header's attributes.
+ExrFile described(const Imf::Header& header) {
+    const Imath::Box2i &window = header.dataWindow(), &display = header.displayWindow();
     ExrFile result;
-    result.compression = compressions[claims.compression];
-    result.display = claims.display_high - claims.display_low + 1;
-    result.low = claims.low - claims.display_low;
-    result.size = claims.high - claims.low + 1;
+    result.display = ivec2(display.max.x - display.min.x, display.max.y - display.min.y) + 1;
+    result.low = {window.min.x - display.min.x, window.min.y - display.min.y};
+    result.size = ivec2(window.max.x - window.min.x, window.max.y - window.min.y) + 1;
     for (auto a = header.begin(); a != header.end(); ++a) result.attributes[a.name()] = attribute_text(a.attribute());
-
     for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
-        result.channels.emplace_back(c.name(), Image<float>(result.size));
-    Imf::FrameBuffer buffer;
-    for (auto& [name, image] : result.channels)
-        buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), window, sizeof(float),
-                                             sizeof(float) * static_cast<size_t>(result.size.x)));
-    input.setFrameBuffer(buffer);
-    input.readPixels(window.min.y, window.max.y);
+        result.channels.emplace_back(c.name(), Image<float>());
     return result;
+}
+
+// All channels of so many rows, as floats.
+void decode_rows(Imf::InputFile& input, int first, int count, ExrFile& file) {
+    const Imath::Box2i window = input.header().dataWindow();
+    const Imath::Box2i rows({window.min.x, window.min.y + first}, {window.max.x, window.min.y + first + count - 1});
+    Imf::FrameBuffer buffer;
+    for (auto& [name, image] : file.channels) {
+        image = Image<float>(ivec2(file.size.x, count));
+        buffer.insert(name, Imf::Slice::Make(Imf::FLOAT, image.pixels.data(), rows, sizeof(float),
+                                             sizeof(float) * static_cast<size_t>(file.size.x)));
+    }
+    input.setFrameBuffer(buffer);
+    input.readPixels(rows.min.y, rows.max.y);
+}
+
+// What the library throws is a damaged file.
+template<class Body> ExrFile guarded(const std::string& file, const Body& body) {
+    try {
+        return body();
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const Error&) {
+        throw;
+    } catch (const std::exception& error) {
+        refuse(file, std::string("damaged: ") + error.what());
+    }
+}
+
+ExrFile read_checked(const std::filesystem::path& path, bool pixels) {
+    constexpr const char* compressions[] = {"none", "rle", "zips", "zip"};
+    const std::string file = path.string(), bytes = read_file(path, largest_file);
+    const ExrClaims claims = check_exr_claims(bytes, file);
+    return guarded(file, [&] {
+        MemoryStream stream(file.c_str(), bytes);
+        Imf::InputFile input(stream, 0);
+        ExrFile result = described(input.header());
+        result.compression = compressions[claims.compression];
+        result.is_unchanged = is_unchanged(bytes);
+        if (pixels) decode_rows(input, 0, result.size.y, result);
+        return result;
+    });
 }
 }
 
@@ -74,19 +104,19 @@ const Image<float>* ExrFile::channel(std::string_view name) const {
     return nullptr;
 }
 
-ExrFile read_exr(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    const std::string bytes = read_file(file, largest_file);
-    const ExrClaims claims = check_exr_claims(bytes, name);
-    try {
-        ExrFile result = decoded(name, bytes, claims);
-        result.is_unchanged = is_unchanged(bytes);
+ExrFile read_exr(const std::filesystem::path& file) { return read_checked(file, true); }
+
+ExrFile read_exr_header(const std::filesystem::path& file) { return read_checked(file, false); }
+
+ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count) {
+    check_readable(file);
+    return guarded(file.string(), [&] {
+        Imf::InputFile input(file.c_str(), 0);
+        ExrFile result = described(input.header());
+        if (first + count > result.size.y) refuse(file.string(), "has changed while it was read");
+        decode_rows(input, first, count, result);
         return result;
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        refuse(name, std::string("damaged: ") + error.what());
-    }
+    });
 }
 
 Image<vec3> color_of(const ExrFile& exr) {

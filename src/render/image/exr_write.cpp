@@ -121,11 +121,12 @@ void add_check(std::vector<std::byte>& file) {
 }
 
 std::vector<std::byte> encoded(const std::filesystem::path& file, const ExrWindow& frame,
-                               std::span<const ExrChannel> channels, const Provenance& provenance) {
+                               std::span<const ExrChannel> channels, const Provenance& provenance, ExrPacking packing) {
     for ([[maybe_unused]] const ExrChannel& channel : channels) assert(channel.values); // the layer was rendered
 
     // Slices point at the image's own floats, or at halves made here.
     Imf::Header header = make_exr_header(frame, provenance);
+    if (packing == ExrPacking::none) header.compression() = Imf::NO_COMPRESSION;
     const Imath::Box2i window = header.dataWindow();
     const size_t width = static_cast<size_t>(frame.size.x), count = width * static_cast<size_t>(frame.size.y);
     Imf::FrameBuffer buffer;
@@ -208,10 +209,10 @@ void write_exr(const std::filesystem::path& file, const Layers& layers, const Pr
 }
 
 void write_exr_channels(const std::filesystem::path& file, const ExrWindow& window,
-                        std::span<const ExrChannel> channels, const Provenance& provenance) {
+                        std::span<const ExrChannel> channels, const Provenance& provenance, ExrPacking packing) {
     std::vector<std::byte> bytes;
     try {
-        bytes = encoded(file, window, channels, provenance);
+        bytes = encoded(file, window, channels, provenance, packing);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {

@@ -1,6 +1,8 @@
 #include "render/parts/merge.h"
 
 #include "base/error.h"
+#include "base/io/file.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "render/adaptive/planned.h"
@@ -32,11 +34,6 @@ std::string leaves_text(int64_t first, int64_t last, int leaves) {
     return last - first == 1 ? "leaf " + text(first) : "leaves " + text(first) + " to " + text(last - 1);
 }
 
-[[noreturn]] void refuse_gap(const PartFile& beside, int64_t first, int64_t last, int leaves) {
-    refuse(beside.file.string(), "a part is missing beside " + printable(beside.label, 20) + ", with " +
-                                     leaves_text(first, last, leaves) + " (group/leaf)");
-}
-
 void check_alike(const PartFile& part, const PartFile& first) {
     const std::string file = part.file.string(), other = printable(first.file.filename().string(), 80);
     if (part.plan_hash != first.plan_hash) refuse(file, "is of another plan than " + other);
@@ -49,7 +46,27 @@ void check_alike(const PartFile& part, const PartFile& first) {
 }
 }
 
-int check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
+namespace {
+// The samples that parts hold, found from the first part to the last.
+struct Holdings {
+    const int leaves;
+    PartGroups found{};
+    double held = 0; // leaves
+
+    // From a leaf to another one, not included.
+    void add_gap(const PartFile& beside, int64_t first, int64_t last) {
+        if (!found.gap.empty()) return;
+        found.beside = beside.file;
+        found.gap = "a part is missing beside " + printable(beside.label, 20) + ", with " +
+                    leaves_text(first, last, leaves) + " (group/leaf)";
+    }
+    void add(const PartRange& range) { held += static_cast<double>(range.last - range.first) / range.slices; }
+};
+
+int64_t first_whole_leaf(const PartRange& range) { return (range.first + range.slices - 1) / range.slices; }
+}
+
+PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
     for (const PartFile& part : parts) {
         check_alike(part, parts[0]);
         if (part.plan_hash != plan.request.grouping.plan_hash)
@@ -59,40 +76,64 @@ int check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
         const PartRange &one = a.part.range, &two = b.part.range;
         return std::pair(one.first * two.slices, a.file) < std::pair(two.first * one.slices, b.file);
     });
-    const int leaves = parts[0].part.leaves;
-    const PartRange& first = parts[0].part.range;
-    if (first.first > 0) refuse_gap(parts[0], 0, (first.first + first.slices - 1) / first.slices, leaves);
-    for (size_t i = 1; i < parts.size(); ++i) {
-        const PartRange &before = parts[i - 1].part.range, &after = parts[i].part.range;
-        const Meeting meeting = meeting_of(before, after);
+
+    Holdings holdings{parts[0].part.leaves};
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const PartRange& range = parts[i].part.range;
+        holdings.add(range);
+        if (i == 0 && range.first > 0) holdings.add_gap(parts[0], 0, first_whole_leaf(range));
+        if (i == 0) continue;
+        const PartRange& before = parts[i - 1].part.range;
+        const Meeting meeting = meeting_of(before, range);
         if (meeting == Meeting::overlap)
             refuse(parts[i].file.string(),
                    "holds samples that " + printable(parts[i - 1].file.filename().string(), 80) + " holds as well");
         if (meeting == Meeting::gap)
-            refuse_gap(parts[i - 1], before.last / before.slices, (after.first + after.slices - 1) / after.slices,
-                       leaves);
+            holdings.add_gap(parts[i - 1], before.last / before.slices, first_whole_leaf(range));
     }
     const PartRange& last = parts.back().part.range;
-    const int64_t all = int64_t{plan.request.grouping.groups} * leaves, whole = last.last / last.slices;
-    const int64_t end = std::max(all, (whole + leaves - 1) / leaves * leaves);
-    if (last.last % last.slices != 0 || whole < end) refuse_gap(parts.back(), whole, end, leaves);
-    return static_cast<int>(whole / leaves);
+    const int leaves = holdings.leaves;
+    const int64_t whole = last.last / last.slices, begun = (last.last + last.slices - 1) / last.slices;
+    const int64_t end =
+        std::max<int64_t>(int64_t{plan.request.grouping.groups} * leaves, (begun + leaves - 1) / leaves * leaves);
+    if (last.last % last.slices != 0 || whole < end) holdings.add_gap(parts.back(), whole, end);
+    holdings.found.groups = static_cast<int>(end / leaves);
+    holdings.found.share = holdings.held / static_cast<double>(end);
+    return holdings.found;
 }
 
-MergedFrame merge_frame(std::vector<PartFile> files, int groups, const Scene& scene, const SavedPlan& plan) {
-    const RenderRequest& request = plan.request;
-    const View view = view_of(scene, request, plan.plan.settings, files[0].frame);
-    FileHashes hashes;
-    const std::string hash = frame_hash(scene, request, plan.plan, view, hashes), part_hash = files[0].hash;
-    if (hash != part_hash) refuse(files[0].file.string(), "the files it was rendered from have changed since");
+namespace {
+// Parts rendered from the bits of one run's hash make its frame; one with samples missing is none that --resume keeps.
+void note_gap(const PartGroups& groups, Provenance& provenance) {
+    if (groups.gap.empty()) return;
+    provenance.attributes["tyndall:partial"] = formatted("%.4g of the samples", groups.share);
+    provenance.attributes["tyndall:hash"] = content_hash("partial " + provenance.attributes["tyndall:hash"]);
+}
+}
 
-    std::vector<FramePart> parts;
-    for (PartFile& file : files) parts.push_back(std::move(file.part));
-    const bool post = plan.plan.mode->surfaces == Surfaces::post, covered = parts[0].covered;
-    MergedFrame merged;
-    merged.layers =
-        merge_parts(post ? view_before_post(view) : view, wants_layer(request, "halves"), parts, groups, merged.stats);
-    parts.clear();
+MergedFrame merge_frame(std::span<const PartFile> files, const PartGroups& groups, const Scene& scene,
+                        const SavedPlan& plan) {
+    const RenderRequest& request = plan.request;
+    const PartFile& first = files[0];
+    const View view = view_of(scene, request, plan.plan.settings, first.frame);
+    FileHashes hashes;
+    const std::string hash = frame_hash(scene, request, plan.plan, view, hashes);
+    if (hash != first.hash) refuse(first.file.string(), "the files it was rendered from have changed since");
+
+    const auto rows = [&](int low, int count) {
+        std::vector<FramePart> parts(files.size());
+        parallel_for(static_cast<int64_t>(files.size()), [&](int64_t i) {
+            parts[static_cast<size_t>(i)] = read_rows(files[static_cast<size_t>(i)], low, count);
+        });
+        return parts;
+    };
+    size_t nodes = 0;
+    for (const PartFile& file : files) nodes += file.part.nodes.size();
+    const bool post = plan.plan.mode->surfaces == Surfaces::post;
+    auto [layers, stats, empty_pixels] = merge_parts(
+        post ? view_before_post(view) : view, wants_layer(request, "halves"), first.part, nodes, rows, groups.groups);
+
+    MergedFrame merged{std::move(layers), stats, {}, empty_pixels};
     const PlannedError& planned = request.grouping.error;
     LoadedFrame frame;
     if (post || (planned.integrator && !planned.is_truth)) {
@@ -105,8 +146,9 @@ MergedFrame merge_frame(std::vector<PartFile> files, int groups, const Scene& sc
         merged.stats.noise.reset();
     }
     judge_planned(planned, *plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, {}, merged.stats);
-    if (covered) std::ranges::fill(merged.layers.alpha.pixels, 1.0f);
+    if (first.part.covered) std::ranges::fill(merged.layers.alpha.pixels, 1.0f);
     merged.provenance = provenance_of(scene, request, plan.plan, view, hash, merged.stats);
+    note_gap(groups, merged.provenance);
     return merged;
 }
 }

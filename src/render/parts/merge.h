@@ -9,15 +9,26 @@
 namespace tyndall {
 struct Scene;
 
-// Sorts the parts of a frame by the samples they hold. Throws Error (refused), naming a file, unless all are of one
-// frame and plan, and hold every sample of whole groups, the plan's at least, exactly once. Returns how many groups.
-int check_parts(std::vector<PartFile>& parts, const SavedPlan& plan);
+// Which groups the parts of a frame hold.
+struct PartGroups {
+    int groups = 0;                 // from the first on
+    double share = 1;               // of their samples
+    std::string gap{};              // where a part is missing, if one is
+    std::filesystem::path beside{}; // the part next to it
+};
 
-// The frame, with its error. Throws Error (refused) where fog or scene are not what the parts were rendered from.
+// Sorts the parts of a frame by the samples they hold, of whole groups, the plan's at least. Throws Error (refused),
+// naming a file, where they are not of one frame and plan or hold a sample twice.
+PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan);
+
+// The frame, with its error where that is known. Throws Error (refused) where fog or scene are not what the parts were
+// rendered from.
 struct MergedFrame {
     Layers layers;
     FrameStats stats;
     Provenance provenance;
+    int64_t empty_pixels = 0;
 };
-MergedFrame merge_frame(std::vector<PartFile> parts, int groups, const Scene& scene, const SavedPlan& plan);
+MergedFrame merge_frame(std::span<const PartFile> parts, const PartGroups& groups, const Scene& scene,
+                        const SavedPlan& plan);
 }

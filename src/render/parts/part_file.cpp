@@ -96,29 +96,35 @@ const Image<float>& channel_of(const ExrFile& exr, const std::string& name, cons
 // Numbers of samples are whole, and no more are kept than taken.
 void check_counts(std::span<const float> sums, size_t numbers, const std::string& file) {
     for (size_t at = 0; at < sums.size(); at += numbers) {
-        const float kept = sums[at + 13], taken = sums[at + 14];
+        const float kept = sums[at + kept_sum], taken = sums[at + taken_sum];
         const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
         if (!(whole && kept >= 0 && kept <= taken && taken <= 1 << 24))
             refuse(file, "damaged: it holds numbers of samples that cannot be");
     }
 }
 
-void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
+// Which nodes there are, and how many numbers each has.
+void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
     const int64_t leaves = (part.range.last - part.range.first) / part.range.slices;
     if (leaves / part.leaves > static_cast<int64_t>(exr.channels.size()))
         refuse(file, "damaged: it has fewer channels than tyndall:partRange asks for");
     part.nodes = nodes_of(part.range, part.leaves);
     part.numbers = fixed_sums;
     while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
+}
+
+// Those of the rows that the file was read for.
+void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
+    part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
+    part.size = part.depth.size;
     for (const SumNode& node : part.nodes) {
-        std::vector<float>& sums = part.sums.emplace_back(exr.channels[0].second.pixels.size() * part.numbers);
+        std::vector<float>& sums = part.sums.emplace_back(part.depth.pixels.size() * part.numbers);
         for (size_t k = 0; k < part.numbers; ++k) {
             const Image<float>& values = channel_of(exr, channel_name(node, k), file);
             for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
         }
         check_counts(sums, part.numbers, file);
     }
-    part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
 }
 }
 
@@ -144,11 +150,14 @@ void write_part(const std::filesystem::path& file, const FramePart& part, Proven
             channels.push_back({channel_name(part.nodes[n], k), part.sums[n].data() + k, part.numbers, true});
     channels.push_back({"Z", part.depth.pixels.data(), 1, true});
     channels.push_back({"offset", part.off_center.pixels.data(), 1, true});
-    write_exr_channels(file, {part.display, part.low, part.size}, channels, provenance);
+    const bool finished = part.finished.empty();
+    if (!finished) channels.push_back({"finished", part.finished.pixels.data(), 1, true});
+    const ExrPacking packing = finished ? ExrPacking::zip : ExrPacking::none;
+    write_exr_channels(file, {part.display, part.low, part.size}, channels, provenance, packing);
 }
 
-PartFile read_part(const std::filesystem::path& file) {
-    const ExrFile exr = read_exr(file);
+namespace {
+PartFile part_in(const ExrFile& exr, const std::filesystem::path& file) {
     const Header header{exr.attributes, file.string()};
     PartFile result{file,
                     file.parent_path() / header.text("tyndall:planFile"),
@@ -162,15 +171,54 @@ PartFile read_part(const std::filesystem::path& file) {
     FramePart& part = result.part;
     part.display = exr.display, part.low = exr.low, part.size = exr.size;
     part.covered = header.text("tyndall:partCovered") == "1";
-    read_range(header, part), read_lights(header, part), read_sums(exr, file.string(), part);
+    read_range(header, part), read_lights(header, part), find_sums(exr, file.string(), part);
     return result;
+}
+}
+
+PartFile read_part(const std::filesystem::path& file) {
+    const ExrFile exr = read_exr_header(file);
+    PartFile result = part_in(exr, file);
+    if (exr.channel("finished"))
+        refuse(file.string(), "is the checkpoint of a part that is not finished: render it with --resume");
+    return result;
+}
+
+FramePart read_rows(const PartFile& part, int first, int count) {
+    FramePart rows = part.part;
+    read_sums(read_exr_rows(part.file, first, count), part.file.string(), rows);
+    return rows;
+}
+
+std::filesystem::path checkpoint_name(const std::filesystem::path& part) {
+    return std::filesystem::path(part).replace_extension("checkpoint");
+}
+
+std::optional<FramePart> read_checkpoint(const std::filesystem::path& file, const std::string& hash,
+                                         const Grouping& grouping, std::string& why) {
+    if (!std::filesystem::exists(file)) return {};
+    try {
+        const ExrFile exr = read_exr(file);
+        PartFile read = part_in(exr, file);
+        read_sums(exr, file.string(), read.part);
+        if (const Image<float>* finished = exr.channel("finished")) read.part.finished = *finished;
+        if (read.part.finished.empty())
+            why = "is no checkpoint";
+        else if (read.hash != hash || read.label != label(grouping) || read.plan_hash != grouping.plan_hash)
+            why = "is of other inputs, settings or plan";
+        else
+            return std::move(read.part);
+    } catch (const Error& error) {
+        why = error.what();
+    }
+    return {};
 }
 
 bool is_finished_part(const std::filesystem::path& file, const std::string& hash, const Grouping& grouping,
                       std::string& why) {
     if (!std::filesystem::exists(file)) return false;
     try {
-        const ExrFile exr = read_exr(file);
+        const ExrFile exr = read_exr_header(file);
         const Header header{exr.attributes, file.string()};
         if (!exr.is_unchanged)
             why = "damaged";

@@ -18,7 +18,7 @@ PartRange range_of(const Grouping& grouping, const Mode& mode, const View& view)
 
 struct PartFile {
     std::filesystem::path file, plan_file;
-    FramePart part;
+    FramePart part;        // without its sums
     std::string hash;      // of all its frame depends on
     std::string plan_hash; // of the plan
     std::string label;     // 3/8
@@ -28,12 +28,23 @@ struct PartFile {
 // out.0001.exr and part 3 of 8 make out.0001.part-3-of-8.exr.
 std::string part_name(const std::string& frame_file, const Grouping& grouping);
 
-// Throws Error (unwritable, internal). The provenance's hash and frame go with it.
+// Throws Error (unwritable, internal). The provenance's hash and frame go with it. One that is unfinished is a
+// checkpoint: not packed, and with the channel `finished`.
 void write_part(const std::filesystem::path& file, const FramePart& part, Provenance provenance,
                 const Grouping& grouping);
 
 // Throws Error (unreadable, refused): every byte has to be as it was written.
 PartFile read_part(const std::filesystem::path& file);
+
+// So many rows of the part, with their sums. Throws Error (unreadable, refused).
+FramePart read_rows(const PartFile& part, int first, int count);
+
+// frame.part-1-of-3.exr: what is rendered of it so far is kept in frame.part-1-of-3.checkpoint.
+std::filesystem::path checkpoint_name(const std::filesystem::path& part);
+
+// The part that is asked for as far as it is there; none where there is no such file, or `why` there is no using it.
+std::optional<FramePart> read_checkpoint(const std::filesystem::path& file, const std::string& hash,
+                                         const Grouping& grouping, std::string& why);
 
 // Whether the file is that part already; `why` says why not (empty: there is no file).
 bool is_finished_part(const std::filesystem::path& file, const std::string& hash, const Grouping& grouping,

@@ -61,7 +61,8 @@ struct RenderRequest {
     bool background = true;  // in the picture
     bool png = false, resume = false;
     Grouping grouping{};
-    std::string unsaved; // edits that the scene's files do not have; for hash and header
+    double checkpoint_seconds = 600; // of a part, between two
+    std::string unsaved;             // edits that the scene's files do not have; for hash and header
 };
 
 // What is decided: by what the frames are rendered.

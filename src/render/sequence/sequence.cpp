@@ -224,11 +224,27 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
         render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
 }
 
-// The part of the frame's samples that was asked for.
+// The part of the frame's samples that was asked for, from its last checkpoint on.
 void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work& work) {
+    const RenderRequest& request = pipeline.request;
     const Mode& mode = *pipeline.plan.mode;
-    const PartRange range = range_of(pipeline.request.grouping, mode, work.view);
-    work.part = render_part(mode, work.view, work.snapshot, pipeline.plan.settings, options, range, work.report.stats);
+    const std::filesystem::path file = checkpoint_name(work.report.file);
+    std::string why;
+    Checkpoints checkpoints{request.checkpoint_seconds};
+    if (request.resume) checkpoints.last = read_checkpoint(file, work.hash, request.grouping, why);
+    if (checkpoints.last) say(pipeline, work, "goes on from " + file.string());
+    if (!why.empty()) say(pipeline, work, "begins again: the checkpoint " + why);
+    checkpoints.keep = [&](const FramePart& part) {
+        try {
+            write_part(file, part, provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, {}),
+                       request.grouping);
+        } catch (const Error& error) {
+            say(pipeline, work, std::string("goes on without a checkpoint: ") + error.what());
+        }
+    };
+    const PartRange range = range_of(request.grouping, mode, work.view);
+    work.part = render_part(mode, work.view, work.snapshot, pipeline.plan.settings, options, range,
+                            std::move(checkpoints), work.report.stats);
 }
 
 void render(Pipeline& pipeline, Work& work) {
@@ -289,10 +305,13 @@ void write(Pipeline& pipeline, Work& work) {
     try {
         const Provenance provenance = provenance_of(pipeline.scene, request, work.by ? *work.by : pipeline.plan,
                                                     work.view, work.hash, report.stats);
-        if (is_part(request.grouping))
+        if (is_part(request.grouping)) {
             write_part(report.file, work.part, provenance, request.grouping);
-        else
+            std::error_code ignored; // it may never have been written
+            std::filesystem::remove(checkpoint_name(report.file), ignored);
+        } else {
             write_exr(report.file, work.layers, provenance, request.exr);
+        }
         if (request.png) write_picture(pipeline, stored_color(work.layers, request.exr), report);
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);

@@ -1,0 +1,27 @@
+// What is summed of the samples of a pixel, leaf by leaf and then in the binary tree of part.h. For the files of this
+// folder only.
+#pragma once
+#include "render/frame/frame_task.h"
+#include "render/frame/part.h"
+#include "trace/view.h"
+
+namespace tyndall {
+// A tile's sums while it is rendered.
+struct TileSums {
+    const FrameTask& task;
+    const PixelTile& tile;
+    FrameStats& stats;
+    const Layers& layers = task.layers; // whose pixels count
+    int leaves = task.tracer.view.leaves;
+    int group_size = samples_of(task.tracer.view, tile.corner) / task.tracer.view.batches;
+    std::vector<float> depth = std::vector<float>(16, infinity), off_center = depth;
+
+    size_t numbers() const { return fixed_sums + 3 * task.parts.size(); }
+};
+
+// The numbers of each pixel of the tile, one pixel after the other. Throws Error (internal) when cancelled.
+std::vector<float> node_sums(TileSums& tile, const SumNode& node);
+
+// The node that is all of a group has this level.
+int root_level(int leaves);
+}
