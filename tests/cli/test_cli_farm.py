@@ -135,6 +135,10 @@ class Submit(FarmTest):
                 (2, ["--samples"], [*submit, "--samples", 5, "--target-error", 0.1]),
                 (4, ["nothing.json"], ["submit", "slurm", self.path("nothing.json"), "-o", out])):
             self.refuse(code, words, *arguments)
+        merge = ["merge", self.path("a.####.exr"), "-o", self.path("b.####.exr")]
+        self.refuse(2, ["--frames", "needs --parts"], *merge, "--frames", 1)
+        self.refuse(2, ["--frames", "####"], *merge, "--parts", 2)
+        self.refuse(2, ["--parts"], *merge, "--parts", 0, "--frames", 1)
         self.submit()
         self.refuse(2, ["--output", "another job"], "submit", "slurm", self.scene, "--samples", 4, "-o", self.folder)
         self.submit()  # the same again
@@ -211,6 +215,18 @@ class Status(FarmTest):
             self.assertIn(words, said)
         self.run_commands(told)
         self.assertEqual(self.status()["finished"], 3)
+
+    def test_a_frame_of_some_of_its_parts_is_not_finished(self):
+        self.submit("slurm", "--parts", 2, "--frames", 1)
+        told = self.status()
+        subprocess.run(["bash", "-c", told["commands"][0]], check=True, capture_output=True)
+        merged = run("merge", self.part(1, 1), "--partial", "-o", self.folder / "frames/my_scene_s.0001.exr")
+        self.assertEqual(merged.returncode, 1, merged.stderr)
+        told = self.status()
+        self.assertEqual((told["finished"], told["missing_parts"]), (0, 1))
+        self.assertEqual(told["suspicious"][0]["why"], "merged while parts were missing")
+        self.run_commands(told)
+        self.assertEqual(self.status()["finished"], 1)
 
     def test_bad_jobs(self):
         self.refuse(4, ["job.json"], "status", self.path("nothing"))

@@ -79,7 +79,7 @@ class Slurm(ProgramTest):
 
     def check_bits(self, folder, frames):
         """Each frame has the bits of one run of the plan."""
-        self.succeed("render", "--plan", folder / "plan.json", "-o", self.path("one.####.exr"), "-q", timeout=600)
+        self.succeed("render", "--plan", folder / "plan.json", "-o", self.path("one.####.exr"), "-q", timeout=3600)
         for frame in frames:
             merged = read_channels(folder / f"frames/window.{frame:04}.exr")
             self.assertEqual(merged, read_channels(self.path(f"one.{frame:04}.exr")), frame)

@@ -27,6 +27,7 @@ struct Expected {
 
 std::string disagreement(const ExrGlance& glance, const Expected& expected) {
     if (glance.frame != expected.frame) return "of another frame";
+    if (glance.partial) return "merged while parts were missing";
     if (glance.part != expected.part)
         return expected.part.empty() ? "a part in the place of a frame" : "of another division into parts";
     if (glance.plan_hash != expected.plan_hash && !expected.part.empty()) return "of another plan";

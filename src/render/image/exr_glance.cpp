@@ -104,6 +104,7 @@ std::optional<BlockTable> read_header(std::string_view bytes, const std::string&
         if (name == "imageCounter" && type == "int") glance.frame = std::to_string(value.integer());
         if (name == "tyndall:part") glance.part = value.left;
         if (name == "tyndall:planHash") glance.plan_hash = value.left;
+        if (name == "tyndall:partial") glance.partial = true;
         if (name == "dataWindow") value.integer(), low = value.integer(), value.integer(), high = value.integer();
         if (name == "compression" && size == 1) table.lines = value.left[0] == 3 ? 16 : 1;
     }

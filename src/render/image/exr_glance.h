@@ -8,6 +8,7 @@
 namespace tyndall {
 struct ExrGlance {
     std::string frame, part, plan_hash; // imageCounter, tyndall:part and tyndall:planHash; empty where there is none
+    bool partial = false;               // tyndall:partial: merged while parts were missing
 };
 
 // None where there is no file. Throws Error (unreadable, refused): no EXR of scanlines, or one that does not end where
