@@ -100,7 +100,7 @@ class Slurm(ProgramTest):
 
     @unittest.skipUnless(NIGHTLY, "long: set TYNDALL_NIGHTLY=1")
     def test_a_job_survives_many_kills(self):
-        self.kill_during_job(24, 1024, 24, (2, 6), 3600)
+        self.kill_during_job(24, 512, 24, (2, 6), 3600)
 
     def test_each_frame_gets_a_plan_for_an_error(self):
         folder = self.submit("--frames", "1,9", "--parts", 2, "--target-error", 0.2, "--remove-parts")
