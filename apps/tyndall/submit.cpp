@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/frames.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/farm/farm_status.h"
 #include "render/farm/inputs.h"
@@ -38,8 +39,7 @@ int number_or(const char* name, const std::string& text, int otherwise, int high
 FarmJob job_of(const Options& texts, const Scene& scene) {
     std::error_code ignored;
     FarmJob job;
-    job.folder = std::filesystem::absolute(texts.folder).lexically_normal();
-    if (!job.folder.has_filename()) job.folder = job.folder.parent_path(); // out/ is out
+    job.folder = job_folder(texts.folder);
     job.engine = texts.engine;
     job.program = std::filesystem::read_symlink("/proc/self/exe", ignored).string();
     job.scene = std::filesystem::absolute(texts.render.scene).lexically_normal().string();
@@ -109,14 +109,19 @@ void check_folder(const FarmJob& job) {
 void check_parts_of(const FarmJob& job, const Scene& scene) {
     SavedPlan plan = load_plan(job.folder / "plan.json");
     plan.request.grouping.parts = plan.request.grouping.part = job.parts;
-    range_of(plan.request.grouping, *plan.plan.mode,
-             view_of(scene, plan.request, plan.plan.settings, plan.request.frames[0]));
+    try {
+        range_of(plan.request.grouping, *plan.plan.mode,
+                 view_of(scene, plan.request, plan.plan.settings, plan.request.frames[0]));
+    } catch (const Error& error) {
+        std::filesystem::remove(job.folder / "plan.json");
+        fail(error.code, "--parts", error.what());
+    }
 }
 
 void write_job(const FarmJob& job, const FarmFiles& files, const Options& texts, const Scene& scene,
                const Globals& globals) {
-    for (const char* name : {"parts", "frames", "logs", "plans"})
-        if (job.plan_for_each_frame || std::string_view(name) != "plans") check_output(job.folder / name / job.name);
+    OutputPlaces places;
+    places.check(job.folder / "job.json");
     if (!job.plan_for_each_frame) {
         Globals quiet = globals;
         quiet.quiet = true;
@@ -125,6 +130,8 @@ void write_job(const FarmJob& job, const FarmFiles& files, const Options& texts,
         save_plan_as_asked(render, texts.groups, (job.folder / "plan.json").string(), quiet);
         check_parts_of(job, scene);
     }
+    for (const char* name : {"parts", "frames", "logs", "plans"})
+        if (job.plan_for_each_frame || std::string_view(name) != "plans") check_output(job.folder / name / job.name);
     for (const auto& [name, text] : files) write_file_atomically(job.folder / name, text);
     save_job(job);
 }

@@ -5,13 +5,16 @@ import unittest
 
 from program import TYNDALL, ProgramTest, recipe, run, scene
 
-COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "explain"]
+COMMANDS = ["bake", "render", "info", "check", "modes", "compare", "verify", "explain", "merge", "submit", "status"]
 OPTIONS = {
     "bake": ["--output", "--frames", "--voxel-size", "--float", "--resume", "--compression"],
     "render": ["--output", "--frames", "--mode", "--quality", "--camera", "--res", "--crop", "--samples", "--set",
                "--exposure", "--view-transform", "--light-units", "--missing", "--aov", "--background", "--png", "--resume", "--seed", "--isa",
                "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
+    "merge": ["--parts", "--frames", "--wait", "--partial", "--remove-parts"],
+    "submit": ["--frames", "--parts", "--chunk", "--cpus", "--memory", "--dry-run", "--run", "--target-error", "--aov"],
+    "status": ["--verify", "--tasks"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
     "explain": ["--pixel", "--frame", "--camera", "--res", "--quality", "--set", "--modes", "--svg", "--csv"],
 }

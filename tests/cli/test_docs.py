@@ -79,17 +79,23 @@ class Docs(ProgramTest):
     def test_long_commands(self):
         self.run_commands(True)
 
-    def test_the_array_job_renders_its_frames(self):
-        scripts = re.findall(r"^```bash\n(.*?)^```", (SOURCE / "docs/farm.md").read_text(), re.M | re.S)
-        self.assertEqual(len(scripts), 2)
-        places = {"SLURM_ARRAY_TASK_ID": "3", "SLURM_CPUS_PER_TASK": "2",
-                  "PATH": f"{pathlib.Path(TYNDALL).parent}:{os.environ['PATH']}"}
-        task, check = [subprocess.run(["bash", "-ec", script], cwd=self.directory, env={**os.environ, **places},
-                                      capture_output=True, text=True) for script in scripts]
-        self.assertEqual(task.returncode, 0, task.stderr)
-        self.assertTrue(self.path("out/shot.0008.exr").exists())
-        self.assertEqual(check.returncode, 4, check.stderr)
-        self.assertEqual(len(check.stdout.splitlines()), 22, "two of 24 frames are there")
+    def test_the_status_of_the_job_and_command_lines_of_other_engines(self):
+        text = (SOURCE / "docs/farm.md").read_text()
+        [status] = re.findall(r"^```bash\n(.*?)^```", text, re.M | re.S)
+        for words in [words for _, words, _ in commands() if words[:2] == ["tyndall", "submit"]]:
+            self.succeed(*words[1:], cwd=self.directory)
+        asked = self.succeed("submit", "openjd", "scenes/window.json", "--frames", "1001-1024", "--parts", "3", "--samples", "2",
+                             "-o", "out/pasted", cwd=self.directory)
+        places = {**os.environ, "PATH": f"{pathlib.Path(TYNDALL).parent}:{os.environ['PATH']}"}
+        told = subprocess.run(["bash", "-c", status], cwd=self.directory, env=places, capture_output=True, text=True)
+        self.assertEqual(told.returncode, 1, told.stderr + asked.stderr)
+        self.assertIn("finished: 0 of 24 frames", told.stdout)
+        pasted = re.findall(r"^(?:Deadline 10|Tractor) .*?(render --plan .*?--resume)", text, re.M)
+        self.assertEqual(len(pasted), 2)
+        for command in pasted:  # one frame of each, small
+            words = shlex.split(re.sub(r"--frames \S+", "--frames 1001", command).replace("out/shot/", "out/pasted/"))
+            self.succeed(*words, cwd=self.directory)
+        self.assertEqual(len(list(self.path("out/pasted/parts").iterdir())), 1)
 
     @unittest.skipUnless(os.environ.get("TYNDALL_NIGHTLY"), "long: set TYNDALL_NIGHTLY=1")
     @unittest.skipUnless(shutil.which("xvfb-run"), "xvfb-run is not installed")

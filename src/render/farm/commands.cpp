@@ -31,6 +31,7 @@ CommandWords merge_words(const FarmJob& job, const CommandBlanks& blanks) {
     CommandWords words{
         "merge", blanks.folder + part_pattern(job), "--parts", std::to_string(job.parts), "--frames", blanks.frames,
         "-o",    blanks.folder + frame_pattern(job)};
+    words.insert(words.end(), {"--wait", "30"}); // shared file systems show new files late
     if (job.remove_parts) words.emplace_back("--remove-parts");
     return words;
 }

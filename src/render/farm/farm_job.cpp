@@ -9,6 +9,11 @@
 #include <algorithm>
 
 namespace tyndall {
+std::filesystem::path job_folder(const std::filesystem::path& folder) {
+    const std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+    return path.has_filename() ? path : path.parent_path();
+}
+
 std::string job_name_of(const std::filesystem::path& scene) {
     std::string name = scene.stem().string();
     for (char& c : name) {
@@ -43,7 +48,7 @@ void save_job(const FarmJob& job) { write_file_atomically(job.folder / "job.json
 FarmJob load_job(const std::filesystem::path& folder) {
     const Json json = read_json(folder / "job.json", job_schema);
     FarmJob job;
-    job.folder = std::filesystem::absolute(folder).lexically_normal();
+    job.folder = job_folder(folder);
     job.engine = json.string_or("engine", "");
     job.program = json.string_or("program", "");
     job.scene = json.string_or("scene", "");

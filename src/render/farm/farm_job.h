@@ -24,6 +24,9 @@ struct FarmJob {
     bool remove_parts = false;             // once merged
 };
 
+// As files name it: absolute, without a slash at its end.
+std::filesystem::path job_folder(const std::filesystem::path& folder);
+
 // Of a scene, as a name that shells, engines and frame patterns leave as it is.
 std::string job_name_of(const std::filesystem::path& scene);
 

@@ -11,25 +11,26 @@
 #include "render/sequence/job.h"
 
 #include <algorithm>
+#include <exception>
+#include <functional>
 #include <mutex>
+#include <thread>
 
 namespace tyndall {
 namespace {
+constexpr size_t waiting_threads = 16;
+
 // What a part's header has to say.
 struct Expected {
     std::string frame, part, plan_hash;
 };
 
-std::string text_of(const ExrGlance& glance, const char* name) {
-    const auto found = glance.texts.find(name);
-    return found == glance.texts.end() ? std::string() : found->second;
-}
-
 std::string disagreement(const ExrGlance& glance, const Expected& expected) {
-    if (text_of(glance, "imageCounter") != expected.frame) return "of another frame";
-    if (text_of(glance, "tyndall:part") != expected.part)
+    if (glance.frame != expected.frame) return "of another frame";
+    if (glance.partial) return "merged while parts were missing";
+    if (glance.part != expected.part)
         return expected.part.empty() ? "a part in the place of a frame" : "of another division into parts";
-    if (!expected.part.empty() && text_of(glance, "tyndall:planHash") != expected.plan_hash) return "of another plan";
+    if (glance.plan_hash != expected.plan_hash && !expected.part.empty()) return "of another plan";
     return {};
 }
 
@@ -92,6 +93,28 @@ void count_others(const FarmJob& job, FarmStatus& status) {
     }
 }
 
+// Calls body(i) for each i below count, on many more threads than processors: what they do is wait for files. What the
+// first of them throws is thrown again.
+void while_waiting(size_t count, const std::function<void(size_t)>& body) {
+    std::atomic<size_t> next{0};
+    std::exception_ptr problem;
+    std::mutex mutex;
+    const auto work = [&] {
+        try {
+            for (size_t i; (i = next++) < count;) body(i);
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            problem = std::current_exception();
+            next = count;
+        }
+    };
+    {
+        std::vector<std::jthread> threads;
+        for (size_t i = 0; i < std::min<size_t>(waiting_threads, count); ++i) threads.emplace_back(work);
+    }
+    if (problem) std::rethrow_exception(problem);
+}
+
 std::string command_text(const FarmJob& job, const CommandWords& words) {
     std::string text = quoted_for_shell(job.program);
     for (const std::string& word : words) text += " " + quoted_for_shell(word);
@@ -105,10 +128,13 @@ FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& can
         job.plan_for_each_frame ? std::string() : content_hash(read_file(job.folder / "plan.json"));
     status.frames.resize(job.frames.size());
     std::vector<std::vector<SuspectFile>> suspects(job.frames.size());
-    parallel_for(static_cast<int64_t>(job.frames.size()), [&](int64_t i) {
-        const size_t index = static_cast<size_t>(i);
-        if (!cancel) status.frames[index] = look_at_frame(job, job.frames[index], shared_plan, verify, suspects[index]);
-    });
+    const auto look = [&](size_t i) {
+        if (!cancel) status.frames[i] = look_at_frame(job, job.frames[i], shared_plan, verify, suspects[i]);
+    };
+    if (verify)
+        parallel_for(static_cast<int64_t>(job.frames.size()), [&](int64_t i) { look(static_cast<size_t>(i)); });
+    else
+        while_waiting(job.frames.size(), look);
     for (std::vector<SuspectFile>& some : suspects) std::ranges::move(some, std::back_inserter(status.suspects));
     count_others(job, status);
     return status;

@@ -6,18 +6,21 @@ chunks=(@CHUNKS@)
 parts=@PARTS@
 number=$(($2 + ${SLURM_ARRAY_TASK_ID:-0}))
 
-# Runs the program. SIGTERM goes on to it, and it writes a checkpoint; what a signal has ended goes back to the queue,
-# unless the job was cancelled.
+# Runs the program. SIGTERM goes on to it: it writes a checkpoint, and the task goes back to the queue unless the job was
+# cancelled. A program that is killed starts again here, from its checkpoint, four times at most.
 run() {
-  "$tyndall" "$@" --threads "${SLURM_CPUS_PER_TASK:-1}" &
-  local program=$! code
-  trap 'kill -TERM "$program"' TERM
-  wait "$program" && code=0 || code=$?
-  while kill -0 "$program" 2>/dev/null; do # a signal ended the waiting, not the program
+  local program code tries job=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
+  for ((tries = 0; tries < 5; ++tries)); do
+    "$tyndall" "$@" --threads "${SLURM_CPUS_PER_TASK:-1}" &
+    program=$!
+    trap 'kill -TERM "$program"' TERM
     wait "$program" && code=0 || code=$?
+    while kill -0 "$program" 2>/dev/null; do # a signal ended the waiting, not the program
+      wait "$program" && code=0 || code=$?
+    done
+    ((code == 137)) || break
   done
-  local job=${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID
-  if ((code > 128 && ${SLURM_RESTART_COUNT:-0} < 100)) && [ "$(squeue -h -j "$job" -o %T)" = RUNNING ]; then
+  if ((code == 143 && ${SLURM_RESTART_COUNT:-0} < 100)) && [ "$(squeue -h -j "$job" -o %T)" = RUNNING ]; then
     scontrol requeue "$job"
   fi
   exit "$code"

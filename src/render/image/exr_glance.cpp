@@ -2,9 +2,12 @@
 
 #include "base/error.h"
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -37,13 +40,12 @@ public:
     bool is_there() const { return descriptor_ >= 0; }
     uint64_t bytes() const { return bytes_; }
 
-    // As much of it as there is.
-    std::string read(uint64_t offset, size_t count) const {
-        std::string text(count, '\0');
-        const ssize_t got = offset < bytes_ ? pread(descriptor_, text.data(), count, static_cast<off_t>(offset)) : 0;
+    // As much of it as there is, up to the buffer's size.
+    std::string_view read(uint64_t offset, std::span<char> buffer) const {
+        const ssize_t got =
+            offset < bytes_ ? pread(descriptor_, buffer.data(), buffer.size(), static_cast<off_t>(offset)) : 0;
         if (got < 0) fail(ExitCode::unreadable, name_, std::strerror(errno));
-        text.resize(static_cast<size_t>(got));
-        return text;
+        return {buffer.data(), static_cast<size_t>(got)};
     }
 
 private:
@@ -99,8 +101,10 @@ std::optional<BlockTable> read_header(std::string_view bytes, const std::string&
         if (size < 0) refuse(file, "damaged: an attribute has a negative size");
         Taken value{taken.bytes(static_cast<size_t>(size))};
         if (taken.short_of) return {};
-        if (type == "string") glance.texts[std::string(name)] = value.left;
-        if (type == "int") glance.texts[std::string(name)] = std::to_string(value.integer());
+        if (name == "imageCounter" && type == "int") glance.frame = std::to_string(value.integer());
+        if (name == "tyndall:part") glance.part = value.left;
+        if (name == "tyndall:planHash") glance.plan_hash = value.left;
+        if (name == "tyndall:partial") glance.partial = true;
         if (name == "dataWindow") value.integer(), low = value.integer(), value.integer(), high = value.integer();
         if (name == "compression" && size == 1) table.lines = value.left[0] == 3 ? 16 : 1;
     }
@@ -111,13 +115,14 @@ std::optional<BlockTable> read_header(std::string_view bytes, const std::string&
 }
 
 // The last block's entry of the table, its line and size, and the file's end have to agree.
-bool ends_with_last_block(const ReadFile& file, const BlockTable& table) {
-    uint64_t offset = 0;
-    const std::string entry = file.read(table.start + 8 * static_cast<uint64_t>(table.blocks - 1), 8);
+bool ends_with_last_block(const ReadFile& file, std::string_view bytes, const BlockTable& table) {
+    std::array<char, 8> room{};
+    const uint64_t place = table.start + 8 * static_cast<uint64_t>(table.blocks - 1);
+    const std::string_view entry = place + 8 <= bytes.size() ? bytes.substr(place, 8) : file.read(place, room);
     if (entry.size() < 8) return false;
+    uint64_t offset = 0;
     std::memcpy(&offset, entry.data(), 8);
-    const std::string begin = file.read(offset, 8);
-    Taken block{begin};
+    Taken block{file.read(offset, room)};
     const int32_t line = block.integer(), size = block.integer();
     return !block.short_of && line == table.first_line + table.lines * (table.blocks - 1) && size > 0 &&
            offset + 8 + static_cast<uint64_t>(size) == file.bytes();
@@ -127,15 +132,17 @@ bool ends_with_last_block(const ReadFile& file, const BlockTable& table) {
 std::optional<ExrGlance> glance_at_exr(const std::filesystem::path& path) {
     const ReadFile file(path);
     if (!file.is_there()) return {};
-    for (size_t length = first_read;; length *= 8) {
-        ExrGlance glance{{}, file.bytes()};
-        const std::string bytes = file.read(0, std::min(length, longest_header));
+    std::vector<char> buffer;
+    for (size_t length = first_read;; length = longest_header) {
+        buffer.resize(length);
+        ExrGlance glance;
+        const std::string_view bytes = file.read(0, buffer);
         if (const auto table = read_header(bytes, path.string(), glance)) {
-            if (!ends_with_last_block(file, *table)) refuse(path.string(), "short: it ends before its last block does");
-            return glance;
+            if (ends_with_last_block(file, bytes, *table)) return glance;
+            refuse(path.string(), "short: it ends before its last block does");
         }
         if (bytes.size() == file.bytes()) refuse(path.string(), "short: it ends within its header");
-        if (length >= longest_header) refuse(path.string(), "damaged: its header is longer than 1 MiB");
+        if (length == longest_header) refuse(path.string(), "damaged: its header is longer than 1 MiB");
     }
 }
 }

@@ -2,14 +2,13 @@
 // of thousands of files take a second.
 #pragma once
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 
 namespace tyndall {
 struct ExrGlance {
-    std::map<std::string, std::string> texts; // attributes that are strings or whole numbers
-    uint64_t bytes = 0;
+    std::string frame, part, plan_hash; // imageCounter, tyndall:part and tyndall:planHash; empty where there is none
+    bool partial = false;               // tyndall:partial: merged while parts were missing
 };
 
 // None where there is no file. Throws Error (unreadable, refused): no EXR of scanlines, or one that does not end where

@@ -51,6 +51,17 @@ template<class Action> std::string terminal_output_of(Action action) {
     return text;
 }
 
+TEST(Progress, AnOpenJobDescriptionSessionIsToldWhatItListensFor) {
+    const std::string text = output_of([] {
+        Progress progress(ProgressStyle::openjd, "render", 2);
+        progress.set(1);
+        progress.line("frame 1");
+        progress.finish();
+    });
+    EXPECT_THAT(lines_of(text), ElementsAre("openjd_progress: 0", "openjd_progress: 50", "openjd_status: frame 1",
+                                            "openjd_progress: 100"));
+}
+
 TEST(Progress, AFileGetsALineForEveryPercentThatChanges) {
     const std::string text = output_of([] {
         Progress progress(ProgressStyle::automatic, "render", 200);
