@@ -26,7 +26,7 @@ void add(std::span<const float> from, std::span<float> to) {
     for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
 }
 
-// A section of a node's numbers; zeros where it is missing.
+// A range of a node's numbers; zeros where it is missing.
 std::vector<float> node_sums(const Nodes& nodes, const SumNode& node, size_t first, size_t count) {
     std::vector<float> sums(count, 0.0f);
     if (const auto found = nodes.find(node); found != nodes.end()) {
