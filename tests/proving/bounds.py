@@ -26,12 +26,12 @@ from scene_files import write_scene
 
 SOURCE = pathlib.Path(__file__).parents[2]
 KINDS = [("march", "1"), ("froxel", "1"), ("path", "all"), ("march", "all"), ("froxel", "all"), ("path", "1")]
-SAMPLES = [("--samples", 16, "--groups", 2), ("--samples", 16, "--groups", 8), ("--samples", 32, "--groups", 2)]
+SAMPLES = [("--samples", 8, "--groups", 2), ("--samples", 8, "--groups", 8), ("--samples", 16, "--groups", 2)]
 TARGET = 0.1
 PICTURES = 6   # independent ones of a truth
-MANY = 64      # samples of each
+MANY = 32      # samples of each
 KNOWN = 0.35   # of the bound, at most, is what a truth may be off by
-FEW_PATHS = ("--set", "fluence.paths=20000", "--set", "fluence.resolution=32")  # every part and picture prepares them
+FEW_PATHS = ("--set", "fluence.paths=10000", "--set", "fluence.resolution=24")  # every part and picture prepares them
 
 
 def mean_of_pictures(pictures):
@@ -83,6 +83,7 @@ def by_samples(seed, common, options, folder):
     drawn, size = draw(seed)
     scene = write_scene(drawn, size, folder / "scene", options.program)
     plain = ["--mode", mode, "--orders", orders, "--frames", drawn.frame, "--res", "{}x{}".format(*options.size)]
+    plain += () if mode == "path" else ("--quality", "draft")  # noise is the same at any
     plain += FEW_PATHS if orders == "all" and mode != "path" else ()
     truth = by_seeds(options.program, scene, folder, plain)
     if truth is None:
@@ -159,7 +160,7 @@ def main():
     parser.add_argument("--kinds", type=lambda text: text.split(","), default=["samples", "target"])
     parser.add_argument("--program", default=SOURCE / "build/release/tyndall")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("proving"))
-    parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), default=(64, 36),
+    parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), default=(48, 27),
                         help="of pictures, those with a truth of single scattering apart")
     parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once")

@@ -40,7 +40,7 @@ def options_of(chance, size):
     share = min(1, MOST[0] / size[0]) * chance.choice([0.25, 0.5] if mode == "path" or has_target else [0.25, 0.5, 1])
     options = ["--mode", mode, "--res", f"{round(share * size[0])}x{round(share * size[1])}"]
     samples, groups = chance.choice([1, 2, 4, 8, 12]), chance.choice([None, 1, 2, 3, 4, 8])
-    options += ["--target-error", chance.choice([0.3, 0.15])] if has_target else ["--samples", samples]
+    options += ["--target-error", chance.choice([1.0, 0.5] if mode == "path" else [0.3, 0.15])] if has_target else ["--samples", samples]
     if mode != "path" and chance.random() < 0.25:
         options += ["--orders", "all", "--set", "fluence.paths=5000", "--set", "fluence.resolution=16"]  # in each part
     if groups and not (groups == 1 and has_target):
