@@ -172,9 +172,15 @@ def crafted(shop):
                        ("a long name", [b"x" * 300, *names[1:]]), ("an empty name", [b"", *names[1:]])):
         result.append(Fault(f"channels: {what}", {one: with_header(data, {"channels": channels_of(some)})}))
     weights = {n.decode(): 1.0 for n in names}
-    taken = next(n.decode() for n in names if n.endswith(b"taken") or n.endswith(b"samples"))
+    taken = next(n.decode() for n in names if n.endswith(b"taken"))
     for value in (-1.0, 0.5, 1e30, float("inf"), float("nan"), 3e7):
         result.append(Fault(f"{taken} = {value}", {one: with_samples(data, weights | {taken: value})}))
+    every = lambda end, value: {n.decode(): value for n in names if n.endswith(end)}
+    result += [
+        Fault("millions of samples dropped", {one: with_samples(data, weights | every(b"taken", 2.0 ** 24) | every(b"kept", 0.0))}),
+        Fault("no samples", {one: with_samples(data, weights | every(b"taken", 0.0) | every(b"kept", 0.0))}),
+        Fault("more samples than planned", {one: with_samples(data, weights | every(b"taken", 9.0) | every(b"kept", 9.0))}),
+        Fault("no numbers", {one: with_samples(data, weights | every(b"inscatter.R", float("nan")))})]
     result = [dataclasses.replace(fault, words=(one,), codes=(2, REFUSED) if "imageCounter" in fault.name else (REFUSED,))
               for fault in result]
     first = shop.names[0]  # whose plan is read
