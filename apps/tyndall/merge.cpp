@@ -6,6 +6,7 @@
 #include "base/io/frames.h"
 #include "base/io/output.h"
 #include "render/adaptive/planned.h"
+#include "render/parts/manifest.h"
 #include "render/parts/merge.h"
 #include "scene/scene.h"
 
@@ -63,6 +64,7 @@ int run_merge(const Options& texts, const Globals& globals) {
     std::map<int, int> groups;
     for (auto& [frame, parts] : frames) {
         groups[frame] = check_parts(parts, plan);
+        check_prepared(plan, frame);
         places.check(std::filesystem::path(frame_name(texts.output, frame)));
     }
     const Scene scene = load_scene(plan.request.scene_file, {plan.request.light_units});

@@ -202,6 +202,10 @@ void add_shares(const Command& command, RenderOptions& texts) {
            "M groups of samples beyond those of the plan, as parts; M@G: beyond the first\n"
            "G groups, where some were added before",
            "M[@G]");
+    option("--cache-local", texts.cache_local,
+           "a folder of this machine that files of tyndall prepare are copied to first,\n"
+           "unless they are there; without it they are read where they lie",
+           "DIR");
 }
 }
 

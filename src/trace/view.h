@@ -23,6 +23,11 @@ struct TileFactors {
     }
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(TileFactors& tiles, Visit& visit) {
+    visit(tiles.low), visit(tiles.factors.size), visit(tiles.factors.pixels);
+}
+
 struct View {
     Camera camera;
     ivec2 size{640, 360};            // the full picture (display window)

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -87,7 +88,12 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                    options.prepared ? 0 : prepared->mode_seconds,
                    scatter_seconds,
                    std::move(layers),
+                   {},
                    {}};
+    if (snapshot.files) {
+        task.made_by = mode.name;
+        for (const SettingRow& row : setting_rows()) task.made_by += " " + row.name + "=" + row.get(settings);
+    }
     return task;
 }
 

@@ -201,8 +201,7 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     if (view.fog_parts) task.parts = add_light_layers(lights, task.layers);
     const double prepared = steady_seconds();
     FrameStats probed;
-    if (mode.surfaces == Surfaces::shared)
-        view.edges = edge_factors(task.tracer, task.layers.low, task.layers.low + task.layers.size, probed);
+    if (mode.surfaces == Surfaces::shared) view.edges = edge_factors(task, probed);
 
     FramePart part;
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;

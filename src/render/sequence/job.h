@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace tyndall {
+struct CacheFolder;
 struct Choice;
 struct Mode;
 struct Scene;
@@ -61,7 +62,8 @@ struct RenderRequest {
     bool background = true;  // in the picture
     bool png = false, resume = false;
     Grouping grouping{};
-    std::string unsaved; // edits that the scene's files do not have; for hash and header
+    std::shared_ptr<CacheFolder> files{}; // of the plan, where it was prepared
+    std::string unsaved;                  // edits that the scene's files do not have; for hash and header
 };
 
 // What is decided: by what the frames are rendered.
