@@ -30,15 +30,17 @@ struct sigaction previous_action;
 
 // Reading a mapped page that is gone. Any other fault is left to whoever was there before.
 void on_bus_error(int, siginfo_t* info, void*) {
+    const bool is_fault = info->si_code > 0; // else somebody sent it
     const char* at = static_cast<const char*>(info->si_addr);
-    for (const WatchedRange* range = ranges; range; range = range->next) {
+    for (const WatchedRange* range = ranges; is_fault && range; range = range->next) {
         const char* begin = range->begin;
         if (!begin || at < begin || at >= begin + range->size) continue;
         if (write(STDERR_FILENO, range->line.data(), range->line.size()) < 0)
             _exit(static_cast<int>(ExitCode::internal));
         _exit(static_cast<int>(ExitCode::unreadable));
     }
-    sigaction(SIGBUS, &previous_action, nullptr); // the faulting instruction runs again
+    sigaction(SIGBUS, &previous_action, nullptr);
+    raise(SIGBUS); // delivered when this returns
 }
 
 void handle_bus_errors() {
@@ -57,7 +59,7 @@ WatchedRange* watched(const void* memory, size_t size, const std::string& file) 
     while (range && range->begin) range = range->next;
     const bool fresh = !range;
     if (fresh) range = new WatchedRange;
-    range->line = "tyndall: " + printable(file, 400) + ": was cut, or its disk is gone, while it was in use\n";
+    range->line = "tyndall: error: " + printable(file, 400) + ": was cut, or its disk is gone, while it was in use\n";
     range->size = size, range->begin = static_cast<const char*>(memory);
     if (fresh) range->next = ranges, ranges = range;
     return range;
