@@ -34,6 +34,7 @@ Run add_submit(const Command& program);
 Run add_status(const Command& program);
 Run add_verify(const Command& program);
 Run add_plan(const Command& program);
+Run add_prepare(const Command& program);
 Run add_explain(const Command& program);
 Run add_stress(const Command& program);
 Run add_chart(const Command& program);

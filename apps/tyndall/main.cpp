@@ -109,9 +109,10 @@ int run(int argc, char** argv) {
     GlobalTexts texts;
     add_globals(program, globals, texts);
     const std::vector<Run> commands{
-        add_bake(program),    add_render(program),  add_info(program),   add_check(program), add_modes(program),
-        add_compare(program), add_verify(program),  add_plan(program),   add_merge(program), add_submit(program),
-        add_status(program),  add_explain(program), add_stress(program), add_chart(program), add_view(program)};
+        add_bake(program),    add_render(program),  add_info(program),   add_check(program),
+        add_modes(program),   add_compare(program), add_verify(program), add_plan(program),
+        add_prepare(program), add_merge(program),   add_submit(program), add_status(program),
+        add_explain(program), add_stress(program),  add_chart(program),  add_view(program)};
     program.end_every_footer("\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
     if (!program.read(argc, argv)) return 0;
     apply_globals(globals, texts);

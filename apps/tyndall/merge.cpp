@@ -7,6 +7,7 @@
 #include "base/io/output.h"
 #include "base/parallel.h"
 #include "render/adaptive/planned.h"
+#include "render/parts/manifest.h"
 #include "render/parts/merge.h"
 #include "scene/scene.h"
 
@@ -113,7 +114,8 @@ void say_merged(const Merge& merge, int frame, const std::string& file, const Me
                 const PartGroups& groups, size_t parts, double seconds) {
     std::string noise = ", its noise is not known";
     if (const auto error = result.stats.error())
-        noise = formatted(", noise %.3g, at most %.3g", error->error, error->bound);
+        noise = formatted(", %s %.3g, at most %.3g", result.stats.integrator || result.stats.orders ? "error" : "noise",
+                          error->error, error->bound);
     else if (groups.gap.empty())
         noise.clear();
     merge.say(formatted("frame %d from %s in ", frame, count_text(parts, "part").c_str()) + seconds_text(seconds) +
@@ -161,7 +163,12 @@ int run_merge(const Options& texts, const Globals& globals) {
     const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
     if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, nor any other part");
     std::map<int, std::vector<PartFile>> frames = read_parts(names);
-    if (frames.size() > 1) check_pattern(texts.output, ".exr", true);
+    if (frames.size() > 1 && !has_frame_token(texts.output)) {
+        const PartFile& other = frames.rbegin()->second[0];
+        refuse(other.file.string(),
+               formatted("is of frame %d, others of frame %d: --output needs #### for several frames", other.frame,
+                         frames.begin()->first));
+    }
     const PartFile& first = frames.begin()->second[0];
     Merge merge{texts, globals};
     merge.plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));
@@ -171,6 +178,7 @@ int run_merge(const Options& texts, const Globals& globals) {
     for (auto& [frame, parts] : frames) {
         groups[frame] = check_parts(parts, merge.plan);
         if (!groups[frame].gap.empty() && !texts.partial) refuse(groups[frame].beside.string(), groups[frame].gap);
+        check_prepared(merge.plan, frame);
         places.check(std::filesystem::path(frame_name(texts.output, frame)));
     }
     const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});

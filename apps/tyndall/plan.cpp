@@ -6,6 +6,7 @@
 #include "base/io/frames.h"
 #include "modes/mode.h"
 #include "plan_as_asked.h"
+#include "render/adaptive/orders.h"
 #include "render/adaptive/planned.h"
 #include "render/parts/plan_file.h"
 #include "render/sequence/provenance.h"
@@ -99,6 +100,14 @@ PlannedSamples counted(const Scene& scene, const RenderRequest& request, const R
     return plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
 }
 
+// How far multiple scattering is off in the first of the frames; all of its samples share that.
+OrdersError grid_error(const Scene& scene, const RenderRequest& request, const RenderPlan& plan) {
+    const Snapshot snapshot = load_first_frame(scene, request).snapshot;
+    const View view = view_of(scene, request, plan.settings, request.frames[0]);
+    const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
+    return orders_error(*plan.mode, view, snapshot, plan.settings, 0, options);
+}
+
 // The plan as a file that render --plan takes.
 int save(const std::string& file, const Scene& scene, const RenderRequest& asked, RenderPlan plan, int groups,
          const Globals& globals) {
@@ -118,6 +127,7 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
                 seconds_text(planned.seconds) + " here");
     } else {
         request.grouping = grouping_of(samples, groups);
+        if (takes_fluence(*plan.mode, plan.settings)) request.grouping.error.orders = grid_error(scene, request, plan);
     }
     drop_absent_layers(scene, plan, request);
     const int most = request.grouping.groups * (wants_layer(request, "halves") ? 1 : request.grouping.sections);

@@ -11,6 +11,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
+#include "render/parts/manifest.h"
 #include "render/parts/part_file.h"
 #include "render/parts/plan_file.h"
 #include "render/sequence/auto_exposure.h"
@@ -149,6 +150,13 @@ void measure_exposure(const Scene& scene, std::span<const RenderRequest> request
         say(formatted("PNGs: automatic exposure, %+.1f EV (--exposure sets another)", *common.exposure));
 }
 
+void say_files_found(const RenderRequest& request, const Globals& globals) {
+    if (!request.files || !globals.verbose || globals.quiet) return;
+    for (const CacheCost& cost : request.files->costs)
+        if (cost.kind == CostKind::found)
+            say("found " + printable(cost.file, 200) + formatted(", which took %.3f s to make", cost.seconds));
+}
+
 // Renders the frames of one of the requests and reports on them; json is the statistics file's name, empty for none.
 Rendered render_frames(const Scene& scene, std::span<const RenderRequest> requests, const RenderRequest& request,
                        const RenderOptions& texts, Common& common, const Globals& globals) {
@@ -176,6 +184,7 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     RenderReport& report = result.report;
     report = render_sequence(scene, result.request, result.plan, progress, cancel_flag(), &first);
     if (!report.cancelled) progress.finish();
+    say_files_found(request, globals);
     // For the statistics only: a frame's header must not depend on which frame was the first.
     report.limitations = std::move(limitations);
     if (const std::string file = stats_name(texts, request, several); !file.empty())
@@ -252,10 +261,23 @@ std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional
         fail(ExitCode::usage, "SCENE", "a scene file or --plan is required (tyndall render --help)");
     if (texts.output.empty()) fail(ExitCode::usage, "--output", "is required (tyndall render --help)");
     if (!texts.plan.empty()) return {planned_request(texts, plan.emplace())};
-    for (const auto& [name, text] :
-         {std::pair{"--part", &texts.part}, {"--more", &texts.more}, {"--checkpoint", &texts.checkpoint}})
+    for (const auto& [name, text] : {std::pair{"--part", &texts.part},
+                                     {"--more", &texts.more},
+                                     {"--checkpoint", &texts.checkpoint},
+                                     {"--cache-local", &texts.cache_local}})
         if (!text->empty()) fail(ExitCode::usage, name, "needs --plan");
     return make_requests(texts);
+}
+
+// What was prepared for the plan's frames.
+std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const SavedPlan& plan,
+                                            const std::vector<int>& frames, const Globals& globals) {
+    std::vector<std::string> notes;
+    std::shared_ptr<CacheFolder> files = open_prepared(plan, frames, texts.cache_local, notes);
+    if (!files && !texts.cache_local.empty()) notes.push_back("--cache-local changes nothing: nothing was prepared");
+    if (!globals.quiet)
+        for (const std::string& note : notes) say("note: " + printable(note, 460));
+    return files;
 }
 
 int run_render(const RenderOptions& texts, const Globals& globals) {
@@ -282,6 +304,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
 
     const Scene scene = load_scene(requests[0].scene_file, options);
     if (saved) check_inputs(*saved, scene);
+    if (saved) requests[0].files = prepared_files(texts, *saved, requests[0].frames, globals);
     stop_if_cancelled();
     for (RenderRequest& request : requests) {
         choose_frames(scene, texts.order, request);

@@ -212,6 +212,10 @@ void add_shares(const Command& command, RenderOptions& texts) {
            "with --part: keep what is rendered of it in a file every so many minutes\n"
            "(default: 10) and when stopped by SIGTERM; --resume goes on from there",
            "MINUTES");
+    option("--cache-local", texts.cache_local,
+           "a folder of this machine that files of tyndall prepare are copied to first,\n"
+           "unless they are there; without it they are read where they lie",
+           "DIR");
 }
 }
 

@@ -11,7 +11,7 @@ struct RenderOptions {
     std::string scene, output, frames, mode = main_mode_name(), quality = "preview", camera, resolution, crop, samples;
     std::string exposure, view_transform, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
     std::string orders, target_error, time_budget, history, background = "on", sheet_reference;
-    std::string plan, part, more, checkpoint, order = "listed";
+    std::string plan, part, more, checkpoint, cache_local, order = "listed";
     std::vector<std::string> settings;
     bool png = false, resume = false, full_float = false;
 };

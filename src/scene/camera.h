@@ -15,6 +15,12 @@ struct Camera {
     float near = 0.01f, far = infinity;
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(Camera& camera, Visit& visit) {
+    visit(camera.name), visit(camera.position), visit(camera.right), visit(camera.up), visit(camera.forward);
+    visit(camera.vertical_fov), visit(camera.ortho_height), visit(camera.near), visit(camera.far);
+}
+
 // Camera at `position` looking at `target`; `up` need not be perpendicular.
 Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov);
 

@@ -1,6 +1,7 @@
 // Media of a scene at one moment: optics evaluated, files read, recipes grown, transforms folded in.
 #include "trace/fog.h"
 #include "base/error.h"
+#include "base/io/cache_folder.h"
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
@@ -34,23 +35,45 @@ bool changes(const FogRecipe& recipe) {
 
 std::string number_key(double value) { return formatted("%a", value); }
 
-FogSource source_of(const SparseVolume& volume, std::string key) {
+// Fog as cache files keep it.
+struct StoredFog {
+    bool any = false;        // fog at all; else no bricks
+    dmat4 index_to_world{1}; // before the medium's transform
+    BrickPool bricks;
+    std::string note; // what was mended in its file
+};
+
+template<class Visit> void fields(StoredFog& fog, Visit& visit) {
+    visit(fog.any), visit(fog.index_to_world), fields(fog.bricks, visit), visit(fog.note);
+}
+
+StoredFog stored_fog(const SparseVolume& volume, std::string note) {
+    StoredFog fog{!volume.empty(), volume.index_to_world, {}, std::move(note)};
+    if (fog.any) fog.bricks = *make_bricks(volume);
+    return fog;
+}
+
+FogSource source_of(StoredFog fog, std::string key, const std::string& content) {
     FogSource source;
     source.key = std::move(key);
-    source.index_to_world = volume.index_to_world;
-    if (!volume.empty()) source.bricks = make_bricks(volume);
+    source.index_to_world = fog.index_to_world;
+    if (!fog.any) return source;
+    fog.bricks.content = content;
+    source.bricks = std::make_shared<const BrickPool>(std::move(fog.bricks));
     return source;
 }
 
-FogSource grown(const MediumSource& source, double seconds, const FogSource& before) {
+FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, const FogSource& before) {
     FogRecipe recipe = *source.recipe;
     if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
     std::string key = "recipe " + recipe_hash(recipe);
     if (changes(recipe)) key.append(" at ").append(number_key(seconds));
-    return key == before.key ? before : source_of(grow(recipe, seconds), key);
+    if (key == before.key) return before;
+    const auto grow_fog = [&] { return stored_fog(grow(recipe, seconds), {}); };
+    return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
-FogSource read(const MediumSource& source, int frame, MissingFrame missing, const FogSource& before,
+FogSource read(const MediumSource& source, int frame, MissingFrame missing, CacheFolder* files, const FogSource& before,
                std::vector<std::string>& notes) {
     const auto file = sequence_file(source.sequence, frame, missing);
     if (!file) return {};
@@ -59,25 +82,33 @@ FogSource read(const MediumSource& source, int frame, MissingFrame missing, cons
     const std::string key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) +
                             " " + source.sequence.grid;
     if (key == before.key) return before;
-    VdbReadReport report;
-    const SparseVolume volume = read_vdb(*file, source.sequence.grid, &report);
-    if (const std::string summary = report.summary(); !summary.empty())
-        notes.push_back(file->filename().string() + ": " + summary);
-    return source_of(volume, key);
+    const std::string content =
+        files ? "file " + file_hash(*file, *files->inputs) + " " + source.sequence.grid : std::string();
+    const StoredFog fog = found_or_made<StoredFog>(files, "bricks", content, [&] {
+        VdbReadReport report;
+        const SparseVolume volume = read_vdb(*file, source.sequence.grid, &report);
+        return stored_fog(volume, report.summary());
+    });
+    if (!fog.note.empty()) notes.push_back(file->filename().string() + ": " + fog.note);
+    return source_of(fog, key, content);
 }
 
-// The bricks where the medium's transform puts them; the densities are copied only when the transform does something.
+// The bricks where the medium's transform puts them; the densities stay shared.
 std::shared_ptr<const BrickPool> placed_bricks(const FogSource& source, const mat4& matrix) {
     if (matrix == mat4(1)) return source.bricks;
     auto moved = std::make_shared<BrickPool>(*source.bricks);
     place(*moved, dmat4(matrix) * source.index_to_world);
+    if (!moved->content.empty())
+        moved->content += " moved " + content_hash({reinterpret_cast<const char*>(&matrix), sizeof matrix});
     return moved;
 }
 
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
-                     const FogSource& before, std::vector<std::string>& notes) {
-    FogSource result = source.kind == MediumKind::noise ? grown(source, moment.seconds, before)
-                                                        : read(source, moment.frame, missing, before, notes);
+                     const FogSource& before, Snapshot& snapshot) {
+    CacheFolder* files = snapshot.files.get();
+    FogSource result = source.kind == MediumKind::noise
+                           ? grown(source, moment.seconds, files, before)
+                           : read(source, moment.frame, missing, files, before, snapshot.notes);
     const mat4 matrix = checked_matrix(scene, source, moment.seconds);
     if (!result.bricks || (result.placed && result.matrix == matrix)) return result;
     result.placed = placed_bricks(result, matrix);
@@ -126,7 +157,7 @@ void add_media(const Scene& scene, Moment moment, const Snapshot* previous, Miss
         }
         if (!dims) medium.optics.extinction = vec3(min_extinction);
         if (source.kind == MediumKind::noise || source.kind == MediumKind::vdb) {
-            fog = fog_source(scene, source, moment, missing, before, snapshot.notes);
+            fog = fog_source(scene, source, moment, missing, before, snapshot);
             if (!fog.placed || !(fog.placed->highest > 0)) continue;
             medium.density.kind = DensityKind::bricks;
             medium.density.bricks = fog.placed;

@@ -1,8 +1,11 @@
 #include "trace/frame_cache.h"
 
+#include "base/io/file.h"
 #include "scene/light.h"
+#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
+#include "volume/bricks/bricks.h"
 
 #include <algorithm>
 
@@ -21,6 +24,9 @@ std::shared_ptr<CachedThing> found(FrameCache* kept, std::type_index type, const
 }
 }
 
+std::string content_of(const BrickPool& bricks) { return bricks.content; }
+std::string content_of(const Occluders& occluders) { return occluders.content(); }
+
 CacheKey& CacheKey::add(const Light& light) {
     add(light.kind).add(light.position).add(light.direction).add(light.inner_cone).add(light.outer_cone);
     return add(light.range).add(light.radius).add(light.core).add(light.angle).add(light.shadows);
@@ -35,6 +41,19 @@ CacheKey& CacheKey::add(const View& view) {
 
 bool CacheKey::operator==(const CacheKey& other) const {
     return bits == other.bits && std::ranges::equal(objects, other.objects, same);
+}
+
+CacheFolder* cache_folder(const Snapshot& snapshot) { return snapshot.files.get(); }
+
+std::string content_of(const CacheKey& key, const CacheFolder& folder) {
+    std::string text = "plan " + folder.plan + "\n" + content_hash(key.bits) + "\n";
+    for (size_t i = 0; i < key.objects.size(); ++i) {
+        const std::shared_ptr<const void> object = key.objects[i].lock();
+        const std::string content = object ? key.contents[i](object.get()) : "none";
+        if (content.empty()) return {};
+        text += content + "\n";
+    }
+    return text;
 }
 
 std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key) {

@@ -113,8 +113,10 @@ Snapshot& Snapshot::operator=(const Snapshot&) = default;
 Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
 Snapshot::~Snapshot() = default;
 
-Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing) {
+Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing,
+                       std::shared_ptr<CacheFolder> files) {
     Snapshot snapshot;
+    snapshot.files = std::move(files);
     snapshot.scene = &scene;
     snapshot.seconds = moment.seconds, snapshot.frame = moment.frame;
     if (previous && previous->scene != &scene) previous = nullptr;
@@ -134,8 +136,10 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     snapshot.background = background_at(scene.background, moment.seconds);
     add_media(scene, moment, previous, missing, snapshot);
 
+    const double start = steady_seconds();
     snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);
     if (previous && snapshot.occluders->shares_with(*previous->occluders)) snapshot.occluders = previous->occluders;
+    note_cost(snapshot.files.get(), "surfaces", steady_seconds() - start);
     snapshot.cache = std::make_shared<FrameCache>();
     if (previous) snapshot.cache_before = previous->cache;
     const uint64_t dropped = snapshot.occluders->dropped();

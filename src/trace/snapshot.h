@@ -11,6 +11,7 @@
 
 namespace tyndall {
 struct BrickPool;
+struct CacheFolder;
 struct FrameCache;
 struct Light;
 struct Medium;
@@ -59,6 +60,7 @@ struct Snapshot {
     std::vector<FogSource> fog_sources;         // one per medium of the scene: what the next frame can use again
     std::shared_ptr<FrameCache> cache;          // made for this frame so far; null in snapshots made by hand
     std::shared_ptr<FrameCache> cache_before;   // for the frame before; null of the first
+    std::shared_ptr<CacheFolder> files;         // with things of a plan that was prepared; else null
 
     // Not inline: who only holds a snapshot needs neither lights nor media.
     Snapshot();
@@ -71,9 +73,9 @@ struct Snapshot {
 
 // Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since
 // `previous` (of the same, unchanged Scene) is shared with it, and the result is the same without. The Scene must
-// outlive it. Throws Error.
+// outlive it. What `files` holds is taken from there. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
-                       MissingFrame missing = MissingFrame::error);
+                       MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
 
 // The surfaces that shadow the light; null = none does.
 const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot);

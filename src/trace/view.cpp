@@ -29,6 +29,11 @@ int samples_of(const View& view, ivec2 pixel) {
     return view.pixel_samples * std::max(lamp_factor(view, tile), view.edges ? view.edges->at(tile) : 1);
 }
 
+int max_samples(const View& view) {
+    if (!view.allotted) return view.pixel_samples * std::max({view.lamp_samples, view.edge_samples, 1});
+    return view.pixel_samples * std::ranges::max(view.allotted->factors.pixels);
+}
+
 int batches_of(const View& view, ivec2 pixel) {
     if (view.leaves > 0) return view.batches;
     const int factor = view.allotted ? view.allotted->at(pixel / tile_side) : 1;

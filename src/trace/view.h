@@ -23,6 +23,11 @@ struct TileFactors {
     }
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(TileFactors& tiles, Visit& visit) {
+    visit(tiles.low), visit(tiles.factors.size), visit(tiles.factors.pixels);
+}
+
 struct View {
     Camera camera;
     ivec2 size{640, 360};            // the full picture (display window)
@@ -57,6 +62,7 @@ struct View {
 // Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile
 // of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
+int max_samples(const View& view); // that a pixel may take
 
 // Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
 inline constexpr int many_allotted = 8, more_batches = 4; // from that factor on, if it is a multiple

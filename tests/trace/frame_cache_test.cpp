@@ -101,7 +101,7 @@ TEST(CacheKey, OfALightLeavesOutItsBrightness) {
 TEST(FrameCache, IsMadeOnceAndHandedOn) {
     int made = 0;
     const auto ask = [&](const Snapshot& snapshot, int key) {
-        return cached(snapshot, number(key), [&] { return ++made; });
+        return cached(snapshot, "thing", number(key), [&] { return ++made; });
     };
     Snapshot frame = next_of({});
     const auto first = ask(frame, 7);
@@ -118,14 +118,14 @@ TEST(FrameCache, IsMadeOnceAndHandedOn) {
 
 TEST(FrameCache, TypesAreKeptApart) {
     const Snapshot frame = next_of({});
-    EXPECT_EQ(*cached(frame, number(1), [] { return 1; }), 1);
-    EXPECT_EQ(*cached(frame, number(1), [] { return 2.5; }), 2.5);
+    EXPECT_EQ(*cached(frame, "thing", number(1), [] { return 1; }), 1);
+    EXPECT_EQ(*cached(frame, "thing", number(1), [] { return 2.5; }), 2.5);
 }
 
 TEST(FrameCache, SnapshotsMadeByHandKeepNothing) {
     const Snapshot by_hand;
     int made = 0;
-    for (int i = 0; i < 3; ++i) EXPECT_EQ(*cached(by_hand, number(1), [&] { return ++made; }), i + 1);
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(*cached(by_hand, "thing", number(1), [&] { return ++made; }), i + 1);
 }
 
 TEST(FrameCache, ManyThreadsMakeItOnce) {
@@ -134,7 +134,7 @@ TEST(FrameCache, ManyThreadsMakeItOnce) {
     for (const Snapshot& frame : {first, next_of(first)})
         parallel_for(1000, [&](int64_t i) {
             const int key = static_cast<int>(i % 7);
-            EXPECT_EQ(*cached(frame, number(key), [&] { return ++made, key; }), key);
+            EXPECT_EQ(*cached(frame, "thing", number(key), [&] { return ++made, key; }), key);
         });
     EXPECT_EQ(made, 7);
 }
@@ -143,9 +143,9 @@ TEST(FrameCache, AnErrorIsNotKept) {
     const Snapshot frame = next_of({});
     bool works = false;
     const auto make = [&] { return works ? 1 : throw std::runtime_error("no"); };
-    EXPECT_THROW(cached(frame, number(1), make), std::runtime_error);
+    EXPECT_THROW(cached(frame, "thing", number(1), make), std::runtime_error);
     works = true;
-    EXPECT_EQ(*cached(frame, number(1), make), 1);
+    EXPECT_EQ(*cached(frame, "thing", number(1), make), 1);
 }
 
 // With all that changes from frame to frame, what two frames made is all there is.
@@ -154,7 +154,7 @@ TEST(FrameCache, MemoryDoesNotGrowWithFrames) {
     Snapshot frame;
     for (int i = 0; i < 50; ++i) {
         frame = next_of(frame);
-        made.push_back(std::weak_ptr(cached(frame, number(i), [] { return std::vector<float>(1000); })));
+        made.push_back(std::weak_ptr(cached(frame, "thing", number(i), [] { return std::vector<float>(1000); })));
         EXPECT_LE(frame.cache->things.size(), 1u);
         for (int k = 0; k + 1 < i; ++k) EXPECT_TRUE(made[static_cast<size_t>(k)].expired()) << k << " in frame " << i;
     }

@@ -157,7 +157,8 @@ CacheKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
 
 std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
                                   std::vector<float>* open) {
-    const auto found = cached(snapshot, card_key(snapshot, settings), [&] { return placed(snapshot, settings); });
+    const auto found =
+        cached(snapshot, "beam cards", card_key(snapshot, settings), [&] { return placed(snapshot, settings); });
     if (open) *open = found->open;
     return found->cards;
 }

@@ -63,10 +63,10 @@ FroxelStatics look_at_scene(const View& view, const Snapshot& snapshot, const Fr
         return statics;
     }
     statics.grid = statics.same_view ? before->grid : make_froxel_grid(view.camera, view.size, settings.tile);
-    statics.tiles = statics.same_view
-                        ? before->tiles
-                        : *cached(snapshot, CacheKey().add(snapshot.occluders).add(view).add(settings.tile),
-                                  [&] { return make_froxel_tiles(statics.grid, snapshot); });
+    statics.tiles = statics.same_view ? before->tiles
+                                      : *cached(snapshot, "froxel tiles",
+                                                CacheKey().add(snapshot.occluders).add(view).add(settings.tile),
+                                                [&] { return make_froxel_tiles(statics.grid, snapshot); });
     FogDepths depths = fog_depths(statics.grid, statics.tiles, snapshot);
     if (!(depths.far > depths.near)) return statics;
     if (statics.same_view && serve(before->grid, settings.depth_slices, depths)) {

@@ -127,7 +127,7 @@ Integrator checked_integrator(const PlannedError& planned, const Mode& mode, con
 
 void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
                    const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
-    if (planned.target == 0 || !stats.noise) return;
+    if (!stats.noise) return;
     stats.orders = planned.orders, stats.integrator = planned.integrator;
     if (planned.integrator && !planned.is_truth)
         stats.integrator =

@@ -3,7 +3,10 @@
 #include "base/parallel.h"
 #include "render/frame/frame.h"
 #include "render/frame/samples.h"
+#include "trace/frame_cache.h"
+#include "trace/snapshot.h"
 #include "trace/view.h"
+#include "volume/medium.h"
 
 #include <algorithm>
 #include <mutex>
@@ -63,25 +66,47 @@ float contrast(const Probes& probes, ivec2 corner) {
     const vec2 both = (most - least) / glm::max(most + least, 1e-30f);
     return std::max(both.x, both.y);
 }
+
+// All that factors depend on, for their place among the files of a plan; empty without files.
+std::string edges_content(const FrameTask& task) {
+    const FrameTracer& tracer = task.tracer;
+    const CacheFolder* folder = cache_folder(tracer.snapshot);
+    if (!folder) return {};
+    CacheKey key;
+    key.add(tracer.view).add(tracer.view.frame).add(tracer.view.seed).add(tracer.view.edge_samples);
+    key.add(task.layers.low).add(task.layers.size);
+    for (const Medium& medium : tracer.snapshot.media)
+        if (medium.density.bricks) key.add(medium.density.bricks);
+    key.bits += task.made_by;
+    return content_of(key, *folder);
 }
 
-std::shared_ptr<const TileFactors> edge_factors(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
+TileFactors factors_by_contrast(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
     const View& view = tracer.view;
-    if (view.edge_samples <= 1 || view.allotted || view.filter == PixelFilter::center ||
-        view.pixel_samples < fewest_samples)
-        return nullptr;
     const ivec2 first = low / tile_side, last = (high - 1) / tile_side;
     const Probes probes =
         probe(tracer, glm::max(first - 1, 0) * tile_side, glm::min((last + 2) * tile_side, view.size), stats);
-    auto factors = std::make_shared<TileFactors>(TileFactors{first, Image<uint16_t>(last - first + 1, uint16_t{1})});
+    TileFactors tiles{first, Image<uint16_t>(last - first + 1, uint16_t{1})};
     for (int y = first.y; y <= last.y; ++y)
         for (int x = first.x; x <= last.x; ++x) {
             const float share =
                 (contrast(probes, ivec2(x, y) * tile_side) - min_contrast) / (full_contrast - min_contrast);
             const float most = static_cast<float>(view.edge_samples);
-            factors->factors.at(x - first.x, y - first.y) =
+            tiles.factors.at(x - first.x, y - first.y) =
                 static_cast<uint16_t>(std::clamp(1 + share * (most - 1), 1.0f, most));
         }
-    return factors;
+    return tiles;
+}
+}
+
+std::shared_ptr<const TileFactors> edge_factors(const FrameTask& task, FrameStats& stats) {
+    const View& view = task.tracer.view;
+    if (view.edge_samples <= 1 || view.allotted || view.filter == PixelFilter::center ||
+        view.pixel_samples < fewest_samples)
+        return nullptr;
+    const ivec2 low = task.layers.low, high = low + task.layers.size;
+    return std::make_shared<const TileFactors>(
+        found_or_made<TileFactors>(cache_folder(task.tracer.snapshot), "edges", edges_content(task),
+                                   [&] { return factors_by_contrast(task.tracer, low, high, stats); }));
 }
 }

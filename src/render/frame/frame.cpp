@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/io/cache_folder.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
 #include "render/frame/edges.h"
@@ -56,9 +57,9 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
 }
 }
 
-void FrameStats::drop(ivec2 pixel) {
+void FrameStats::drop(ivec2 pixel, uint64_t count) {
     FrameStats one;
-    one.non_finite = 1, one.first_non_finite = pixel;
+    one.non_finite = count, one.first_non_finite = pixel;
     add(one);
 }
 
@@ -90,8 +91,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
 
     Layers& layers = task.layers;
     FrameStats probed;
-    if (mode.surfaces == Surfaces::shared)
-        view.edges = edge_factors(task.tracer, layers.low, layers.low + layers.size, probed);
+    if (mode.surfaces == Surfaces::shared) view.edges = edge_factors(task, probed);
     const auto render = view.leaves > 0 ? render_grouped_tile : render_tile;
     stats = for_each_tile(layers, options, [&](const PixelTile& tile, int64_t, FrameStats& block_stats) {
         render(task, tile, layers, block_stats);
@@ -160,6 +160,22 @@ void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, cons
 
 void cover_background(const View& view, const Snapshot& snapshot, Layers& layers) {
     if (view.background && has_background(snapshot.background)) std::ranges::fill(layers.alpha.pixels, 1.0f);
+}
+
+void prepare_files(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings) {
+    CacheFolder* folder = snapshot.files.get();
+    View view = mode.surfaces == Surfaces::post ? view_before_post(given) : given;
+    double start = steady_seconds();
+    if (mode.surfaces == Surfaces::shared) {
+        view.lamps = lamps_in(view, snapshot);
+        note_cost(folder, "lamps in view", steady_seconds() - start);
+    }
+    start = steady_seconds();
+    const double noted = noted_seconds(folder);
+    const FrameTask task = make_task(mode, view, snapshot, settings, {});
+    note_cost(folder, mode.name, steady_seconds() - start - (noted_seconds(folder) - noted));
+    FrameStats probed;
+    if (mode.surfaces == Surfaces::shared) edge_factors(task, probed);
 }
 
 Layers render_frame(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings,

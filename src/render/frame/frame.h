@@ -36,6 +36,10 @@ struct Prepared {
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history);
 
+// Makes all that a frame, and any part of it, makes before its first sample. The snapshot's files keep it, or note what
+// it costs.
+void prepare_files(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings);
+
 struct FrameOptions {
     bool halves = false;                    // of the batches
     History* history = nullptr;             // of the frames before; null = none is kept

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
+#include "modes/settings.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -88,7 +89,12 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                    scatter_seconds,
                    std::move(layers),
                    {},
+                   {},
                    options.cancel};
+    if (snapshot.files) {
+        task.made_by = mode.name;
+        for (const SettingRow& row : setting_rows()) task.made_by += " " + row.name + "=" + row.get(settings);
+    }
     return task;
 }
 

@@ -13,6 +13,7 @@ struct FrameTask {
     double mode_seconds = 0;                              // its preparation
     std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
     Layers layers;
+    std::string made_by{};           // mode and settings, where the snapshot has files; else empty
     std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
     const std::atomic<bool>* cancel = nullptr;
 };

@@ -80,8 +80,8 @@ struct FrameStats {
 
     std::optional<Noise> error() const; // noise, integrator and orders together
 
-    void add(const FrameStats& other); // counts and times
-    void drop(ivec2 pixel);            // a sample of it that is not finite
+    void add(const FrameStats& other);          // counts and times
+    void drop(ivec2 pixel, uint64_t count = 1); // samples of it that are not finite
 };
 
 // How much of each tile of 4×4 pixels another picture is.

@@ -93,8 +93,8 @@ void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, 
             const std::span<const float> group = std::span(sums[g]).subspan(x * numbers, numbers);
             std::ranges::copy(group, of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
             counted.camera_rays += static_cast<uint64_t>(group[taken_sum]);
-            for (float dropped = group[taken_sum] - group[kept_sum]; dropped > 0; --dropped)
-                counted.drop(merging.like.low + p);
+            if (const float dropped = group[taken_sum] - group[kept_sum]; dropped > 0)
+                counted.drop(merging.like.low + p, static_cast<uint64_t>(dropped));
         }
         const int kept = keep_helpful_sections(of_pixel, numbers);
         alone |= kept < 2, empty += kept == 0;

@@ -116,8 +116,8 @@ void count_dropped(const FramePart& part, FrameStats& stats) {
         for (int x = 0; x < part.size.x; ++x)
             for (const std::vector<float>& sums : part.sums) {
                 const float* own = &sums[static_cast<size_t>(y * part.size.x + x) * part.numbers];
-                for (float dropped = own[taken_sum] - own[kept_sum]; dropped > 0; --dropped)
-                    stats.drop(part.low + ivec2(x, y));
+                if (const float dropped = own[taken_sum] - own[kept_sum]; dropped > 0)
+                    stats.drop(part.low + ivec2(x, y), static_cast<uint64_t>(dropped));
             }
 }
 
@@ -184,8 +184,7 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
 
     FrameStats probed;
     count_dropped(part, probed);
-    if (mode.surfaces == Surfaces::shared)
-        view.edges = edge_factors(task.tracer, task.layers.low, task.layers.low + task.layers.size, probed);
+    if (mode.surfaces == Surfaces::shared) view.edges = edge_factors(task, probed);
     stats = render_tiles(task, options, checkpoints, part);
     stats.prepare_seconds = prepared - start, stats.render_seconds = steady_seconds() - prepared;
     stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();

@@ -120,10 +120,11 @@ MergedFrame merge_frame(std::span<const PartFile> files, const PartGroups& group
     const std::string hash = frame_hash(scene, request, plan.plan, view, hashes);
     if (hash != first.hash) refuse(first.file.string(), "the files it was rendered from have changed since");
 
+    const int max_taken = max_samples(view) / (view.batches * view.sections);
     const auto rows = [&](int low, int count) {
         std::vector<FramePart> parts(files.size());
         parallel_for(static_cast<int64_t>(files.size()), [&](int64_t i) {
-            parts[static_cast<size_t>(i)] = read_rows(files[static_cast<size_t>(i)], low, count);
+            parts[static_cast<size_t>(i)] = read_rows(files[static_cast<size_t>(i)], low, count, max_taken);
         });
         return parts;
     };

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <span>
 
 namespace tyndall {
@@ -78,7 +79,8 @@ void read_range(const Header& header, FramePart& part) {
 void read_lights(const Header& header, FramePart& part) {
     const Json json = parse_json(header.text("tyndall:partLights"), header.file);
     const Json *names = json.find("names"), *of_light = json.find("of_light");
-    if (!names || !of_light) refuse(header.file, "tyndall:partLights: expected names and of_light");
+    if (!names || !of_light || names->kind != Json::Kind::array || of_light->kind != Json::Kind::array)
+        refuse(header.file, "tyndall:partLights: expected lists of names and of_light");
     for (const Json& name : names->items) part.lights.names.push_back(name.string);
     for (const Json& light : of_light->items) {
         if (light.number < 0 || light.number >= static_cast<double>(names->items.size()))
@@ -93,14 +95,18 @@ const Image<float>& channel_of(const ExrFile& exr, const std::string& name, cons
     return *channel;
 }
 
-// Numbers of samples are whole, and no more are kept than taken.
-void check_counts(std::span<const float> sums, size_t numbers, const std::string& file) {
-    for (size_t at = 0; at < sums.size(); at += numbers) {
+// Numbers of samples are whole, no more are kept than taken, and no more taken than there may be; parts that are no
+// slices have some of every pixel. No sum is NaN.
+void check_sums(std::span<const float> sums, const FramePart& part, int max_taken, const std::string& file) {
+    const float fewest = part.range.slices == 1 && part.finished.empty() ? 1.0f : 0.0f;
+    for (size_t at = 0; at < sums.size(); at += part.numbers) {
         const float kept = sums[at + kept_sum], taken = sums[at + taken_sum];
         const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
-        if (!(whole && kept >= 0 && kept <= taken && taken <= 1 << 24))
+        if (!(whole && kept >= 0 && kept <= taken && taken >= fewest && taken <= static_cast<float>(max_taken)))
             refuse(file, "damaged: it holds numbers of samples that cannot be");
     }
+    if (std::ranges::any_of(sums, [](float sum) { return std::isnan(sum); }))
+        refuse(file, "damaged: it holds sums that are no numbers");
 }
 
 // Which nodes there are, and how many numbers each has.
@@ -114,7 +120,7 @@ void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
 }
 
 // Those of the rows that the file was read for.
-void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
+void read_sums(const ExrFile& exr, const std::string& file, int max_taken, FramePart& part) {
     part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
     part.size = part.depth.size;
     for (const SumNode& node : part.nodes) {
@@ -123,7 +129,7 @@ void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
             const Image<float>& values = channel_of(exr, channel_name(node, k), file);
             for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
         }
-        check_counts(sums, part.numbers, file);
+        check_sums(sums, part, max_taken, file);
     }
 }
 }
@@ -185,9 +191,9 @@ PartFile read_part(const std::filesystem::path& file) {
     return result;
 }
 
-FramePart read_rows(const PartFile& part, int first, int count) {
+FramePart read_rows(const PartFile& part, int first, int count, int max_taken) {
     FramePart rows = part.part;
-    read_sums(read_exr_rows(part.file, first, count), part.file.string(), rows);
+    read_sums(read_exr_rows(part.file, first, count), part.file.string(), max_taken, rows);
     return rows;
 }
 
@@ -201,8 +207,8 @@ std::optional<FramePart> read_checkpoint(const std::filesystem::path& file, cons
     try {
         const ExrFile exr = read_exr(file);
         PartFile read = part_in(exr, file);
-        read_sums(exr, file.string(), read.part);
         if (const Image<float>* finished = exr.channel("finished")) read.part.finished = *finished;
+        read_sums(exr, file.string(), std::numeric_limits<int>::max(), read.part);
         if (read.part.finished.empty())
             why = "is no checkpoint";
         else if (read.hash != hash || read.label != label(grouping) || read.plan_hash != grouping.plan_hash)

@@ -45,10 +45,6 @@ Json target_json(const std::filesystem::path& file, const Grouping& grouping) {
         members.emplace_back("candidate", planned.integrator->candidate);
         members.emplace_back("integrator", error_json(planned.integrator->error));
     }
-    if (planned.orders) {
-        members.emplace_back("orders", error_json(planned.orders->tiles));
-        members.emplace_back("orders_mean", planned.orders->mean);
-    }
     return json_object(std::move(members));
 }
 
@@ -86,15 +82,14 @@ size_t index_in(const std::vector<std::string>& names, const std::string& name) 
 
 int integer(const Json& value) { return static_cast<int>(value.number); }
 
+Noise error_of(const Json& pair) { return {pair.items[0].number, pair.items[1].number}; }
+
 void read_target(const Json& target, const std::filesystem::path& file, RenderRequest& request) {
-    const auto error_of = [](const Json& pair) { return Noise{pair.items[0].number, pair.items[1].number}; };
     PlannedError& planned = request.grouping.error;
     planned.target = request.target_error = target.number_or("error", 0),
     planned.is_truth = target.boolean_or("truth", false);
     if (const Json* integrator = target.find("integrator"))
         planned.integrator = {error_of(*integrator), target.string_or("candidate", ""), request.settings};
-    if (const Json* orders = target.find("orders"))
-        planned.orders = OrdersError{target.number_or("orders_mean", 0), error_of(*orders)};
     request.grouping.counts =
         load_counts(file.parent_path() / target.string_or("counts", ""), target.string_or("counts_hash", ""));
 }
@@ -125,6 +120,8 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     request.grouping.sections = static_cast<int>(json.number_or("sections", 1));
     request.grouping.leaves = static_cast<int>(json.number_or("leaves", 1));
     request.grouping.plan_file = file;
+    if (const Json* orders = json.find("orders"))
+        request.grouping.error.orders = OrdersError{json.number_or("orders_mean", 0), error_of(*orders)};
     return request;
 }
 
@@ -167,6 +164,10 @@ std::string build_name() {
 
 void save_plan(const std::filesystem::path& file, const Scene& scene, const SavedPlan& plan) {
     JsonMembers members = plan_json(file, scene, plan);
+    if (const std::optional<OrdersError>& orders = plan.request.grouping.error.orders) {
+        members.emplace_back("orders", error_json(orders->tiles));
+        members.emplace_back("orders_mean", orders->mean);
+    }
     if (plan.request.grouping.counts) members.emplace_back("target", target_json(file, plan.request.grouping));
     write_file_atomically(file, json_line(std::move(members)));
 }

@@ -16,6 +16,7 @@
 #include <vector>
 
 namespace tyndall {
+struct CacheFolder;
 struct Choice;
 struct Mode;
 struct Scene;
@@ -62,8 +63,9 @@ struct RenderRequest {
     bool background = true;  // in the picture
     bool png = false, resume = false;
     Grouping grouping{};
-    double checkpoint_seconds = 600; // of a part, between two
-    std::string unsaved;             // edits that the scene's files do not have; for hash and header
+    double checkpoint_seconds = 600;      // of a part, between two
+    std::shared_ptr<CacheFolder> files{}; // of the plan, where it was prepared
+    std::string unsaved;                  // edits that the scene's files do not have; for hash and header
 };
 
 // What is decided: by what the frames are rendered.

@@ -17,32 +17,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
 namespace tyndall {
 namespace {
 std::string number(double value) { return formatted("%.9g", value); }
 std::string numbers(vec3 v) { return number(v.x) + "," + number(v.y) + "," + number(v.z); }
 std::string pair_text(ivec2 v, const char* between) { return std::to_string(v.x) + between + std::to_string(v.y); }
-
-// Hash of the hashes of a file's pieces, so that volumes of any size need little memory.
-std::string hash_of_file(const std::filesystem::path& path) {
-    check_readable(path);
-    std::ifstream stream(path, std::ios::binary);
-    std::string piece(size_t{1} << 20, '\0'), hashes;
-    while (stream) {
-        stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-        hashes += content_hash(std::string_view(piece).substr(0, static_cast<size_t>(stream.gcount())));
-    }
-    if (stream.bad() || !stream.eof()) fail(ExitCode::unreadable, path.string(), "cannot be read to its end");
-    return content_hash(hashes);
-}
-
-const std::string& file_hash(const std::filesystem::path& path, FileHashes& files) {
-    std::string& hash = files.known[path];
-    if (hash.empty()) hash = hash_of_file(path);
-    return hash;
-}
 
 // The scene's own files as they were when it was loaded; volumes count by frame.
 std::string scene_text(const Scene& scene) {

@@ -1,5 +1,6 @@
 // What a frame is made from, as a hash to compare and attributes to keep.
 #pragma once
+#include "base/io/file_hashes.h"
 #include "render/sequence/job.h"
 
 #include <map>
@@ -8,11 +9,6 @@
 namespace tyndall {
 struct Scene;
 struct View;
-
-// Content hashes of files already read, by path: a file counts as it was when first asked for.
-struct FileHashes {
-    std::map<std::filesystem::path, std::string> known;
-};
 
 // Hashes the volumes of a frame's media. Throws Error (unreadable).
 void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files);

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/io/cache_folder.h"
 #include "base/io/frames.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -51,7 +52,7 @@ struct Pipeline {
     std::atomic<bool>& cancel;
     std::vector<std::string> channels; // of every file
     LoadedFrame first;                 // of the sequence, until it is taken
-    FileHashes files = std::move(first.files);
+    std::shared_ptr<FileHashes> files = first.files;
     size_t next = 0; // index of the first frame not yet looked at
     RenderReport report{};
     std::mutex reporting{};       // held to change the report
@@ -128,9 +129,9 @@ LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
     const double start = steady_seconds();
     if (!previous) previous = &first.snapshot;
-    Snapshot snapshot =
-        make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous, pipeline.request.missing);
-    return {std::move(snapshot), steady_seconds() - start, {}};
+    Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous,
+                                      pipeline.request.missing, pipeline.request.files);
+    return {std::move(snapshot), steady_seconds() - start};
 }
 
 void report_frame(Pipeline& pipeline, const Work& work) {
@@ -157,7 +158,7 @@ std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
             work.report.file = part_name(work.report.file, pipeline.request.grouping);
         try {
             work.view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, frame);
-            work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, pipeline.files);
+            work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, *pipeline.files);
             if (pipeline.request.resume && keep(pipeline, work)) {
                 work.report.load_seconds = steady_seconds() - start;
                 report_frame(pipeline, work);
@@ -275,6 +276,7 @@ void render(Pipeline& pipeline, Work& work) {
             judge_planned(request.grouping.error, *plan.mode, work.view, work.snapshot, plan.settings, work.layers,
                           options, stats);
         if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
+        if (request.files) check_unchanged(*request.files);
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
@@ -285,7 +287,7 @@ void render(Pipeline& pipeline, Work& work) {
 // What is known of the error, its parts and what was asked for.
 std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (!stats.noise) return {};
-    std::string text = stats.integrator ? ", error " : ", noise ";
+    std::string text = stats.integrator || stats.orders ? ", error " : ", noise ";
     text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
     if (request.target_error > 0) text += formatted(" (wanted %.3g)", request.target_error);
     if (stats.integrator)
@@ -379,9 +381,10 @@ uint64_t peak_memory() {
 LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous) {
     const double start = steady_seconds();
     flush_denormals();
-    FileHashes files;
-    hash_fog(scene, request, request.frames[0], files);
-    Snapshot snapshot = make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing);
+    auto files = request.files ? request.files->inputs : std::make_shared<FileHashes>();
+    hash_fog(scene, request, request.frames[0], *files);
+    Snapshot snapshot =
+        make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing, request.files);
     return {std::move(snapshot), steady_seconds() - start, std::move(files)};
 }
 

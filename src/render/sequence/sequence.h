@@ -15,8 +15,8 @@ namespace tyndall {
 // A frame of a sequence, loaded to be looked at before it is rendered.
 struct LoadedFrame {
     Snapshot snapshot;
-    double seconds = 0; // it took
-    FileHashes files;   // of its fog, before that was read
+    double seconds = 0;                                                 // it took
+    std::shared_ptr<FileHashes> files = std::make_shared<FileHashes>(); // of its fog, before that was read
 };
 
 // Loads the first frame asked for, to look at it before the others. What stands still is shared with `previous`, when

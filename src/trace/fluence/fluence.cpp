@@ -211,8 +211,8 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed) {
     if (settings.orders < 2 || snapshot.media.empty() || snapshot.lights.empty()) return nullptr;
-    const std::shared_ptr<const FluenceGrid> grid =
-        cached(snapshot, fluence_key(snapshot, settings, seed), [&] { return make_fluence(snapshot, settings, seed); });
+    const std::shared_ptr<const FluenceGrid> grid = cached(snapshot, "fluence", fluence_key(snapshot, settings, seed),
+                                                           [&] { return make_fluence(snapshot, settings, seed); });
     return grid->empty() ? nullptr : grid;
 }
 }

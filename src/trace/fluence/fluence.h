@@ -32,6 +32,11 @@ struct FluenceGrid {
     bool empty() const { return values.empty(); }
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(FluenceGrid& grid, Visit& visit) {
+    visit(grid.bounds), visit(grid.size), visit(grid.cell), visit(grid.values), visit(grid.walls), visit(grid.cuts);
+}
+
 inline size_t cell_index(const FluenceGrid& grid, ivec3 cell) {
     return static_cast<size_t>(cell.x * grid.size.y + cell.y) * static_cast<size_t>(grid.size.z) +
            static_cast<size_t>(cell.z);

@@ -1,6 +1,7 @@
 // Which triangles stand where at a moment, and what a hit looks like.
 #include "trace/occlusion/scene.h"
 
+#include "base/io/file.h"
 #include "scene/scene.h"
 
 namespace tyndall {
@@ -47,6 +48,15 @@ std::shared_ptr<const Occluders> Occluders::make(const Scene& scene, double seco
 bool Occluders::empty() const { return triangle_count() == 0; }
 uint64_t Occluders::triangle_count() const { return impl_->still->triangles + impl_->moving->triangles; }
 uint64_t Occluders::dropped() const { return impl_->still->dropped + impl_->moving->dropped; }
+
+std::string Occluders::content() const {
+    std::string bytes;
+    const auto add = [&](const auto& values) {
+        bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+    };
+    for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()}) add(set->instances), add(set->matrices);
+    return "surfaces " + content_hash(bytes);
+}
 
 Box Occluders::bounds() const {
     Box box = impl_->still->bounds;

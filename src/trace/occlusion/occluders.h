@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -58,6 +59,7 @@ public:
     Box bounds() const;
     uint64_t triangle_count() const;
     uint64_t dropped() const;                       // triangles left out
+    std::string content() const;                    // which instances there are, and where they stand
     bool shares_with(const Occluders& other) const; // the same triangles at the same places, not rebuilt
 
     // First surface of up to 16 rays beyond t_min. Alpha MASK holes are passed; BLEND surfaces are hit.

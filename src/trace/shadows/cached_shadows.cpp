@@ -20,12 +20,13 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
     CacheKey key = shadow_key(snapshot, light);
     key.add(view).add(fog).add(snapshot.bounds).add(snapshot.anchor).add(snapshot.extent);
     key.add(options.resolution).add(options.cascades).add(options.pcf).add(options.bias);
-    return cached(snapshot, std::move(key), [&] { return make_shadow_map(view, snapshot, light, options); });
+    return cached(snapshot, "shadow map", std::move(key),
+                  [&] { return make_shadow_map(view, snapshot, light, options); });
 }
 
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light, dvec3 off) {
     CacheKey key = shadow_key(snapshot, light);
-    return cached(snapshot, std::move(key.add(off)), [&] {
+    return cached(snapshot, "shadow volumes", std::move(key.add(off)), [&] {
         LightPoint point = center_of(light);
         point.at += off;
         return make_shadow_volumes(shadow_casters(light, snapshot)->shadow_mesh(), point);
@@ -35,7 +36,7 @@ std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snaps
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,
                                                      float margin, dvec3 off) {
     CacheKey key = shadow_key(snapshot, light);
-    return cached(snapshot, std::move(key.add(view).add(margin).add(off)), [&] {
+    return cached(snapshot, "shadow view", std::move(key.add(view).add(margin).add(off)), [&] {
         return view_from(*cached_shadow_volumes(snapshot, light, off), view.camera, view.size, margin);
     });
 }

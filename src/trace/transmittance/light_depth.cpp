@@ -68,7 +68,7 @@ CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, in
 LightDepthFroxels cached_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
                                  int resolution, const View& view) {
     CacheKey key = depth_key(bricks, light, resolution);
-    return *cached(snapshot, std::move(key.add(view).add(snapshot.bounds)), [&] {
+    return *cached(snapshot, "light froxels", std::move(key.add(view).add(snapshot.bounds)), [&] {
         LightDepthFroxels froxels = fitted_froxels(view, snapshot.bounds, resolution);
         if (froxels.size.x > 0) fill_froxels(bricks, light, froxels);
         return froxels;
@@ -77,7 +77,7 @@ LightDepthFroxels cached_froxels(const Snapshot& snapshot, std::span<const Mediu
 
 LightDepthGrid cached_grid(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
                            int resolution) {
-    return *cached(snapshot, depth_key(bricks, light, resolution), [&] {
+    return *cached(snapshot, "light grid", depth_key(bricks, light, resolution), [&] {
         LightDepthGrid grid = fitted_grid(bricks, light, resolution);
         if (grid.size.x > 0) fill_grid(bricks, grid);
         return grid;

@@ -56,6 +56,17 @@ struct LightDepthFroxels {
     }
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(LightDepthGrid& grid, Visit& visit) {
+    visit(grid.projection), visit(grid.world_to_grid), visit(grid.position), visit(grid.size);
+    visit(grid.scale), visit(grid.offset), visit(grid.start), visit(grid.depth);
+}
+template<class Visit> void fields(LightDepthFroxels& froxels, Visit& visit) {
+    fields(froxels.camera, visit);
+    visit(froxels.size), visit(froxels.scale), visit(froxels.offset);
+    visit(froxels.near), visit(froxels.far), visit(froxels.first), visit(froxels.depth);
+}
+
 // Everything a mode needs to ask for light-side transmittance of one light: closed forms for homogeneous and height
 // fog, one grid for all brick media together, or froxels with the fog marched outside them.
 struct LightDepth {

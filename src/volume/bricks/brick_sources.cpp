@@ -88,7 +88,7 @@ Sources make_sources(const SparseVolume& volume) {
 }
 
 void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources) {
-    sources.cells.assign(pool.index.size(), 0);
+    sources.cells.assign(static_cast<size_t>(cell_count(pool)), 0);
     for (size_t i = 0; i < volume.leaves.size(); ++i)
         if (sources.summaries[i].parts)
             sources.cells[cell_at(pool, (volume.leaves[i].origin - pool.low) / 8)] = static_cast<int32_t>(i + 1);

@@ -34,6 +34,8 @@ Sources make_sources(const SparseVolume& volume);
 // Fills `cells` on the pool's grid of bricks.
 void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources);
 
+inline int64_t cell_count(const BrickPool& pool) { return int64_t{pool.size.x} * pool.size.y * pool.size.z; }
+
 inline int64_t cell_at(const BrickPool& pool, ivec3 cell) {
     return (int64_t{cell.x} * pool.size.y + cell.y) * pool.size.z + cell.z;
 }

@@ -7,11 +7,12 @@
 // Local coordinates are index coordinates less `low`: 0..8·size along each axis. The first and the last voxel layer of
 // that range are always 0, so a coordinate clamped to 0..8·size-1 has the density of the point outside: none.
 #pragma once
+#include "base/shared_array.h"
 #include "volume/bricks/sparse_volume.h"
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <string>
 
 namespace tyndall {
 inline constexpr int brick_stride = 736;
@@ -19,10 +20,10 @@ inline constexpr int brick_stride = 736;
 struct BrickPool {
     ivec3 low{0};  // index-space voxel at the lower corner of brick (0,0,0); a multiple of 8
     ivec3 size{0}; // bricks along each axis
-    std::vector<int32_t> index;
-    std::vector<uint16_t> values; // half floats; densities above 65504 are stored as that
-    std::vector<float> constants; // exactly representable as halves, as the values are
-    std::vector<float> maximum;   // per cell of `index`: largest value inside, apron included (the majorant)
+    SharedArray<int32_t> index;
+    SharedArray<uint16_t> values; // half floats; densities above 65504 are stored as that
+    SharedArray<float> constants; // exactly representable as halves, as the values are
+    SharedArray<float> maximum;   // per cell of `index`: largest value inside, apron included (the majorant)
     mat4 world_to_index{1};       // to local coordinates and back
     mat4 index_to_world{1};
     vec3 anchor{0};           // a world point in the fog, and its local coordinates: differences from it stay
@@ -35,10 +36,20 @@ struct BrickPool {
     float mean = 0;           // over `bounds`: homogeneous fog of this density there has the same mass
     float mean_in_bricks = 0; // over the bricks that are not empty
     vec3 voxel_size{0};       // world lengths of the index axes
+    std::string content;      // says in every process what this is made from and where it lies; empty = nobody asked
 
     uint64_t bytes() const;
     bool empty() const { return index.empty(); }
 };
+
+// Of cache files, in this order; not `content`.
+template<class Visit> void fields(BrickPool& pool, Visit& visit) {
+    visit(pool.low), visit(pool.size);
+    visit(pool.index), visit(pool.values), visit(pool.constants), visit(pool.maximum);
+    visit(pool.world_to_index), visit(pool.index_to_world), visit(pool.anchor), visit(pool.anchor_index);
+    visit(pool.bounds), visit(pool.local_bounds), visit(pool.highest), visit(pool.crowded);
+    visit(pool.mass), visit(pool.mean), visit(pool.mean_in_bricks), visit(pool.voxel_size);
+}
 
 // Throws Error: out_of_memory when the index alone would pass 256 MB or the bricks the memory of this machine, refused
 // when the transform has no inverse.

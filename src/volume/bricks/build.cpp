@@ -24,6 +24,13 @@ struct Packed {
     bool uniform = false;
 };
 
+// What a pool's arrays grow in.
+struct BrickArrays {
+    std::vector<int32_t> index;
+    std::vector<uint16_t> values;
+    std::vector<float> constants, maximum;
+};
+
 // Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
 void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
     int64_t cells = 1;
@@ -42,8 +49,6 @@ void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
                      " voxels; its brick index would pass 256 MB. Use larger voxels or a smaller active box");
     }
     pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
-    pool.index.assign(cells, 0);
-    pool.maximum.assign(cells, 0);
 }
 
 Corners corners_of(const BrickPool& pool, const Sources& sources, ivec3 cell) {
@@ -69,14 +74,15 @@ int32_t kind_of(const Corners& corners, const Sources& sources) {
 }
 
 // Marks every cell of the index with its kind and lists the ones to pack, in order.
-std::vector<ivec3> listed_bricks(BrickPool& pool, const Sources& sources) {
+std::vector<ivec3> listed_bricks(const BrickPool& pool, const Sources& sources, BrickArrays& arrays) {
+    arrays.index.assign(static_cast<size_t>(cell_count(pool)), 0);
     std::vector<std::vector<ivec3>> slabs(pool.size.x);
     parallel_for(pool.size.x, [&](int64_t x) {
         for (int y = 0; y < pool.size.y; ++y)
             for (int z = 0; z < pool.size.z; ++z) {
                 const ivec3 cell(static_cast<int>(x), y, z);
                 const int32_t kind = kind_of(corners_of(pool, sources, cell), sources);
-                pool.index[cell_at(pool, cell)] = kind;
+                arrays.index[static_cast<size_t>(cell_at(pool, cell))] = kind;
                 if (kind == 1) slabs[x].push_back(cell);
             }
     });
@@ -109,7 +115,7 @@ Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
 }
 
 std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
-                                  BrickPool& pool) {
+                                  const BrickPool& pool, BrickArrays& arrays) {
     const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > memory)
@@ -117,50 +123,53 @@ std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ive
              "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +
                  std::to_string(static_cast<int64_t>(memory / 1e6)) + " MB. Use larger voxels");
     // Large pages, where there are any, take a fraction of the time that small ones need to be touched first.
-    pool.values.reserve(list.size() * brick_stride);
+    arrays.values.reserve(list.size() * brick_stride);
     constexpr uintptr_t page = uintptr_t{2} << 20;
-    const auto room = reinterpret_cast<uintptr_t>(pool.values.data());
+    const auto room = reinterpret_cast<uintptr_t>(arrays.values.data());
     const uintptr_t low = (room + page - 1) & ~(page - 1), high = (room + list.size() * brick_stride * 2) & ~(page - 1);
     if (low < high) madvise(reinterpret_cast<void*>(low), high - low, MADV_HUGEPAGE);
-    pool.values.resize(list.size() * brick_stride);
+    arrays.values.resize(list.size() * brick_stride);
     std::vector<Packed> packed(list.size());
     parallel_ranges(static_cast<int64_t>(list.size()), 16, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i)
-            packed[i] = pack(corners_of(pool, sources, list[i]), sources, &pool.values[i * brick_stride]);
+            packed[i] = pack(corners_of(pool, sources, list[i]), sources, &arrays.values[i * brick_stride]);
     });
     return packed;
 }
 
 // Turns the marks in the index into brick and constant numbers, closing the gaps that uniform bricks leave.
-void finish_index(const std::vector<Packed>& packed, BrickPool& pool) {
+void finish_index(const std::vector<Packed>& packed, BrickArrays arrays, BrickPool& pool) {
+    arrays.maximum.assign(arrays.index.size(), 0);
     std::vector<int32_t> constant_of(half_from_float(largest_half) + 1, 0);
     size_t next = 0, bricks = 0, filled = 0;
-    for (size_t cell = 0; cell < pool.index.size(); ++cell) {
-        int32_t& id = pool.index[cell];
+    for (size_t cell = 0; cell < arrays.index.size(); ++cell) {
+        int32_t& id = arrays.index[cell];
         if (id == 0) continue;
         ++filled;
         const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true};
-        pool.maximum[cell] = float_from_half(brick.largest);
+        arrays.maximum[cell] = float_from_half(brick.largest);
         if (brick.uniform) {
             int32_t& constant = constant_of[brick.largest];
             if (constant == 0) {
-                pool.constants.push_back(pool.maximum[cell]);
-                constant = -static_cast<int32_t>(pool.constants.size());
+                arrays.constants.push_back(arrays.maximum[cell]);
+                constant = -static_cast<int32_t>(arrays.constants.size());
             }
             next += id > 0, id = constant;
         } else {
-            const uint16_t* from = &pool.values[next * brick_stride];
-            if (bricks != next) std::copy_n(from, brick_stride, &pool.values[bricks * brick_stride]);
+            const uint16_t* from = &arrays.values[next * brick_stride];
+            if (bricks != next) std::copy_n(from, brick_stride, &arrays.values[bricks * brick_stride]);
             ++next, id = static_cast<int32_t>(++bricks);
         }
-        pool.highest = std::max(pool.highest, pool.maximum[cell]);
+        pool.highest = std::max(pool.highest, arrays.maximum[cell]);
     }
-    pool.values.resize(bricks * brick_stride);
-    if (pool.values.size() < pool.values.capacity() / 4 * 3) pool.values.shrink_to_fit();
+    arrays.values.resize(bricks * brick_stride);
+    if (arrays.values.size() < arrays.values.capacity() / 4 * 3) arrays.values.shrink_to_fit();
     const ivec3 reach = (ivec3(pool.local_bounds.high) - 1) / 8; // the last bricks that fog can be in
     const size_t bricks_within = static_cast<size_t>(reach.x + 1) * (reach.y + 1) * (reach.z + 1);
     pool.crowded = bricks_within - filled <= bricks_within / 16;
     pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));
+    pool.index = std::move(arrays.index), pool.values = std::move(arrays.values);
+    pool.constants = std::move(arrays.constants), pool.maximum = std::move(arrays.maximum);
 }
 }
 
@@ -171,8 +180,10 @@ std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
         size_pool(volume.name, sources.box, *pool);
         pool->mass = sources.mass;
         fill_cells(*pool, volume, sources);
-        const std::vector<ivec3> list = listed_bricks(*pool, sources);
-        finish_index(packed_bricks(volume.name, list, sources, *pool), *pool);
+        BrickArrays arrays;
+        const std::vector<ivec3> list = listed_bricks(*pool, sources, arrays);
+        const std::vector<Packed> packed = packed_bricks(volume.name, list, sources, *pool, arrays);
+        finish_index(packed, std::move(arrays), *pool);
     }
     place(*pool, volume.index_to_world);
     return pool;

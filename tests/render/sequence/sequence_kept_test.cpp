@@ -89,7 +89,7 @@ std::atomic<int> prepared = 0;
 ScatterFunction prepare_counted(const View&, const Snapshot& snapshot, const Settings&, History*) {
     ++prepared;
     const CacheKey key = CacheKey().add(snapshot.occluders).add(each_frame_anew ? snapshot.seconds : 0.0);
-    cached(snapshot, key, [] { return Counted(); });
+    cached(snapshot, "thing", key, [] { return Counted(); });
     return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
 }
 

@@ -55,14 +55,14 @@ TEST(FrameStore, FramesThatWereLeftAreTakenUpWithAllThatWasMadeForThem) {
     FrameStore store(uint64_t{1} << 40);
     store.begin(scene, MissingFrame::error);
     const Snapshot one = at_frame(scene, 1);
-    const auto made = cached(one, CacheKey().add(7), [] { return 42; });
+    const auto made = cached(one, "thing", CacheKey().add(7), [] { return 42; });
     store.put(one);
     double seconds = 0;
     EXPECT_FALSE(store.take(2, seconds));
     const auto again = store.take(1, seconds);
     ASSERT_TRUE(again);
     EXPECT_EQ(again->media[0].density.bricks, one.media[0].density.bricks);
-    EXPECT_EQ(cached(*again, CacheKey().add(7), [] { return 43; }), made);
+    EXPECT_EQ(cached(*again, "thing", CacheKey().add(7), [] { return 43; }), made);
     EXPECT_EQ(seconds, 0);
 }
 

@@ -57,6 +57,12 @@ struct ShadowMap {
     bool empty() const { return pictures.empty(); } // nothing casts shadows: all is lit
 };
 
+// Of cache files, in this order.
+template<class Visit> void fields(ShadowMap& map, Visit& visit) {
+    visit(map.projection), visit(map.world_to_map), visit(map.position), visit(map.pictures);
+    visit(map.depth), visit(map.blocks), visit(map.pcf), visit(map.bias);
+}
+
 // Of texels that no ray of the view's picture comes near while it is in fog: all is dark there.
 inline constexpr float unseen_depth = -infinity;
 
