@@ -17,6 +17,8 @@
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 struct Options {
@@ -118,6 +120,9 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
         request.grouping = grouping_of(samples, groups);
     }
     drop_absent_layers(scene, plan, request);
+    const int most = request.grouping.groups * (wants_layer(request, "halves") ? 1 : request.grouping.sections);
+    if (measures_noise(request) && most < 2)
+        fail(ExitCode::usage, "--aov", "variance and halves take two samples per pixel at least");
     check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     save_plan(file, scene, {request, plan, {}, build_name()});
     const std::optional<Integrator>& integrator = request.grouping.error.integrator;
@@ -127,10 +132,12 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
                        printable(file, 100).c_str(), integrator->error.error, integrator->error.bound));
     if (globals.quiet) return 0;
     if (samples != wanted && !request.grouping.counts)
-        say(formatted("note: %d camera rays per pixel instead of %d: they come in %d equal groups", samples, wanted,
-                      request.grouping.groups));
+        say(formatted("note: %d camera rays per pixel instead of %d: they come in %d equal %s", samples, wanted,
+                      request.grouping.groups * request.grouping.sections,
+                      request.grouping.groups > 1 ? "groups" : "sections"));
     say(printable(file) + ": " + count_text(request.frames.size(), "frame") + " by " + std::string(plan.mode->name) +
-        formatted(", samples in %d groups of %d leaves", request.grouping.groups, request.grouping.leaves));
+        ", samples in " + count_text(static_cast<uint64_t>(request.grouping.groups), "group") +
+        formatted(" of %d leaves", request.grouping.sections * request.grouping.leaves));
     return 0;
 }
 
@@ -145,8 +152,15 @@ void check_saved(const Options& texts) {
 
 int groups_option(const Options& texts) {
     const bool target = !texts.render.target_error.empty() || texts.render.mode == automatic;
-    return texts.groups.empty() ? (target ? groups_for_target : usual_groups)
-                                : static_cast<int>(integer_option("--groups", texts.groups, 1, max_groups));
+    const bool halves = std::ranges::count(comma_list(texts.render.aov), "halves") > 0;
+    const int fewest = target || halves ? 2 : 1;
+    if (texts.groups.empty()) return target ? groups_for_target : halves ? fewest : usual_groups;
+    const int groups = static_cast<int>(integer_option("--groups", texts.groups, 1, max_groups));
+    if (groups < fewest)
+        fail(ExitCode::usage, "--groups",
+             std::string(target ? "an error that is wanted takes" : "halves take") +
+                 " two independent groups at least");
+    return groups;
 }
 
 int save_as_asked(const Options& texts, const Globals& globals) {
@@ -216,7 +230,8 @@ int save_plan_as_asked(const RenderOptions& render, const std::string& groups, c
 void add_groups_option(const Command& command, std::string& groups) {
     command.option("--groups", groups,
                    "how many groups of samples, each scrambled by itself: more of them tell noise\n"
-                   "better, fewer have less of it (default: 8 for an error that is wanted, else 2)",
+                   "better, fewer have less of it (default: 8 for an error that is wanted, 2 for\n"
+                   "halves, else 1, whose noise is told from sections of it, too large)",
                    "K");
 }
 

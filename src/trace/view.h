@@ -28,8 +28,9 @@ struct View {
     ivec2 size{640, 360};            // the full picture (display window)
     ivec2 crop_low{0}, crop_high{0}; // pixels low..high (high excluded) to render; equal = all
     int pixel_samples = 4;
-    int batches = 1; // independent groups of equally many samples, each with random numbers of its own
-    int leaves = 0;  // of each batch, where batches are a plan's groups: a power of two; 0 = they are not
+    int batches = 1;  // independent groups of equally many samples, each with random numbers of its own
+    int sections = 1; // of each batch, in its order, whose spread tells noise
+    int leaves = 0;   // of each section, where batches are a plan's groups: a power of two; 0 = they are not
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;

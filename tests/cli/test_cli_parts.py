@@ -72,6 +72,26 @@ class PartsTest(ProgramTest):
             self.assertEqual(read_channels(self.path("merged.exr")), one, count)
         self.refuse(2, ["--part", "12 parts at most"], "render", "--plan", plan, "-o", self.path("frame.exr"), "--part", "1/13")
 
+    def test_a_single_group_is_the_sequence_of_plain_render(self):
+        """With its noise, and sections of the sequence that tell no less than that."""
+        plan = self.plan("--samples", 32, "--float")
+        self.one_run(plan)
+        self.succeed("render", self.scene, "-o", self.path("plain.exr"), "--float", "--samples", 32, "-q")
+        same = json.loads(run("compare", self.path("one.exr"), self.path("plain.exr"), "--json").stdout)
+        self.assertLess(same["metrics"]["E"], 1e-5)
+        self.merge(self.parts(plan, 3))
+        self.assertTrue(read_channels(self.path("merged.exr")) == read_channels(self.path("one.exr")))
+        self.succeed("render", self.scene, "-o", self.path("truth.exr"), "--float", "--samples", 256, "--seed", 5, "-q")
+        error = json.loads(run("compare", self.path("merged.exr"), self.path("truth.exr"), "--json").stdout)["metrics"]["E"]
+        said = self.attributes("merged.exr")
+        self.assertLess(error, float(said["tyndall:errorBound"]))
+        self.assertLess(float(said["tyndall:achievedError"]), 4 * error)
+        for option in (("--target-error", 0.1), ("--aov", "halves")):
+            self.refuse(2, ["--groups", "two independent groups"], "plan", self.scene, "--mode", "march", "--groups", 1, *option,
+                        "--save", self.path("x.json"))
+        self.refuse(2, ["--aov", "two samples"], "plan", self.scene, "--mode", "march", "--samples", 1, "--aov", "variance",
+                    "--save", self.path("x.json"))
+
     def test_groups_can_be_added(self):
         few = self.plan("--samples", 8, "--groups", 8)
         files = self.parts(few, 2)

@@ -102,7 +102,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
     stats.add(probed);
     add_up(layers);
-    if (view.batches > 1) stats.noise = noise_of(layers);
+    if (view.batches * view.sections > 1) stats.noise = noise_of(layers);
     return std::move(task.layers);
 }
 

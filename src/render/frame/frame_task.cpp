@@ -24,7 +24,7 @@ Layers make_layers(const View& view, bool halves) {
     assert(layers.low.x + layers.size.x <= view.size.x && layers.low.y + layers.size.y <= view.size.y);
     layers.color = layers.inscatter = Image<vec3>(layers.size);
     layers.alpha = layers.transmittance = layers.validity = layers.depth = Image<float>(layers.size);
-    if (view.batches > 1) {
+    if (view.batches * view.sections > 1) {
         layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
         layers.variance_error = layers.inscatter_variance_error = layers.work = Image<float>(layers.size);
     }

@@ -26,14 +26,14 @@ void add(std::span<const float> from, std::span<float> to) {
     for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
 }
 
-// A stretch of a node's numbers; zeros where it is missing.
+// A range of a node's numbers; zeros where it is missing.
 std::vector<float> node_sums(const Nodes& nodes, const SumNode& node, size_t first, size_t count) {
     std::vector<float> sums(count, 0.0f);
     if (const auto found = nodes.find(node); found != nodes.end()) {
         for (const std::vector<float>* part : found->second) add(std::span(*part).subspan(first, count), sums);
     } else if (node.level > 0) {
-        sums = node_sums(nodes, {node.group, node.level - 1, 2 * node.index}, first, count);
-        add(node_sums(nodes, {node.group, node.level - 1, 2 * node.index + 1}, first, count), sums);
+        sums = node_sums(nodes, {node.section, node.level - 1, 2 * node.index}, first, count);
+        add(node_sums(nodes, {node.section, node.level - 1, 2 * node.index + 1}, first, count), sums);
     }
     return sums;
 }
@@ -47,9 +47,9 @@ float nearest_depth(std::span<const FramePart> parts, size_t pixel) {
     return depth;
 }
 
-// Zeroes groups that would add noise: the mean of k group means has the variance of a sample times the sum of 1 / n
-// over k², n being the samples of each. Returns how many are left.
-int keep_helpful_groups(std::span<float> sums, size_t numbers) {
+// Zeroes sections that would add noise: the mean of k of their means has the variance of a sample times the sum of 1 /
+// n over k², n being the samples of each. Returns how many are left.
+int keep_helpful_sections(std::span<float> sums, size_t numbers) {
     std::vector<float*> groups;
     for (size_t at = 0; at < sums.size(); at += numbers)
         if (sums[at + taken_sum] > 0) groups.push_back(&sums[at]);
@@ -67,10 +67,10 @@ int keep_helpful_groups(std::span<float> sums, size_t numbers) {
 // What all rows of a merge share.
 struct Merging {
     const FramePart& like;
-    int groups = 0, root = 0;
+    int sections = 0;
     MergedParts& merged;
     std::vector<Image<vec3>*> lights; // of the merged layers
-    bool alone = false;               // a pixel has one group only
+    bool alone = false;               // a pixel has one section only
     std::mutex counting{};            // held to change that and counts
 };
 
@@ -79,8 +79,9 @@ void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, 
     const size_t numbers = merging.like.numbers, width = static_cast<size_t>(merging.like.size.x);
     const size_t begin = static_cast<size_t>(row - first) * width;
     std::vector<std::vector<float>> sums;
-    for (int g = 0; g < merging.groups; ++g)
-        sums.push_back(node_sums(nodes, {g, merging.root, 0}, begin * numbers, width * numbers));
+    const int root = root_level(merging.like.leaves);
+    for (int i = 0; i < merging.sections; ++i)
+        sums.push_back(node_sums(nodes, {i, root, 0}, begin * numbers, width * numbers));
 
     FrameStats counted;
     int64_t empty = 0;
@@ -95,11 +96,11 @@ void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, 
             for (float dropped = group[taken_sum] - group[kept_sum]; dropped > 0; --dropped)
                 counted.drop(merging.like.low + p);
         }
-        const int kept = keep_helpful_groups(of_pixel, numbers);
+        const int kept = keep_helpful_sections(of_pixel, numbers);
         alone |= kept < 2, empty += kept == 0;
         const float depth = nearest_depth(parts, begin + x);
         if (kept > 0)
-            store_groups(of_pixel, numbers, depth, p, merging.merged.layers, merging.lights);
+            store_sections(of_pixel, numbers, depth, p, merging.merged.layers, merging.lights);
         else
             merging.merged.layers.depth.at(p.x, p.y) = infinity;
     }
@@ -120,7 +121,7 @@ MergedParts merge_parts(const View& view, bool halves, const FramePart& like, si
     View of_all = view;
     of_all.batches = groups;
     MergedParts merged{make_layers(of_all, halves), {}};
-    Merging merging{like, groups, root_level(like.leaves), merged, {}};
+    Merging merging{like, groups * view.sections, merged, {}};
     if (view.fog_parts) merging.lights = add_light_layers(like.lights, merged.layers);
 
     const int step = rows_of_band(like, nodes);

@@ -25,12 +25,12 @@ int64_t count_blocks(const Mode& mode, const View& view) {
     return cropped ? count_blocks(view.crop_low, view.crop_high - view.crop_low) : count_blocks(ivec2(0), view.size);
 }
 
-PartRange part_range(int part, int parts, int first_group, int groups, int leaves, int64_t blocks) {
-    const int64_t all_leaves = int64_t{groups} * leaves, slices = (parts + all_leaves - 1) / all_leaves;
+PartRange part_range(int part, int parts, int first_section, int sections, int leaves, int64_t blocks) {
+    const int64_t all_leaves = int64_t{sections} * leaves, slices = (parts + all_leaves - 1) / all_leaves;
     if (slices > blocks)
         fail(ExitCode::usage, "--part",
              formatted("this frame has %lld parts at most", static_cast<long long>(all_leaves * blocks)));
-    const int64_t all = all_leaves * slices, before = int64_t{first_group} * leaves * slices;
+    const int64_t all = all_leaves * slices, before = int64_t{first_section} * leaves * slices;
     return {before + (part - 1) * all / parts, before + part * all / parts, static_cast<int>(slices)};
 }
 
@@ -103,7 +103,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
     std::vector<std::vector<float>> sums(part.nodes.size());
     for (size_t n = 0; n < part.nodes.size(); ++n) {
         const SumNode& node = part.nodes[n];
-        if (part.range.slices == 1 || holds(part.range, int64_t{node.group} * part.leaves + node.index, block))
+        if (part.range.slices == 1 || holds(part.range, int64_t{node.section} * part.leaves + node.index, block))
             sums[n] = node_sums(sums_of, node);
     }
     store_tile(sums_of, sums, work);

@@ -1,10 +1,11 @@
 // A frame's samples in parts that are rendered apart, and the frame they make together.
 //
-// The samples of a pixel come in groups, each scrambled by itself; those of a group, in their order, are cut into
-// leaves. The samples of a leaf are summed in their order, leaves in a binary tree that is rounded to floats at every
-// node: whoever adds up a node, its bits are the same. A part holds a range of leaves, as the largest nodes that lie in
-// it. Where there are more parts than leaves, each leaf is cut into slices, every slice with some of the blocks of
-// pixels; then a part's nodes are leaves.
+// The samples of a pixel come in groups, each scrambled by itself; those of a group, in their order, in sections,
+// which tell how noisy the image is: a group is one, unless the plan has no other. Sections are cut into leaves. The
+// samples of a leaf are summed in their order, leaves in a binary tree that is rounded to floats at every node: whoever
+// adds up a node, its bits are the same. A part holds a range of leaves, as the largest nodes that lie in it. Where
+// there are more parts than leaves, each leaf is cut into slices, every slice with some of the blocks of pixels; then a
+// part's nodes are leaves.
 #pragma once
 #include "render/frame/frame.h"
 
@@ -17,13 +18,13 @@ namespace tyndall {
 struct FrameTask;
 struct PixelTile;
 
-// The leaves index·2^level to (index + 1)·2^level of a group.
+// The leaves index·2^level to (index + 1)·2^level of a section; sections are counted through all groups.
 struct SumNode {
-    int group = 0, level = 0, index = 0;
+    int section = 0, level = 0, index = 0;
     auto operator<=>(const SumNode&) const = default;
 };
 
-// Slices of leaves, counted leaf by leaf and group by group: from `first`, not including `last`.
+// Slices of leaves, counted leaf by leaf and section by section: from `first`, not including `last`.
 struct PartRange {
     int64_t first = 0, last = 0;
     int slices = 1; // of a leaf
@@ -33,9 +34,9 @@ struct PartRange {
 // Blocks of pixels that may be told apart. `view` as for render_part().
 int64_t count_blocks(const Mode& mode, const View& view);
 
-// The share of part `part` of `parts`, counted from 1, of so many groups. Throws Error (usage) where there are more
+// The share of part `part` of `parts`, counted from 1, of so many sections. Throws Error (usage) where there are more
 // parts than slices: a leaf has no more of them than the frame has blocks.
-PartRange part_range(int part, int parts, int first_group, int groups, int leaves, int64_t blocks);
+PartRange part_range(int part, int parts, int first_section, int sections, int leaves, int64_t blocks);
 
 // The nodes of a part, in order.
 std::vector<SumNode> nodes_of(const PartRange& range, int leaves);
@@ -58,7 +59,7 @@ enum PixelSums : size_t {
 struct FramePart {
     ivec2 display{0}, low{0}, size{0};
     PartRange range;
-    int leaves = 1;       // of a group
+    int leaves = 1;       // of a section
     size_t numbers = 0;   // of a pixel and node
     bool covered = false; // whether the background is part of the image: then alpha is 1
     LightLayers lights;   // where those are wanted
@@ -75,8 +76,8 @@ using PartRows = std::function<std::vector<FramePart>(int first, int count)>;
 // images; `like` tells what all of them have in common, `nodes` is how many they have in all. `view` is the one they
 // were rendered with. Few rows are in memory at once.
 //
-// Where samples are missing, a pixel leaves out groups that have too few to lower its noise. Pixels without samples are
-// black and not valid; there is no noise where one has fewer than two groups.
+// Where samples are missing, a pixel leaves out sections that have too few to lower its noise. Pixels without samples
+// are black and not valid; there is no noise where one has fewer than two sections.
 struct MergedParts {
     Layers layers;
     FrameStats stats;
@@ -101,9 +102,9 @@ FramePart render_part(const Mode& mode, const View& view, const Snapshot& snapsh
 // A tile of a frame whose samples come in groups, in one go.
 void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats);
 
-// Writes a pixel from the sums of its groups, one after the other; `parts` are where those of the fog light go.
-void store_groups(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
-                  std::span<Image<vec3>* const> parts);
+// Writes a pixel from the sums of its sections, one after the other; `parts` are where those of the fog light go.
+void store_sections(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
+                    std::span<Image<vec3>* const> parts);
 
 int mean_samples(uint64_t samples, const Layers& layers);
 }

@@ -24,15 +24,15 @@ void add_sample(const PixelSample& sample, std::span<const vec3> parts, std::spa
     for (size_t k = 0; k < parts.size(); ++k) add_color(parts[k], sums.subspan(fixed_sums + 3 * k));
 }
 
-std::vector<float> leaf_sums(TileSums& tile, int group, int leaf) {
+std::vector<float> leaf_sums(TileSums& tile, int section, int leaf) {
     const size_t count = tile.tile.count, numbers = tile.numbers(), part_count = tile.task.parts.size();
     std::vector<float> sums(count * numbers, 0.0f);
     std::vector<vec3> fog_parts(part_count * count);
     PixelSample samples[16];
-    const auto cut = [&](int at) { return static_cast<int>(int64_t{tile.group_size} * at / tile.leaves); };
+    const auto cut = [&](int at) { return static_cast<int>(int64_t{tile.section_size} * at / tile.leaves); };
     for (int s = cut(leaf); s < cut(leaf + 1); ++s) {
         if (tile.task.cancel && *tile.task.cancel) fail(ExitCode::internal, "render", "cancelled");
-        trace_samples(tile.task.tracer, {tile.tile.pixels, count}, group * tile.group_size + s, {samples, count},
+        trace_samples(tile.task.tracer, {tile.tile.pixels, count}, section * tile.section_size + s, {samples, count},
                       fog_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(tile.layers, tile.tile.pixels[i])) continue;
@@ -54,9 +54,9 @@ std::vector<float> leaf_sums(TileSums& tile, int group, int leaf) {
 }
 
 std::vector<float> node_sums(TileSums& tile, const SumNode& node) {
-    if (node.level == 0) return leaf_sums(tile, node.group, node.index);
-    std::vector<float> left = node_sums(tile, {node.group, node.level - 1, 2 * node.index});
-    const std::vector<float> right = node_sums(tile, {node.group, node.level - 1, 2 * node.index + 1});
+    if (node.level == 0) return leaf_sums(tile, node.section, node.index);
+    std::vector<float> left = node_sums(tile, {node.section, node.level - 1, 2 * node.index});
+    const std::vector<float> right = node_sums(tile, {node.section, node.level - 1, 2 * node.index + 1});
     for (size_t i = 0; i < left.size(); ++i) left[i] += right[i];
     return left;
 }
@@ -80,8 +80,8 @@ void add_group(std::span<const float> sums, PixelSum& pixel) {
 }
 }
 
-void store_groups(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
-                  std::span<Image<vec3>* const> parts) {
+void store_sections(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
+                    std::span<Image<vec3>* const> parts) {
     PixelSum pixel;
     int samples = 0;
     std::vector<vec3> part_sums(parts.size(), vec3(0));
@@ -104,18 +104,17 @@ int mean_samples(uint64_t samples, const Layers& layers) {
 
 void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats) {
     TileSums work{task, tile, stats};
-    const size_t groups = static_cast<size_t>(task.tracer.view.batches), numbers = work.numbers();
+    const size_t numbers = work.numbers();
     std::vector<std::vector<float>> sums;
-    for (size_t g = 0; g < groups; ++g)
-        sums.push_back(node_sums(work, {static_cast<int>(g), root_level(work.leaves), 0}));
+    for (int i = 0; i < work.sections; ++i) sums.push_back(node_sums(work, {i, root_level(work.leaves), 0}));
 
-    std::vector<float> of_pixel(groups * numbers);
+    std::vector<float> of_pixel(sums.size() * numbers);
     for (size_t i = 0; i < tile.count; ++i) {
         if (!contains(layers, tile.pixels[i])) continue;
-        for (size_t g = 0; g < groups; ++g)
+        for (size_t g = 0; g < sums.size(); ++g)
             std::copy_n(sums[g].begin() + static_cast<ptrdiff_t>(i * numbers), numbers,
                         of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
-        store_groups(of_pixel, numbers, work.depth[i], tile.pixels[i] - layers.low, layers, task.parts);
+        store_sections(of_pixel, numbers, work.depth[i], tile.pixels[i] - layers.low, layers, task.parts);
     }
 }
 }

@@ -13,7 +13,8 @@ struct TileSums {
     FrameStats& stats;
     const Layers& layers = task.layers; // whose pixels count
     int leaves = task.tracer.view.leaves;
-    int group_size = samples_of(task.tracer.view, tile.corner) / task.tracer.view.batches;
+    int sections = task.tracer.view.batches * task.tracer.view.sections; // of the plan's groups
+    int section_size = samples_of(task.tracer.view, tile.corner) / sections;
     std::vector<float> depth = std::vector<float>(16, infinity), off_center = depth;
 
     size_t numbers() const { return fixed_sums + 3 * task.parts.size(); }
@@ -22,6 +23,6 @@ struct TileSums {
 // The numbers of each pixel of the tile, one pixel after the other. Throws Error (internal) when cancelled.
 std::vector<float> node_sums(TileSums& tile, const SumNode& node);
 
-// The node that is all of a group has this level.
+// The node that is all of a section has this level.
 int root_level(int leaves);
 }

@@ -49,7 +49,7 @@ void check_alike(const PartFile& part, const PartFile& first) {
 namespace {
 // The samples that parts hold, found from the first part to the last.
 struct Holdings {
-    const int leaves;
+    const int leaves; // of a group
     PartGroups found{};
     double held = 0; // leaves
 
@@ -69,7 +69,7 @@ int64_t first_whole_leaf(const PartRange& range) { return (range.first + range.s
 PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
     for (const PartFile& part : parts) {
         check_alike(part, parts[0]);
-        if (part.plan_hash != plan.request.grouping.plan_hash)
+        if (part.plan_hash != plan.request.grouping.plan_hash || part.part.leaves != plan.request.grouping.leaves)
             refuse(part.file.string(), "is not of " + plan.request.grouping.plan_file.string());
     }
     std::ranges::sort(parts, [](const PartFile& a, const PartFile& b) {
@@ -77,7 +77,7 @@ PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
         return std::pair(one.first * two.slices, a.file) < std::pair(two.first * one.slices, b.file);
     });
 
-    Holdings holdings{parts[0].part.leaves};
+    Holdings holdings{parts[0].part.leaves * plan.request.grouping.sections};
     for (size_t i = 0; i < parts.size(); ++i) {
         const PartRange& range = parts[i].part.range;
         holdings.add(range);

@@ -18,7 +18,7 @@ constexpr const char* fixed_names[fixed_sums] = {"surface.R",    "surface.G",   
                                                  "validity",     "kept",         "taken"};
 
 std::string channel_name(const SumNode& node, size_t number) {
-    const std::string prefix = formatted("g%d_%d_%d.", node.group, node.level, node.index);
+    const std::string prefix = formatted("s%d_%d_%d.", node.section, node.level, node.index);
     if (number < fixed_sums) return prefix + fixed_names[number];
     const size_t light = (number - fixed_sums) / 3;
     return prefix + formatted("light%zu.%c", light, "RGB"[(number - fixed_sums) % 3]);
@@ -129,8 +129,9 @@ void read_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
 }
 
 PartRange range_of(const Grouping& grouping, const Mode& mode, const View& view) {
-    return part_range(grouping.part, grouping.parts, grouping.after,
-                      grouping.more > 0 ? grouping.more : grouping.groups, grouping.leaves, count_blocks(mode, view));
+    const int groups = grouping.more > 0 ? grouping.more : grouping.groups;
+    return part_range(grouping.part, grouping.parts, grouping.after * grouping.sections, groups * grouping.sections,
+                      grouping.leaves, count_blocks(mode, view));
 }
 
 std::string part_name(const std::string& frame_file, const Grouping& grouping) {

@@ -1,6 +1,6 @@
 // EXR parts: the sums of one part of a frame's samples, float by float.
 //
-// For each node the channels gGROUP_LEVEL_INDEX.NAME, NAME being surface.R/G/B, background.R/G/B, inscatter.R/G/B,
+// For each node the channels sSECTION_LEVEL_INDEX.NAME, NAME being surface.R/G/B, background.R/G/B, inscatter.R/G/B,
 // weight, alpha, transmittance, validity, kept, taken, and lightN.R/G/B for each part of fog light; Z and offset of the
 // sample nearest the pixel's centre. All are 32 bit floats.
 #pragma once

@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_leaves = 64; // of all groups
+constexpr int max_leaves = 64, max_sections = 8; // of all groups; of a single one
 
 Json settings_json(const Settings& settings) {
     JsonMembers members;
@@ -76,6 +76,7 @@ JsonMembers plan_json(const std::filesystem::path& file, const Scene& scene, con
             {"float", request.exr.full_float},
             {"background", request.background},
             {"groups", request.grouping.groups},
+            {"sections", request.grouping.sections},
             {"leaves", request.grouping.leaves}};
 }
 
@@ -121,6 +122,7 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     request.exr.full_float = json.boolean_or("float", false);
     request.background = json.boolean_or("background", true);
     request.grouping.groups = static_cast<int>(json.number_or("groups", 1));
+    request.grouping.sections = static_cast<int>(json.number_or("sections", 1));
     request.grouping.leaves = static_cast<int>(json.number_or("leaves", 1));
     request.grouping.plan_file = file;
     return request;
@@ -131,9 +133,10 @@ RenderRequest checked_request(const Json& json, const std::filesystem::path& fil
     try {
         RenderRequest request = request_of(json, file);
         find_mode(request.mode);
-        const int samples = request.settings.pixel.samples, groups = request.grouping.groups;
-        if (samples % groups != 0)
-            refuse("/settings/pixel.samples", formatted("expected a multiple of the %d groups", groups));
+        const Grouping& grouping = request.grouping;
+        if (request.settings.pixel.samples % (grouping.groups * grouping.sections) != 0)
+            refuse("/settings/pixel.samples",
+                   formatted("expected a multiple of %d: groups by sections", grouping.groups * grouping.sections));
         return request;
     } catch (const Error& error) {
         refuse(file.string(), error.what());
@@ -141,17 +144,19 @@ RenderRequest checked_request(const Json& json, const std::filesystem::path& fil
 }
 }
 
-int leaves_for(int groups, double samples) {
-    const int most = std::max(static_cast<int>(std::min(samples, 1.0 * max_leaves)) / groups, 1);
+int leaves_for(int sections, double samples) {
+    const int most = std::max(static_cast<int>(std::min(samples, 1.0 * max_leaves)) / sections, 1);
     return static_cast<int>(std::bit_floor(static_cast<unsigned>(most)));
 }
 
 Grouping grouping_of(int& samples, int groups) {
     Grouping grouping;
     grouping.groups = std::min(samples, groups);
-    const int of_group = (samples + grouping.groups - 1) / grouping.groups;
-    samples = of_group * grouping.groups;
-    grouping.leaves = leaves_for(grouping.groups, samples);
+    if (grouping.groups == 1)
+        grouping.sections = std::min(max_sections, static_cast<int>(std::bit_ceil(static_cast<unsigned>(samples))));
+    const int unit = grouping.groups * grouping.sections;
+    samples = (samples + unit - 1) / unit * unit;
+    grouping.leaves = leaves_for(unit, samples);
     return grouping;
 }
 

@@ -126,7 +126,8 @@ View view_of(const Scene& scene, const RenderRequest& request, const Settings& s
     view.seed = request.seed, view.frame = frame;
     const Grouping& grouping = request.grouping;
     if (grouping.groups > 0)
-        view.batches = grouping.groups, view.leaves = grouping.leaves, view.allotted = grouping.counts;
+        view.batches = grouping.groups, view.sections = grouping.sections, view.leaves = grouping.leaves,
+        view.allotted = grouping.counts;
     else if (measures_noise(request))
         view.batches = noise_batches, view.pixel_samples = batched_samples(view.pixel_samples);
     return view;

@@ -25,7 +25,8 @@ struct View;
 // Samples in groups, as a saved plan has them, and the part of them that is wanted.
 struct Grouping {
     int groups = 0;                              // each scrambled by itself; 0 = samples come in no groups
-    int leaves = 1;                              // of a group, a power of two
+    int sections = 1;                            // of a group
+    int leaves = 1;                              // of a section, a power of two
     std::shared_ptr<const TileFactors> counts{}; // of samples, where the plan tells them for every tile
     std::string plan_hash;
     std::filesystem::path plan_file;

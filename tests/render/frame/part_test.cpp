@@ -48,7 +48,7 @@ TEST(Parts, NodesHoldTheLeavesOfThePartInOrder) {
         for (int64_t last = first + 1; last <= 24; ++last) {
             int64_t next = first;
             for (const SumNode& node : nodes_of({first, last, 1}, 8)) {
-                EXPECT_EQ(int64_t{8} * node.group + (int64_t{node.index} << node.level), next);
+                EXPECT_EQ(int64_t{8} * node.section + (int64_t{node.index} << node.level), next);
                 EXPECT_LE(node.level, 3);
                 next += int64_t{1} << node.level;
             }
