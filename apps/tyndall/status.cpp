@@ -68,9 +68,9 @@ std::string status_text(const FarmJob& job, const FarmStatus& status, const Coun
     if (!counts.unfinished.empty())
         text += "missing: frames " + printable(format_frames(counts.unfinished), 300) + ", of which " +
                 count_text(counts.missing_parts, "part") + " are not rendered\n";
-    if (status.checkpoints > 0) text += formatted("begun: %zu parts, by their checkpoints\n", status.checkpoints);
+    if (status.checkpoints > 0) text += "begun: " + count_text(status.checkpoints, "part") + ", by checkpoints\n";
     if (status.temporaries > 0)
-        text += formatted("temporary: %zu files, being written or left by killed tasks\n", status.temporaries);
+        text += "temporary: " + count_text(status.temporaries, "file") + ", being written or left by killed tasks\n";
     if (!status.suspects.empty())
         text += "suspicious:\n" + some_lines(status.suspects, [](const SuspectFile& file) {
                     return printable(file.file, 200) + ": " + printable(file.why, 200);

@@ -211,7 +211,7 @@ class Status(FarmTest):
         told = self.status()
         self.assertEqual((told["finished"], told["temporaries"], told["missing_parts"]), (2, 1, 0))
         said = run("status", self.folder).stdout
-        for words in ("finished: 2 of 3 frames", "temporary: 1", "0002.exr: short", "submit.sh", "tyndall merge"):
+        for words in ("finished: 2 of 3 frames", "temporary: 1 file,", "0002.exr: short", "submit.sh", "tyndall merge"):
             self.assertIn(words, said)
         self.run_commands(told)
         self.assertEqual(self.status()["finished"], 3)

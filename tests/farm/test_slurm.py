@@ -112,10 +112,29 @@ class Slurm(ProgramTest):
         again = subprocess.run(["bash", folder / "submit.sh"], env=self.cluster.environment, capture_output=True, text=True)
         self.assertEqual(again.stdout, "nothing is missing\n", again.stderr)
 
+    def wait_until(self, word, seconds=60):
+        """Until the first part is in that state."""
+        end = time.monotonic() + seconds
+        while not any(line.startswith("1_0 " + word) for line in self.cluster.queue()):
+            self.assertLess(time.monotonic(), end, self.cluster.queue())
+            time.sleep(0.2)
+
+    def test_a_task_that_is_told_to_stop_leaves_a_checkpoint_and_is_queued_again(self):
+        folder = self.submit("--frames", "1-1", "--samples", 4096)
+        self.wait_until("RUNNING")
+        time.sleep(3)
+        self.cluster.ask("scancel", "--batch", "--signal=TERM", "1_0")  # as a time limit does
+        self.wait_until("PENDING")
+        self.assertEqual([file.name for file in (folder / "parts").iterdir()], ["window.0001.part-1-of-1.checkpoint"])
+        self.assertIn("begun: 1 part,", run("status", folder).stdout)
+        if NIGHTLY:  # Slurm waits for two minutes before it starts it again
+            self.wait_for(900)
+            self.succeed("status", folder, "--verify")
+            self.check_bits(folder, [1])
+
     def test_what_is_cancelled_stays_cancelled(self):
         folder = self.submit("--frames", "1-3", "--samples", 4096)
-        while not any("RUNNING" in line for line in self.cluster.queue()):
-            time.sleep(0.2)
+        self.wait_until("RUNNING")
         self.cluster.ask("scancel", *{line.split("_")[0].split(" ")[0] for line in self.cluster.queue()})
         self.wait_for(60)
         self.assertEqual(run("status", folder).returncode, 1)
