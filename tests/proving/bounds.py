@@ -75,7 +75,8 @@ def row_of(common, program, scene, folder, asked, truth):
         return common | {"refused": f"no truth: off by {truth.error():.4f} where at most {said['bound']:.4f} is said"}
     return common | {"groups": said["groups"], "samples": said["samples"], "said": said["error"], "bound": said["bound"],
                      "achieved": error_against(truth, layers), "truth_error": truth.error(),
-                     "integrator": plan.get("target", {}).get("integrator"), "orders": plan.get("target", {}).get("orders")}
+                     "integrator": plan.get("target", {}).get("integrator"),
+                     "orders_error": plan.get("target", {}).get("orders")}
 
 
 def by_samples(seed, common, options, folder):
