@@ -17,10 +17,9 @@ import numpy as np
 SOURCE = pathlib.Path(__file__).parents[2]
 SCENES = {"window": ("--mode", "march", "--samples", "64"),
           "cloud": ("--mode", "march", "--samples", "64", "--quality", "draft")}
-COUNTS = (2, 8, 32, 64, 256)  # parts that are merged to see what each costs
+COUNTS = (2, 8, 64, 128)  # parts that are merged to see what each costs
 # What is assumed.
 PIXELS = 1920 * 1080
-CORES, SPEED_UP = 8, 7.0     # of a machine; how many times quicker all its cores are than one
 STORAGE = 1e9                # bytes a second of the storage that all share
 LINK = 1.25e8                # and of a machine's own link to it
 INPUT = 1e9                  # bytes of a frame's volume and scene
@@ -54,10 +53,23 @@ def measured(program, name, size, folder):
         for file in files:
             file.unlink()
     counts, sizes, seconds, memory = np.array(rows).T
+    start_of_merge = smallest_merge(program, name, folder)
     slope, rest = np.polyfit(counts, seconds, 1)
     return {"start": start[1], "start_by_count": dict(zip(COUNTS, start)), "one": one, "bytes": dict(zip(COUNTS, sizes)),
-            "merge_second": max(slope, 0) / pixels, "merge_rest": max(rest, 0) / pixels,
+            "merge_second": max(slope, 0) / pixels, "merge_start": start_of_merge, "merge_rest": max(rest - start_of_merge, 0) / pixels,
             "memory": np.polyfit(counts, memory, 1)[0], "merge_seconds": dict(zip(COUNTS, seconds))}
+
+
+def smallest_merge(program, name, folder):
+    """Seconds of merging a part of a few pixels: start-up."""
+    plan, part = folder / "small.json", folder / "small.part-1-of-1.exr"
+    run(program, "plan", SOURCE / f"scenes/{name}.json", *SCENES[name], "--res", "8x8", "--frames", 1, "--save", plan)
+    run(program, "render", "--plan", plan, "-o", folder / "small.exr", "--part", "1/1")
+    return min(run(program, "merge", part, "-o", folder / "merged.exr")[0] for _ in range(3))
+
+
+def merging(cost, parts):
+    return cost["merge_start"] + PIXELS * (cost["merge_rest"] + parts * cost["merge_second"])
 
 
 def one_frame(cost, machines, parts=None):
@@ -66,7 +78,7 @@ def one_frame(cost, machines, parts=None):
     size = PIXELS * cost["bytes"][min((count for count in COUNTS if count >= parts), default=COUNTS[-1])]
     load = max(INPUT / LINK, parts * INPUT / STORAGE)
     write = max(size / LINK, parts * size / STORAGE)
-    merge = PIXELS * (cost["merge_rest"] + parts * cost["merge_second"]) + parts * size / STORAGE if parts > 1 else 0
+    merge = merging(cost, parts) + parts * size / STORAGE if parts > 1 else 0
     return {"start": cost["start"], "load": load, "render": HERO / parts, "write": write, "merge": merge,
             "memory": parts * PIXELS * cost["memory"]}
 
@@ -86,7 +98,7 @@ def sequence(cost, machines):
     hours = []
     for parts in (1, 3):
         jobs = FRAMES * parts
-        merge = PIXELS * (cost["merge_rest"] + parts * cost["merge_second"]) if parts > 1 else 0
+        merge = merging(cost, parts) if parts > 1 else 0
         load = max(INPUT / LINK, min(jobs, machines) * INPUT / STORAGE)
         rounds = -(-jobs // machines)
         merges = -(-FRAMES // machines)
@@ -109,7 +121,8 @@ def tables(costs):
             lines.append(f"| {machines:,} | {steps['start'] + steps['load']:.0f} s | {steps['render']:.0f} s | {steps['write']:.0f} s | "
                          f"{steps['merge']:.0f} s | {total(steps):.0f} s | {alone / total(steps):.1f} | {steps['memory'] / 1e9:.1f} GB |")
         best = best_parts(cost, 10000)
-        lines += ["", f"Within {MEMORY / 1e9:.0f} GB for merging, {best} parts are quickest: {total(one_frame(cost, best)):.0f} s, "
+        longer = next(n for n in range(2, 10001) if one_frame(cost, n)["merge"] > one_frame(cost, n)["render"])
+        lines += ["", f"From {longer} parts on, merging takes longer than rendering. Within {MEMORY / 1e9:.0f} GB for merging, {best} parts are quickest: {total(one_frame(cost, best)):.0f} s, "
                   f"{alone / total(one_frame(cost, best)):.0f} times as fast as one machine.", "",
                   "| machines, 1,000 frames | whole frames | three parts each |", "|---|---|---|"]
         for machines in (1, 10, 100, 300, 1000):

@@ -30,6 +30,7 @@ SAMPLES = [("--samples", 8, "--groups", 2), ("--samples", 8, "--groups", 8), ("-
 TARGET = 0.1
 PICTURES = 6   # independent ones of a truth
 MANY = 32      # samples of each
+ROUNDING = 1e-6  # of 32 bit floats
 KNOWN = 0.35   # of the bound, at most, is what a truth may be off by
 FEW_PATHS = ("--set", "fluence.paths=10000", "--set", "fluence.resolution=24")  # every part and picture prepares them
 
@@ -71,11 +72,13 @@ def row_of(common, program, scene, folder, asked, truth):
     layers, said, plan = merged(program, scene, folder, asked)
     if layers is None or "bound" not in said:
         return common | {"refused": said.get("refused", "says nothing of its error")}
-    if truth.error() > KNOWN * said["bound"]:
+    achieved = error_against(truth, layers)
+    if truth.error() > KNOWN * said["bound"] and achieved - 2 * truth.error() <= SLACK * said["bound"]:
         return common | {"refused": f"no truth: off by {truth.error():.4f} where at most {said['bound']:.4f} is said"}
     return common | {"groups": said["groups"], "samples": said["samples"], "said": said["error"], "bound": said["bound"],
-                     "achieved": error_against(truth, layers), "truth_error": truth.error(),
-                     "integrator": plan.get("target", {}).get("integrator"), "orders": plan.get("target", {}).get("orders")}
+                     "achieved": achieved, "truth_error": truth.error(),
+                     "integrator": plan.get("target", {}).get("integrator"),
+                     "orders_error": plan.get("target", {}).get("orders")}
 
 
 def by_samples(seed, common, options, folder):
@@ -128,7 +131,7 @@ def prove(seed, options):
 
 
 def is_true(row):
-    return row["achieved"] <= SLACK * row["bound"]
+    return row["achieved"] <= SLACK * row["bound"] + ROUNDING
 
 
 def line(row):
