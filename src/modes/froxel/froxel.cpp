@@ -48,7 +48,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
             make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));
         LightDepth& depth = scene.depths.back();
         depth.scale = settings.style.light_depth;
-        const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0;
+        const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0 && !depth.grid.depth;
         scene.columns.push_back(on_demand ? std::make_unique<const GridColumns>(bricks, depth.grid) : nullptr);
         scene.cones.push_back(cone_falloff(light));
     }

@@ -50,8 +50,9 @@ uint64_t remove_file(const fs::path& file) {
 FrameManifest manifest_of(const SavedPlan& plan, int frame, const CacheFolder& folder) {
     FrameManifest manifest{frame, plan.request.grouping.plan_hash, {}, {}};
     for (const auto& [path, input] : folder.inputs->known) manifest.inputs[normal_path(path)] = input;
-    for (const CacheCost& cost : folder.costs)
-        if (!cost.file.empty()) manifest.files[cost.file] = folder.files.at(cost.file);
+    for (const CacheCost& cost : folder.costs) // stamps as they are now: another run may have written a file again
+        if (!cost.file.empty())
+            manifest.files[cost.file] = {stamp_of(folder.folder / cost.file), folder.files.at(cost.file).hash};
     return manifest;
 }
 }
@@ -75,11 +76,13 @@ std::shared_ptr<CacheFolder> open_to_prepare(const SavedPlan& plan, uint64_t mos
 std::vector<CacheCost> prepare_for_parts(const Scene& scene, const SavedPlan& plan, int frame,
                                          const std::shared_ptr<CacheFolder>& folder) {
     const RenderRequest& request = plan.request;
-    folder->costs.clear(), folder->inputs->known.clear();
+    folder->costs.clear();
+    FileHashes& inputs = *folder->inputs;
+    for (auto& [path, input] : inputs.known) inputs.recorded[normal_path(path)] = std::move(input);
+    inputs.known.clear(), inputs.recorded_in = folder->folder;
     const double start = steady_seconds();
-    hash_fog(scene, request, frame, *folder->inputs);
-    if (!folder->inputs->known.empty())
-        note_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
+    hash_fog(scene, request, frame, inputs);
+    if (!inputs.known.empty()) note_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
 
     // Shares nothing with other frames: what they have in common is found in the folder, and so in every manifest.
     const Snapshot snapshot = make_snapshot(scene, moment_of(scene, frame), nullptr, request.missing, folder);

@@ -104,7 +104,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
         for (const Medium* medium : bricks) depth.marched.push_back(*medium);
         return depth;
     }
-    if (filled || method != LightTransmittance::grid)
+    if (filled || method != LightTransmittance::grid || snapshot.files)
         depth.grid = cached_grid(snapshot, bricks, light, resolution);
     else
         depth.grid = fitted_grid(bricks, light, resolution);

@@ -82,7 +82,7 @@ struct LightDepth {
 
 // `resolution`: cells across the longer side of the fog as the light sees it; of froxels, across the longer side of the
 // picture and in depth. Froxels need a view, and are a grid without. Built in parallel. Not `filled`: a grid is left to
-// GridColumns (light_grid.h).
+// GridColumns (light_grid.h), unless the plan was prepared and the whole of it is in a file.
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
                             const View* view = nullptr, bool filled = true);
 
