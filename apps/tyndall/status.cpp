@@ -89,7 +89,7 @@ int run_status(const Options& texts, const Globals& globals) {
     const FarmStatus status = look_at(job, texts.verify, cancel_flag());
     stop_if_cancelled();
     if (!texts.tasks.empty()) {
-        choice_among("--tasks", texts.tasks, {"plan", "parts", "merge"});
+        choice_among("--tasks", texts.tasks, {"plan", "prepare", "parts", "merge"});
         print_report(joined(slurm_arrays(missing_tasks(job, status, texts.tasks)), "\n"));
         return 0;
     }

@@ -86,16 +86,18 @@ class Submit(FarmTest):
                      "-o", self.folder, "--run", env=env)
         jobs = [shlex.split(line) for line in log.read_text().splitlines()]
         self.assertEqual([job[-3:] for job in jobs], [["task.sh", *words] for words in (
-            ("parts", "0"), ("parts", "1000"), ("merge", "0"), ("finish", "1"))])
+            ("prepare", "0"), ("parts", "0"), ("parts", "1000"), ("merge", "0"), ("finish", "1"))])
         for job in jobs:
             self.assertIn(f"--chdir={self.folder}", job)
             self.assertIn("--open-mode=append", job)
             self.assertIn("--cpus-per-task=4", job)
             self.assertIn("--mem=900", job)
-        self.assertIn("--array=0-999", jobs[0])
-        self.assertIn("--array=0-199", jobs[1])
-        self.assertIn("--dependency=afterany:1:2", jobs[2])
-        self.assertIn("--dependency=afterany:3", jobs[3])
+        self.assertIn("--array=0-599", jobs[0])
+        self.assertIn("--array=0-999", jobs[1])
+        self.assertIn("--array=0-199", jobs[2])
+        self.assertIn("--dependency=afterany:1", jobs[1])
+        self.assertIn("--dependency=afterany:2:3", jobs[3])
+        self.assertIn("--dependency=afterany:4", jobs[4])
 
     def test_assets_are_all_files_that_are_read(self):
         self.write("triangle.bin", TRIANGLE)
@@ -116,9 +118,10 @@ class Submit(FarmTest):
         self.assertEqual(template["extensions"], ["TASK_CHUNKING"])
         paths = [row for row in template["parameterDefinitions"] if row["type"] == "PATH"]
         self.assertEqual([(row["objectType"], row["dataFlow"]) for row in paths], [("DIRECTORY", "INOUT")])
-        parts, merge = template["steps"]
+        prepare, parts, merge = template["steps"]
+        self.assertEqual(parts["dependencies"], [{"dependsOn": "Prepare"}])
         self.assertEqual(merge["dependencies"], [{"dependsOn": "Parts"}])
-        for step in (parts, merge):
+        for step in (prepare, parts, merge):
             action = step["script"]["actions"]["onRun"]
             self.assertEqual(action["cancelation"], {"mode": "NOTIFY_THEN_TERMINATE", "notifyPeriodInSeconds": 30})
             self.assertEqual(action["args"][-4:], ["--progress", "openjd", "--threads", "3"])

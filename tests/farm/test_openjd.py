@@ -32,7 +32,7 @@ class OpenJd(ProgramTest):
         said = self.openjd("run", folder / "template.json", "--step", "Merge", "--run-dependencies")
         self.assertIn("Frames(CHUNK[INT]) = 1-5:2", said)
         self.assertIn("openjd_progress: 100", said)
-        self.assertIn("Chunks run: 8", said)  # six frames in two chunks: six parts and two merges
+        self.assertIn("Chunks run: 10", said)  # six frames in two chunks: prepared, six parts and two merges
         self.succeed("status", folder, "--verify")
         self.succeed("render", "--plan", folder / "plan.json", "-o", self.path("one.####.exr"), "-q")
         for frame in (1, 3, 5, 7, 9, 12):

@@ -14,6 +14,10 @@ CommandWords plan_words(const FarmJob& job, const CommandBlanks& blanks) {
     return words;
 }
 
+CommandWords prepare_words(const FarmJob& job, const CommandBlanks& blanks) {
+    return {"prepare", "--plan", plan_file(job, blanks), "--frames", blanks.frames};
+}
+
 CommandWords render_words(const FarmJob& job, const CommandBlanks& blanks) {
     return {"render",
             "--plan",

@@ -12,6 +12,7 @@ struct CommandBlanks {
 // Words after `tyndall`.
 using CommandWords = std::vector<std::string>;
 CommandWords plan_words(const FarmJob& job, const CommandBlanks& blanks);
+CommandWords prepare_words(const FarmJob& job, const CommandBlanks& blanks);
 CommandWords render_words(const FarmJob& job, const CommandBlanks& blanks);
 CommandWords merge_words(const FarmJob& job, const CommandBlanks& blanks);
 }

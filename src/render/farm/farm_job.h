@@ -30,6 +30,9 @@ std::filesystem::path job_folder(const std::filesystem::path& folder);
 // Of a scene, as a name that shells, engines and frame patterns leave as it is.
 std::string job_name_of(const std::filesystem::path& scene);
 
+// Whether tasks of one frame share work that is prepared once.
+inline bool shares_work(const FarmJob& job) { return job.parts > 1; }
+
 // Throws Error (unwritable).
 void save_job(const FarmJob& job);
 // Throws Error (unreadable, refused).

@@ -146,6 +146,7 @@ std::vector<int> missing_tasks(const FarmJob& job, const FarmStatus& status, con
         const FarmFrame& frame = status.frames[i];
         const int chunk = static_cast<int>(i) / job.chunk;
         if (step == "plan" && !frame.planned && !frame.finished) tasks.push_back(chunk);
+        if (step == "prepare" && !frame.missing.empty()) tasks.push_back(chunk);
         if (step == "merge" && !frame.finished) tasks.push_back(chunk);
         if (step == "parts")
             for (const int part : frame.missing) tasks.push_back(chunk * job.parts + part - 1);

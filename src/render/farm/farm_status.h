@@ -27,8 +27,8 @@ struct FarmStatus {
 // Throws Error (unreadable).
 FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& cancel);
 
-// The tasks of a step (plan, parts, merge) that are not done, numbered as the job's scripts do: chunks in order, and
-// within them parts.
+// The tasks of a step (plan, prepare, parts, merge) that are not done, numbered as the job's scripts do: chunks in
+// order, and within them parts.
 std::vector<int> missing_tasks(const FarmJob& job, const FarmStatus& status, const std::string& step);
 
 // Commands that make just what is missing, in this order, ready for a shell.

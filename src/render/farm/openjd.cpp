@@ -127,8 +127,12 @@ std::string openjd_template(const FarmJob& job) {
     const Json part = json_object({{"name", "Part"}, {"type", "INT"}, {"range", "1-" + std::to_string(job.parts)}});
     std::vector<Json> steps;
     if (job.plan_for_each_frame) steps.push_back(step(job, "Plan", nullptr, {frames}, plan_words(job, blanks)));
-    steps.push_back(
-        step(job, "Parts", job.plan_for_each_frame ? "Plan" : nullptr, {frames, part}, render_words(job, blanks)));
+    const char* before = job.plan_for_each_frame ? "Plan" : nullptr;
+    if (shares_work(job)) {
+        steps.push_back(step(job, "Prepare", before, {frames}, prepare_words(job, blanks)));
+        before = "Prepare";
+    }
+    steps.push_back(step(job, "Parts", before, {frames, part}, render_words(job, blanks)));
     steps.push_back(step(job, "Merge", "Parts", {frames}, merge_words(job, blanks)));
 
     JsonMembers members{{"specificationVersion", "jobtemplate-2023-09"}};

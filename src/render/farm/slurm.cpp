@@ -55,10 +55,13 @@ std::string slurm_task_script(const FarmJob& job) {
     const std::string plan = job.plan_for_each_frame ? "plan)\n  frames=${chunks[number]}\n  run " +
                                                            shell_line(plan_words(job, blanks)) + " ;;\n"
                                                      : std::string();
+    const std::string prepare = shares_work(job) ? "prepare)\n  frames=${chunks[number]}\n  run " +
+                                                       shell_line(prepare_words(job, blanks)) + " ;;\n"
+                                                 : std::string();
     return filled(slurm_task_text, {{"@PROGRAM@", quoted_for_shell(job.program)},
                                     {"@CHUNKS@", chunk_table(job)},
                                     {"@PARTS@", std::to_string(job.parts)},
-                                    {"@PLAN@\n", plan},
+                                    {"@PLAN@\n", plan + prepare},
                                     {"@RENDER@", shell_line(render_words(job, blanks))},
                                     {"@MERGE@", shell_line(merge_words(job, blanks))}});
 }
@@ -69,7 +72,8 @@ std::string slurm_submit_script(const FarmJob& job) {
     if (job.memory > 0) options += formatted(" --mem=%d", job.memory);
     return filled(slurm_submit_text, {{"@PROGRAM@", quoted_for_shell(job.program)},
                                       {"@OPTIONS@", options},
-                                      {"@STEPS@", job.plan_for_each_frame ? "plan parts merge" : "parts merge"},
+                                      {"@STEPS@", std::string(job.plan_for_each_frame ? "plan " : "") +
+                                                      (shares_work(job) ? "prepare " : "") + "parts merge"},
                                       {"@NAME@", job.name}});
 }
 
