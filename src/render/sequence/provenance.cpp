@@ -187,10 +187,12 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
         attributes["tyndall:achievedError"] = number(stats.error()->error);
         attributes["tyndall:errorBound"] = number(stats.error()->bound);
     }
-    if (stats.integrator) {
-        attributes["tyndall:candidate"] = stats.integrator->candidate;
+    if (stats.noise && (stats.integrator || stats.orders)) {
         attributes["tyndall:noiseError"] = number(stats.noise->error);
         attributes["tyndall:noiseBound"] = number(stats.noise->bound);
+    }
+    if (stats.integrator) {
+        attributes["tyndall:candidate"] = stats.integrator->candidate;
         attributes["tyndall:integratorError"] = number(stats.integrator->error.error);
         attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
     }
@@ -217,12 +219,13 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
     stats.non_finite = static_cast<uint64_t>(std::clamp(value("tyndall:nonFinite"), 0.0, 1e18));
     stats.goal_seconds = std::max(value("tyndall:timeUsed"), 0.0);
     const Noise integrator{value("tyndall:integratorError"), value("tyndall:integratorBound")};
-    const bool parts = integrator.error >= 0 && integrator.bound >= 0 && attributes.contains("tyndall:candidate");
+    const bool parts = attributes.contains("tyndall:noiseError");
     const Noise noise{value(parts ? "tyndall:noiseError" : "tyndall:achievedError"),
                       value(parts ? "tyndall:noiseBound" : "tyndall:errorBound")};
     if (noise.error < 0 || noise.bound < 0) return;
     stats.noise = noise;
-    if (parts) stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
+    if (integrator.error >= 0 && integrator.bound >= 0 && attributes.contains("tyndall:candidate"))
+        stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
     const Noise orders{value("tyndall:ordersError"), value("tyndall:ordersBound")};
     if (orders.error >= 0 && orders.bound >= 0 && attributes.contains("tyndall:ordersMean"))
         stats.orders = OrdersError{value("tyndall:ordersMean"), orders};
