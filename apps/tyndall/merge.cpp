@@ -157,18 +157,23 @@ int outcome(const Merge& merge) {
     return 0;
 }
 
+// Several frames without names of their own: most likely a part of another frame has come in among those of one.
+[[noreturn]] void refuse_stray(const std::map<int, std::vector<PartFile>>& frames) {
+    const auto parts = [](const auto& frame) { return frame.second.size(); };
+    const auto &stray = *std::ranges::min_element(frames, {}, parts),
+               &others = *std::ranges::max_element(frames, {}, parts);
+    refuse(stray.second[0].file.string(),
+           formatted("is of frame %d, others are of frame %d: --output needs #### for several frames", stray.first,
+                     others.first));
+}
+
 int run_merge(const Options& texts, const Globals& globals) {
     check_pattern(texts.output, ".exr", false);
     const double wait = texts.wait.empty() ? 0 : number_option("--wait", texts.wait, 0, 86400);
     const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
     if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, nor any other part");
     std::map<int, std::vector<PartFile>> frames = read_parts(names);
-    if (frames.size() > 1 && !has_frame_token(texts.output)) {
-        const PartFile& other = frames.rbegin()->second[0];
-        refuse(other.file.string(),
-               formatted("is of frame %d, others of frame %d: --output needs #### for several frames", other.frame,
-                         frames.begin()->first));
-    }
+    if (frames.size() > 1 && !has_frame_token(texts.output)) refuse_stray(frames);
     const PartFile& first = frames.begin()->second[0];
     Merge merge{texts, globals};
     merge.plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));

@@ -29,9 +29,11 @@ int samples_of(const View& view, ivec2 pixel) {
     return view.pixel_samples * std::max(lamp_factor(view, tile), view.edges ? view.edges->at(tile) : 1);
 }
 
-int max_samples(const View& view) {
-    if (!view.allotted) return view.pixel_samples * std::max({view.lamp_samples, view.edge_samples, 1});
-    return view.pixel_samples * std::ranges::max(view.allotted->factors.pixels);
+std::pair<int, int> samples_range(const View& view) {
+    const int samples = view.pixel_samples;
+    if (!view.allotted) return {samples, samples * std::max({view.lamp_samples, view.edge_samples, 1})};
+    const auto [fewest, most] = std::ranges::minmax(view.allotted->factors.pixels);
+    return {samples * fewest, samples * most};
 }
 
 int batches_of(const View& view, ivec2 pixel) {

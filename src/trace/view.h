@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace tyndall {
@@ -62,7 +63,7 @@ struct View {
 // Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile
 // of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
 int samples_of(const View& view, ivec2 pixel);
-int max_samples(const View& view); // that a pixel may take
+std::pair<int, int> samples_range(const View& view); // fewest and most that a pixel may take
 
 // Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
 inline constexpr int many_allotted = 8, more_batches = 4; // from that factor on, if it is a multiple

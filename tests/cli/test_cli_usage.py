@@ -109,7 +109,7 @@ class CommandLine(ProgramTest):
 
     def test_wrong_values_of_render_options(self):
         cases = {
-            "--frames": ["", "x", "1-", "1-10:2", "5-1", "1-10x0", "1,,2", "1-99999999999"],
+            "--frames": ["", "x", "1-", "1-10:", "5-1", "1-10x0", "1,,2", "1-99999999999"],
             "--res": ["", "64", "64x", "0x36", "64x36x2", "-64x36", "99999x10", "64.5x36"],
             "--crop": ["", "1,2,3", "5,5,5,9", "9,0,5,5", "0,0,9,x", "-1,0,5,5"],
             "--samples": ["0", "-1", "nan", "1.5", "5000", "many"],
@@ -141,7 +141,7 @@ class CommandLine(ProgramTest):
     def test_wrong_values_of_bake_options(self):
         bake = ("bake", "recipe.json", "-o", self.path("fog.####.vdb"))
         for option, value in [("--voxel-size", "0"), ("--voxel-size", "-1"), ("--voxel-size", "nan"),
-                              ("--compression", "lzma"), ("--frames", "1-5:2")]:
+                              ("--compression", "lzma"), ("--frames", "1-5:0")]:
             self.refuse(2, [], *bake, option, value)
 
     def test_options_without_effect_are_refused(self):
@@ -173,8 +173,12 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["several frames"], "render", self.scene, "-o", self.path("out.exr"))
         self.refuse(2, [".vdb"], "bake", "recipe.json", "-o", self.path("out.####.exr"))
 
-    def test_a_step_with_a_colon_is_explained(self):
-        self.refuse(2, ["use x"], *self.render("--frames", "1-10:2"))
+    def test_a_step_may_follow_a_colon_or_an_x(self):
+        for mark in ":x":
+            self.refuse(2, ["column"], *self.render("--frames", f"1-10{mark}"))
+            self.succeed(*self.render("--frames", f"1-3{mark}2", "--quality", "draft"))
+            self.assertFalse(self.path("out.0002.exr").exists())
+            self.path("out.0003.exr").unlink()
 
     def test_camera_and_crop_are_checked_against_the_scene(self):
         self.refuse(2, ["nobody"], *self.render("--camera", "nobody"))

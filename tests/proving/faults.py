@@ -166,8 +166,8 @@ def crafted(shop):
     result += [Fault(f"without {name}", {one: with_header(data, {name: None})})
                for name in HEADERS if name.startswith("tyndall") or name == "imageCounter"]
     names = channel_names(header_of(data)[0]["channels"][1])
-    many = [b"g%d_0_0.alpha" % i for i in range(5000)]
-    for what, some in (("renamed", [names[0] + b"x", *names[1:]]), ("of another group", [n.replace(b"g1", b"g9") for n in names]),
+    many = [b"s%d_0_0.alpha" % i for i in range(5000)]
+    for what, some in (("renamed", [names[0] + b"x", *names[1:]]), ("of another group", [n.replace(b"s1", b"s9") for n in names]),
                        ("twice", [names[0], names[0], *names[2:]]), ("5000 channels", many), ("no channels", []),
                        ("a long name", [b"x" * 300, *names[1:]]), ("an empty name", [b"", *names[1:]])):
         result.append(Fault(f"channels: {what}", {one: with_header(data, {"channels": channels_of(some)})}))
@@ -179,9 +179,10 @@ def crafted(shop):
     result += [
         Fault("millions of samples dropped", {one: with_samples(data, weights | every(b"taken", 2.0 ** 24) | every(b"kept", 0.0))}),
         Fault("no samples", {one: with_samples(data, weights | every(b"taken", 0.0) | every(b"kept", 0.0))}),
-        Fault("more samples than planned", {one: with_samples(data, weights | every(b"taken", 9.0) | every(b"kept", 9.0))}),
+        Fault("more samples than planned", {one: with_samples(data, weights | every(b"taken", 4096.0) | every(b"kept", 4096.0))}),
         Fault("no numbers", {one: with_samples(data, weights | every(b"inscatter.R", float("nan")))})]
-    result = [dataclasses.replace(fault, words=(one,), codes=(2, REFUSED) if "imageCounter" in fault.name else (REFUSED,))
+    far = "1073741823 1073741824"  # samples that some --more might have: what is missing is what lies before them
+    result = [dataclasses.replace(fault, words=("a part is missing",) if far in fault.name else (one,), codes=(2, REFUSED) if "imageCounter" in fault.name else (REFUSED,))
               for fault in result]
     first = shop.names[0]  # whose plan is read
     return result + [Fault(f"tyndall:planFile = {value[:40]!r}", {first: with_header(shop.good[first], {"tyndall:planFile": value})})

@@ -128,7 +128,9 @@ Integrator checked_integrator(const PlannedError& planned, const Mode& mode, con
 void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
                    const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
     if (!stats.noise) return;
-    stats.orders = planned.orders, stats.integrator = planned.integrator;
+    if (planned.orders) stats.orders = planned.orders;
+    if (planned.target == 0) return;
+    stats.integrator = planned.integrator;
     if (planned.integrator && !planned.is_truth)
         stats.integrator =
             checked_integrator(planned, mode, view, snapshot, settings, image, *stats.noise, without_report(options));

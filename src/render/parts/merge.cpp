@@ -54,11 +54,12 @@ struct Holdings {
     double held = 0; // leaves
 
     // From a leaf to another one, not included.
-    void add_gap(const PartFile& beside, int64_t first, int64_t last) {
+    void add_gap(const PartFile& beside, int64_t first, int64_t last, const PartFile* next = nullptr) {
         if (!found.gap.empty()) return;
         found.beside = beside.file;
         found.gap = "a part is missing beside " + printable(beside.label, 20) + ", with " +
                     leaves_text(first, last, leaves) + " (group/leaf)";
+        if (next) found.gap += ", before " + printable(next->file.filename().string(), 80);
     }
     void add(const PartRange& range) { held += static_cast<double>(range.last - range.first) / range.slices; }
 };
@@ -89,7 +90,7 @@ PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
             refuse(parts[i].file.string(),
                    "holds samples that " + printable(parts[i - 1].file.filename().string(), 80) + " holds as well");
         if (meeting == Meeting::gap)
-            holdings.add_gap(parts[i - 1], before.last / before.slices, first_whole_leaf(range));
+            holdings.add_gap(parts[i - 1], before.last / before.slices, first_whole_leaf(range), &parts[i]);
     }
     const PartRange& last = parts.back().part.range;
     const int leaves = holdings.leaves;
@@ -120,11 +121,13 @@ MergedFrame merge_frame(std::span<const PartFile> files, const PartGroups& group
     const std::string hash = frame_hash(scene, request, plan.plan, view, hashes);
     if (hash != first.hash) refuse(first.file.string(), "the files it was rendered from have changed since");
 
-    const int max_taken = max_samples(view) / (view.batches * view.sections);
+    const auto [fewest, most] = samples_range(view);
+    const int sections = view.batches * view.sections;
+    const SectionSamples of_section{fewest / sections, most / sections};
     const auto rows = [&](int low, int count) {
         std::vector<FramePart> parts(files.size());
         parallel_for(static_cast<int64_t>(files.size()), [&](int64_t i) {
-            parts[static_cast<size_t>(i)] = read_rows(files[static_cast<size_t>(i)], low, count, max_taken);
+            parts[static_cast<size_t>(i)] = read_rows(files[static_cast<size_t>(i)], low, count, of_section);
         });
         return parts;
     };

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <span>
 
 namespace tyndall {
@@ -95,14 +94,18 @@ const Image<float>& channel_of(const ExrFile& exr, const std::string& name, cons
     return *channel;
 }
 
-// Numbers of samples are whole, no more are kept than taken, and no more taken than there may be; parts that are no
-// slices have some of every pixel. No sum is NaN.
-void check_sums(std::span<const float> sums, const FramePart& part, int max_taken, const std::string& file) {
-    const float fewest = part.range.slices == 1 && part.finished.empty() ? 1.0f : 0.0f;
+// Numbers of samples are whole, no more are kept than taken, and as many taken as a node may have; of a slice perhaps
+// none. No sum is NaN.
+void check_sums(std::span<const float> sums, const SumNode& node, const FramePart& part, const SectionSamples& section,
+                const std::string& file) {
+    const bool every_pixel = part.range.slices == 1 && part.finished.empty();
+    const int64_t size = int64_t{1} << node.level, leaves = part.leaves;
+    const auto fewest = static_cast<float>(every_pixel ? section.fewest * size / leaves : 0);
+    const auto most = static_cast<float>((section.most * size + leaves - 1) / leaves);
     for (size_t at = 0; at < sums.size(); at += part.numbers) {
         const float kept = sums[at + kept_sum], taken = sums[at + taken_sum];
         const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
-        if (!(whole && kept >= 0 && kept <= taken && taken >= fewest && taken <= static_cast<float>(max_taken)))
+        if (!(whole && kept >= 0 && kept <= taken && taken >= fewest && taken <= most))
             refuse(file, "damaged: it holds numbers of samples that cannot be");
     }
     if (std::ranges::any_of(sums, [](float sum) { return std::isnan(sum); }))
@@ -120,7 +123,7 @@ void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
 }
 
 // Those of the rows that the file was read for.
-void read_sums(const ExrFile& exr, const std::string& file, int max_taken, FramePart& part) {
+void read_sums(const ExrFile& exr, const std::string& file, const SectionSamples& section, FramePart& part) {
     part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
     part.size = part.depth.size;
     for (const SumNode& node : part.nodes) {
@@ -129,7 +132,7 @@ void read_sums(const ExrFile& exr, const std::string& file, int max_taken, Frame
             const Image<float>& values = channel_of(exr, channel_name(node, k), file);
             for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
         }
-        check_sums(sums, part, max_taken, file);
+        check_sums(sums, node, part, section, file);
     }
 }
 }
@@ -191,9 +194,9 @@ PartFile read_part(const std::filesystem::path& file) {
     return result;
 }
 
-FramePart read_rows(const PartFile& part, int first, int count, int max_taken) {
+FramePart read_rows(const PartFile& part, int first, int count, const SectionSamples& section) {
     FramePart rows = part.part;
-    read_sums(read_exr_rows(part.file, first, count), part.file.string(), max_taken, rows);
+    read_sums(read_exr_rows(part.file, first, count), part.file.string(), section, rows);
     return rows;
 }
 
@@ -208,7 +211,7 @@ std::optional<FramePart> read_checkpoint(const std::filesystem::path& file, cons
         const ExrFile exr = read_exr(file);
         PartFile read = part_in(exr, file);
         if (const Image<float>* finished = exr.channel("finished")) read.part.finished = *finished;
-        read_sums(exr, file.string(), std::numeric_limits<int>::max(), read.part);
+        read_sums(exr, file.string(), {}, read.part);
         if (read.part.finished.empty())
             why = "is no checkpoint";
         else if (read.hash != hash || read.label != label(grouping) || read.plan_hash != grouping.plan_hash)

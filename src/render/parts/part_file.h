@@ -36,9 +36,13 @@ void write_part(const std::filesystem::path& file, const FramePart& part, Proven
 // Throws Error (unreadable, refused): every byte has to be as it was written.
 PartFile read_part(const std::filesystem::path& file);
 
-// So many rows of the part, with their sums, of which none may hold more samples than a section has. Throws Error
-// (unreadable, refused).
-FramePart read_rows(const PartFile& part, int first, int count, int max_taken);
+// The fewest and the most samples of a pixel that a section may hold.
+struct SectionSamples {
+    int fewest = 0, most = 1 << 24;
+};
+
+// So many rows of the part, with their sums. Throws Error (unreadable, refused).
+FramePart read_rows(const PartFile& part, int first, int count, const SectionSamples& section);
 
 // frame.part-1-of-3.exr: what is rendered of it so far is kept in frame.part-1-of-3.checkpoint.
 std::filesystem::path checkpoint_name(const std::filesystem::path& part);
