@@ -97,6 +97,8 @@ std::string chosen_isa(const std::string& text) {
     return text == "avx512" ? "avx512" : "avx2";
 }
 
+void use_planned_isa(const std::string& planned) { chosen_isa(planned == "avx512" ? planned : "auto"); }
+
 std::vector<std::string> comma_list(std::string_view text) {
     std::vector<std::string> pieces;
     for (size_t start = 0;;) {

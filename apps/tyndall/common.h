@@ -78,6 +78,8 @@ ivec2 resolution_option(std::string_view option, std::string_view text);
 // Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
 // the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
 std::string chosen_isa(const std::string& text);
+// The fastest that gives the bits of a plan's. Throws Error (usage) where this machine lacks it.
+void use_planned_isa(const std::string& planned);
 // The pieces between commas.
 std::vector<std::string> comma_list(std::string_view text);
 }

@@ -178,6 +178,7 @@ int run_merge(const Options& texts, const Globals& globals) {
     Merge merge{texts, globals};
     merge.plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));
     merge.plan.request.output = texts.output;
+    use_planned_isa(merge.plan.request.isa);
     OutputPlaces places;
     std::map<int, PartGroups> groups;
     for (auto& [frame, parts] : frames) {

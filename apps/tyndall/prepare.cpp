@@ -85,7 +85,7 @@ int run_prepare(const Options& texts, const Globals& globals) {
     if (texts.clean || texts.clean_all) return run_clean(texts, plan, globals);
     const std::vector<int> frames = texts.frames.empty() ? plan.request.frames : parse_frames(texts.frames);
     check_frames(plan, frames);
-    chosen_isa(plan.request.isa);
+    use_planned_isa(plan.request.isa);
     set_stop_remark("; finished files are kept");
     const std::shared_ptr<CacheFolder> folder = open_to_prepare(plan, static_cast<uint64_t>(limit * gigabyte));
     const double start = steady_seconds();

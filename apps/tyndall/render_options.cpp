@@ -376,7 +376,7 @@ RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
     check_planned(texts);
     plan = load_plan(texts.plan);
     RenderRequest request = plan.request;
-    chosen_isa(request.isa);
+    use_planned_isa(request.isa);
     request.output = texts.output;
     Grouping& grouping = request.grouping;
     if (!texts.part.empty()) read_part_option(texts.part, grouping);

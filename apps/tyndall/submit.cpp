@@ -8,6 +8,7 @@
 #include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/farm/farm_status.h"
+#include "render/farm/forecast.h"
 #include "render/farm/inputs.h"
 #include "render/farm/openjd.h"
 #include "render/farm/slurm.h"
@@ -28,7 +29,7 @@ namespace tyndall {
 namespace {
 struct Options {
     RenderOptions render; // those that a plan takes; its output is the folder
-    std::string engine, groups, parts, chunk, cpus, memory, folder;
+    std::string engine, groups, parts, chunk, cpus, memory, minutes, folder;
     bool dry_run = false, run = false, remove_parts = false;
 };
 
@@ -51,6 +52,7 @@ FarmJob job_of(const Options& texts, const Scene& scene) {
     job.chunk = number_or("--chunk", texts.chunk, 1, 1000000);
     job.cpus = number_or("--cpus", texts.cpus, 0, 1024);
     job.memory = number_or("--memory", texts.memory, 0, 1 << 30);
+    job.minutes = number_or("--minutes", texts.minutes, 0, 1 << 24);
     job.plan_for_each_frame = texts.render.mode == automatic || !texts.render.target_error.empty();
     job.plan_options = planned_words(texts.render);
     if (!texts.groups.empty()) job.plan_options.insert(job.plan_options.end(), {"--groups", texts.groups});
@@ -62,10 +64,11 @@ FarmJob job_of(const Options& texts, const Scene& scene) {
 
 // What the folder gets beside job.json and the plan, in the order in which it is written.
 using FarmFiles = std::vector<std::pair<std::string, std::string>>;
-FarmFiles files_of(const FarmJob& job, const Scene& scene, const RenderRequest& request) {
-    if (job.engine == "slurm") return {{"task.sh", slurm_task_script(job)}, {"submit.sh", slurm_submit_script(job)}};
+FarmFiles files_of(const FarmJob& job, const Scene& scene, const RenderRequest& request, const TaskLimits& limits) {
+    if (job.engine == "slurm")
+        return {{"task.sh", slurm_task_script(job)}, {"submit.sh", slurm_submit_script(job, limits)}};
     return {{"asset_references.yaml", openjd_asset_references(job, input_files(scene, job.frames, request.missing))},
-            {"template.json", openjd_template(job)}};
+            {"template.json", openjd_template(job, limits)}};
 }
 
 std::vector<std::string> run_words(const FarmJob& job) {
@@ -160,17 +163,25 @@ void say_dry(const FarmJob& job, const FarmFiles& files) {
     print_report(report + "--- to hand it over\n" + shell_text(run_words(job)) + "\n");
 }
 
+std::string forecast_text(const TaskForecast& forecast) {
+    std::string text = formatted("a task takes about %.2g GB", 1e-9 * forecast.memory);
+    if (forecast.seconds) text += " and " + seconds_text(*forecast.seconds);
+    return text;
+}
+
 int run_submit(const Options& texts, const Globals& globals) {
     choice_among("ENGINE", texts.engine, {"slurm", "openjd"});
     if (texts.dry_run && texts.run) fail(ExitCode::usage, "--run", "does not go with --dry-run");
     check_for_plan(texts.render, texts.groups);
-    const RenderRequest request = make_request(
-        texts.render, texts.render.mode == automatic ? main_mode() : find_mode(texts.render.mode, "--mode"));
+    const Mode& mode = texts.render.mode == automatic ? main_mode() : find_mode(texts.render.mode, "--mode");
+    RenderRequest request = make_request(texts.render, mode);
+    request.mode = mode.name;
     const Scene scene = load_scene(request.scene_file, load_options(texts.render));
     find_camera(scene, request.camera);
     const FarmJob job = job_of(texts, scene);
     check_folder(job);
-    const FarmFiles files = files_of(job, scene, request);
+    const TaskForecast forecast = forecast_task(job, scene, request, cancel_flag());
+    const FarmFiles files = files_of(job, scene, request, limits_of(job, forecast));
     if (texts.dry_run) {
         say_dry(job, files);
         return 0;
@@ -178,7 +189,7 @@ int run_submit(const Options& texts, const Globals& globals) {
     write_job(job, files, texts, scene, globals);
     if (!globals.quiet) {
         say(printable(job.folder.string(), 300) + ": " + count_text(job.frames.size(), "frame") + " in " +
-            count_text(static_cast<uint64_t>(job.parts), "part") + ", " + job.engine);
+            count_text(static_cast<uint64_t>(job.parts), "part") + ", " + job.engine + "; " + forecast_text(forecast));
         say((texts.run ? "runs: " : "to hand it over: ") + printable(shell_text(run_words(job)), 400));
     }
     if (texts.run) run(run_words(job));
@@ -199,7 +210,11 @@ Run add_submit(const Command& program) {
     command.option("--parts", texts->parts, "parts of each frame (default: 1)", "N");
     command.option("--chunk", texts->chunk, "frames of a task (default: 1)", "N");
     command.option("--cpus", texts->cpus, "processors of a task (default: the engine's)", "N");
-    command.option("--memory", texts->memory, "memory of a task, MiB (default: the engine's)", "N");
+    command.option("--memory", texts->memory, "most memory of a task, MiB (default: by a forecast)", "N");
+    command.option("--minutes", texts->minutes,
+                   "most time of a task, for Slurm (default: by a forecast; with an error that is\n"
+                   "wanted the partition's)",
+                   "N");
     command.flag("--remove-parts", texts->remove_parts, "remove the parts of a frame once it is merged");
     command.flag("--dry-run", texts->dry_run, "print what would be written, and write nothing");
     command.flag("--run", texts->run, "hand the job over: by sbatch, or to openjd run on this machine");

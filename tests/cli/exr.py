@@ -37,11 +37,21 @@ def _channels(data):
     return result
 
 
-def _unzipped(packed, size):
-    """Undoes ZIP, the differences of bytes and their order."""
+def _run_lengths(packed):
+    """Undoes RLE: n below 0 and -n bytes, or n and a byte that comes n + 1 times."""
+    result, at = bytearray(), 0
+    while at < len(packed):
+        count = int.from_bytes(packed[at:at + 1], signed=True)
+        result += packed[at + 1:at + 1 - count] if count < 0 else packed[at + 1:at + 2] * (count + 1)
+        at += 1 + max(-count, 1)
+    return result
+
+
+def _unpacked(packed, size, unpack):
+    """Undoes ZIP or RLE, the differences of bytes and their order."""
     if len(packed) == size:
         return packed
-    coded = zlib.decompress(packed)
+    coded = unpack(packed)
     values = bytes(value & 255 for value in itertools.accumulate(coded, lambda sum, byte: sum + byte - 128))
     result, half = bytearray(size), (size + 1) // 2
     result[0::2], result[1::2] = values[:half], values[half:]
@@ -54,14 +64,14 @@ def read_channels(path):
     attributes, at = _header(data)
     low_x, low_y, high_x, high_y = struct.unpack("<4i", attributes["dataWindow"])
     width, height = high_x - low_x + 1, high_y - low_y + 1
-    lines = {b"\x00": 1, b"\x03": 16}[attributes["compression"]]
+    lines, unpack = {b"\x00": (1, bytes), b"\x01": (1, _run_lengths), b"\x03": (16, zlib.decompress)}[attributes["compression"]]
     channels = _channels(attributes["channels"])
     result = {name: array.array("f") for name, _ in channels}
     line_size = sum(width * (2 if kind == HALF else 4) for _, kind in channels)
     for place in struct.unpack_from(f"<{(height + lines - 1) // lines}Q", data, at):
         y, size = struct.unpack_from("<ii", data, place)
         count = min(lines, high_y + 1 - y)
-        block, at = _unzipped(data[place + 8:place + 8 + size], line_size * count), 0
+        block, at = _unpacked(data[place + 8:place + 8 + size], line_size * count, unpack), 0
         for _ in range(count):
             for name, kind in channels:
                 result[name].extend(struct.unpack_from(f"<{width}{'e' if kind == HALF else 'f'}", block, at))

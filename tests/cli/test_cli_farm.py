@@ -92,12 +92,37 @@ class Submit(FarmTest):
             self.assertIn("--open-mode=append", job)
             self.assertIn("--cpus-per-task=4", job)
             self.assertIn("--mem=900", job)
+            self.assertNotIn("--time", " ".join(job))  # SBATCH_TIMELIMIT of the forecast, or of whoever submits
         self.assertIn("--array=0-599", jobs[0])
         self.assertIn("--array=0-999", jobs[1])
         self.assertIn("--array=0-199", jobs[2])
         self.assertIn("--dependency=afterany:1", jobs[1])
         self.assertIn("--dependency=afterany:2:3", jobs[3])
         self.assertIn("--dependency=afterany:4", jobs[4])
+
+    def limits(self, *options, **environment):
+        """What sbatch gets by options and by environment, minutes and MiB."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        sbatch = self.write("bin/sbatch", '#!/bin/bash\necho "$SBATCH_TIMELIMIT $SBATCH_MEM_PER_NODE $*" >>"$LOG"\necho 1\n')
+        sbatch.chmod(0o755)
+        self.path("log").unlink(missing_ok=True)
+        env = {**os.environ, "PATH": f"{sbatch.parent}:{os.environ['PATH']}", "LOG": str(self.path("log")), "TYNDALL": TYNDALL, **environment}
+        self.succeed("submit", "slurm", self.scene, "-o", self.folder, "--run", *options, env=env)
+        minutes, memory, options = self.path("log").read_text().splitlines()[0].split(" ", 2)
+        return minutes, memory, options
+
+    def test_limits_come_from_a_forecast(self):
+        minutes, memory, _ = self.limits("--samples", 2)
+        self.assertEqual(minutes, "10")
+        self.assertTrue(1024 <= int(memory) < 4096, memory)
+        long, large, _ = self.limits("--samples", 4096, "--res", "8192x8192", "--cpus", 1)
+        self.assertGreater(int(long), 600)
+        self.assertGreater(int(large), int(memory))
+        parts, _, _ = self.limits("--samples", 4096, "--res", "8192x8192", "--cpus", 1, "--parts", 10)
+        self.assertAlmostEqual(int(parts) / int(long), 0.1, delta=0.05)
+        self.assertEqual(self.limits("--samples", 2, SBATCH_TIMELIMIT="7", SBATCH_MEM_PER_NODE="0")[:2], ("7", "0"))
+        self.assertEqual(self.limits("--target-error", 0.2)[0], "")
+        self.assertIn("--time=33", self.limits("--samples", 2, "--minutes", 33)[2])
 
     def test_assets_are_all_files_that_are_read(self):
         self.write("triangle.bin", TRIANGLE)
@@ -204,6 +229,18 @@ class Status(FarmTest):
         self.submit("slurm", "--parts", 2)
         self.part(2, 2).write_bytes(foreign)
         self.assertEqual(self.status()["suspicious"][0]["why"], "of another plan")
+
+    def test_a_frame_of_another_plan(self):
+        self.submit("slurm", "--seed", 5)
+        self.run_commands(self.status())
+        frame = self.folder / "frames/my_scene_s.0002.exr"
+        foreign = frame.read_bytes()
+        shutil.rmtree(self.folder)
+        self.submit("slurm")
+        self.run_commands(self.status())
+        frame.write_bytes(foreign)
+        told = self.status()
+        self.assertEqual((told["finished"], [row["why"] for row in told["suspicious"]]), (2, ["of another plan"]))
 
     def test_temporaries_and_cut_frames(self):
         self.submit("slurm")

@@ -47,7 +47,7 @@ FAULTS = [
     Fault("orders-of-one-product", ADAPTIVE + "orders.cpp", "channel_mean(sum * sum - own)", "channel_mean(sum * sum)"),
     Fault("planning-not-counted", ADAPTIVE + "to_target.cpp", "stats.goal_seconds = goal.clock() - rounds.start;",
           "stats.goal_seconds = stats.render_seconds;"),
-    Fault("loading-not-counted", "src/render/sequence/sequence.cpp",
+    Fault("loading-not-counted", "src/render/sequence/render_stage.cpp",
           "request.started + request.time_budget * (pipeline.rendered + 1)", "steady_seconds() + request.time_budget"),
     Fault("misses-by-the-likely-error", "src/render/sequence/sequence.cpp",
           "frame.stats.error()->bound > request.target_error", "frame.stats.error()->error > 2 * request.target_error"),

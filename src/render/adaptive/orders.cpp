@@ -53,15 +53,16 @@ Sweep make_sweep(const View& view, size_t most) {
     return sweep;
 }
 
-// One pixel of each 2×2 of a tile, as many as lie in the image: the same place in all of them, another in each pass.
+// One pixel of each 2×2 of a tile that begins in the image: the same place in all of them, as far as they lie in the
+// image, another in each pass.
 size_t pixels_of(ivec2 corner, ivec2 size, uint32_t seed, std::span<ivec2> pixels) {
     const uint32_t place = hash(static_cast<uint32_t>(corner.x), static_cast<uint32_t>(corner.y), seed);
     const ivec2 offset(static_cast<int>(place & 1), static_cast<int>(place >> 1 & 1));
     size_t count = 0;
     for (int y = 0; y < tile_side; y += 2)
         for (int x = 0; x < tile_side; x += 2) {
-            const ivec2 p = corner + ivec2(x, y) + offset;
-            if (p.x < size.x && p.y < size.y) pixels[count++] = p;
+            const ivec2 low = corner + ivec2(x, y);
+            if (low.x < size.x && low.y < size.y) pixels[count++] = glm::min(low + offset, size - 1);
         }
     return count;
 }

@@ -40,6 +40,7 @@ std::string job_text(const FarmJob& job) {
                         {"remove_parts", job.remove_parts}};
     if (job.cpus > 0) members.emplace_back("cpus", job.cpus);
     if (job.memory > 0) members.emplace_back("memory", job.memory);
+    if (job.minutes > 0) members.emplace_back("minutes", job.minutes);
     return json_line(std::move(members));
 }
 
@@ -63,6 +64,7 @@ FarmJob load_job(const std::filesystem::path& folder) {
     job.chunk = static_cast<int>(json.number_or("chunk", 1));
     job.cpus = static_cast<int>(json.number_or("cpus", 0));
     job.memory = static_cast<int>(json.number_or("memory", 0));
+    job.minutes = static_cast<int>(json.number_or("minutes", 0));
     job.plan_for_each_frame = json.boolean_or("plan_for_each_frame", false);
     for (const Json& word : json.find("plan_options")->items) job.plan_options.push_back(word.string);
     job.remove_parts = json.boolean_or("remove_parts", false);

@@ -18,7 +18,8 @@ struct FarmJob {
     std::string name;             // of the frames
     std::vector<int> frames;      // ascending
     int parts = 1, chunk = 1;     // parts of a frame, frames of a task
-    int cpus = 0, memory = 0;     // of a task, MiB; 0 = left to the engine
+    int cpus = 0;                 // of a task; 0 = left to the engine
+    int memory = 0, minutes = 0;  // most that a task may take, memory in MiB; 0 = by a forecast
     bool plan_for_each_frame = false;
     std::vector<std::string> plan_options; // words of tyndall plan, but for scene, frames and file
     bool remove_parts = false;             // once merged

@@ -20,7 +20,7 @@ namespace tyndall {
 namespace {
 constexpr size_t waiting_threads = 16;
 
-// What a part's header has to say.
+// What a header has to say. Without a plan hash a finished frame may be of any: its plan is not needed any more.
 struct Expected {
     std::string frame, part, plan_hash;
 };
@@ -30,7 +30,8 @@ std::string disagreement(const ExrGlance& glance, const Expected& expected) {
     if (glance.partial) return "merged while parts were missing";
     if (glance.part != expected.part)
         return expected.part.empty() ? "a part in the place of a frame" : "of another division into parts";
-    if (glance.plan_hash != expected.plan_hash && !expected.part.empty()) return "of another plan";
+    const bool any_plan = expected.part.empty() && expected.plan_hash.empty();
+    if (glance.plan_hash != expected.plan_hash && !any_plan) return "of another plan";
     return {};
 }
 
@@ -65,9 +66,9 @@ FarmFrame look_at_frame(const FarmJob& job, int frame, const std::string& shared
         if (problem && !problem->empty()) suspects.push_back({name, *problem});
         return !problem;
     };
-    result.finished = usable(frame_name(frame_pattern(job), frame));
     if (job.plan_for_each_frame) expected.plan_hash = hash_of_plan(job.folder / plan_name(job, frame));
     result.planned = !expected.plan_hash.empty();
+    result.finished = usable(frame_name(frame_pattern(job), frame));
     if (result.finished) return result;
 
     Grouping grouping;

@@ -79,20 +79,20 @@ Json frames_parameter(const FarmJob& job) {
     return json_object(std::move(members));
 }
 
-Json requirements(const FarmJob& job) {
+Json requirements(const FarmJob& job, const TaskLimits& limits) {
     JsonMembers members{
         {"attributes",
          std::vector{json_object({{"name", "attr.worker.os.family"}, {"anyOf", std::vector<Json>{"linux"}}}),
                      json_object({{"name", "attr.worker.cpu.arch"}, {"anyOf", std::vector<Json>{"x86_64"}}})}}};
     std::vector<Json> amounts;
     if (job.cpus > 0) amounts.push_back(json_object({{"name", "amount.worker.vcpu"}, {"min", job.cpus}}));
-    if (job.memory > 0) amounts.push_back(json_object({{"name", "amount.worker.memory"}, {"min", job.memory}}));
+    if (limits.memory > 0) amounts.push_back(json_object({{"name", "amount.worker.memory"}, {"min", limits.memory}}));
     if (!amounts.empty()) members.emplace_back("amounts", amounts);
     return json_object(std::move(members));
 }
 
-Json step(const FarmJob& job, const char* name, const char* after, std::vector<Json> parameters_of_task,
-          CommandWords words) {
+Json step(const FarmJob& job, const TaskLimits& limits, const char* name, const char* after,
+          std::vector<Json> parameters_of_task, CommandWords words) {
     words.insert(words.end(), {"--progress", "openjd"});
     if (job.cpus > 0) words.insert(words.end(), {"--threads", std::to_string(job.cpus)});
     const Json cancelation =
@@ -100,7 +100,7 @@ Json step(const FarmJob& job, const char* name, const char* after, std::vector<J
     const Json run = json_object({{"command", "{{Param.Tyndall}}"}, {"args", words}, {"cancelation", cancelation}});
     JsonMembers members{{"name", name}};
     if (after) members.emplace_back("dependencies", std::vector{json_object({{"dependsOn", after}})});
-    members.emplace_back("hostRequirements", requirements(job));
+    members.emplace_back("hostRequirements", requirements(job, limits));
     members.emplace_back("parameterSpace", json_object({{"taskParameterDefinitions", std::move(parameters_of_task)}}));
     members.emplace_back("script", json_object({{"actions", json_object({{"onRun", run}})}}));
     return json_object(std::move(members));
@@ -120,20 +120,20 @@ void check_words(const FarmJob& job) {
 }
 }
 
-std::string openjd_template(const FarmJob& job) {
+std::string openjd_template(const FarmJob& job, const TaskLimits& limits) {
     check_words(job);
     const CommandBlanks blanks{"{{Param.Folder}}/", scene_name(job), "{{Task.Param.Frames}}", "{{Task.Param.Part}}"};
     const Json frames = frames_parameter(job);
     const Json part = json_object({{"name", "Part"}, {"type", "INT"}, {"range", "1-" + std::to_string(job.parts)}});
     std::vector<Json> steps;
-    if (job.plan_for_each_frame) steps.push_back(step(job, "Plan", nullptr, {frames}, plan_words(job, blanks)));
+    if (job.plan_for_each_frame) steps.push_back(step(job, limits, "Plan", nullptr, {frames}, plan_words(job, blanks)));
     const char* before = job.plan_for_each_frame ? "Plan" : nullptr;
     if (shares_work(job)) {
-        steps.push_back(step(job, "Prepare", before, {frames}, prepare_words(job, blanks)));
+        steps.push_back(step(job, limits, "Prepare", before, {frames}, prepare_words(job, blanks)));
         before = "Prepare";
     }
-    steps.push_back(step(job, "Parts", before, {frames, part}, render_words(job, blanks)));
-    steps.push_back(step(job, "Merge", "Parts", {frames}, merge_words(job, blanks)));
+    steps.push_back(step(job, limits, "Parts", before, {frames, part}, render_words(job, blanks)));
+    steps.push_back(step(job, limits, "Merge", "Parts", {frames}, merge_words(job, blanks)));
 
     JsonMembers members{{"specificationVersion", "jobtemplate-2023-09"}};
     if (!job.plan_for_each_frame) members.emplace_back("extensions", std::vector<Json>{"TASK_CHUNKING"});

@@ -66,12 +66,24 @@ std::string slurm_task_script(const FarmJob& job) {
                                     {"@MERGE@", shell_line(merge_words(job, blanks))}});
 }
 
-std::string slurm_submit_script(const FarmJob& job) {
+namespace {
+std::string usual(const char* variable, int value) {
+    return formatted("export %s=\"${%s:-%d}\"\n", variable, variable, value);
+}
+}
+
+std::string slurm_submit_script(const FarmJob& job, const TaskLimits& limits) {
     std::string options = "--parsable --requeue --open-mode=append --signal=B:TERM@60";
     if (job.cpus > 0) options += formatted(" --cpus-per-task=%d", job.cpus);
     if (job.memory > 0) options += formatted(" --mem=%d", job.memory);
+    if (job.minutes > 0) options += formatted(" --time=%d", job.minutes);
+    std::string forecast; // what neither the job nor the environment says
+    if (job.memory == 0 && limits.memory > 0)
+        forecast += "[ -n \"${SBATCH_MEM_PER_CPU:-}\" ] || " + usual("SBATCH_MEM_PER_NODE", limits.memory);
+    if (job.minutes == 0 && limits.minutes > 0) forecast += usual("SBATCH_TIMELIMIT", limits.minutes);
     return filled(slurm_submit_text, {{"@PROGRAM@", quoted_for_shell(job.program)},
                                       {"@OPTIONS@", options},
+                                      {"@LIMITS@\n", forecast},
                                       {"@STEPS@", std::string(job.plan_for_each_frame ? "plan " : "") +
                                                       (shares_work(job) ? "prepare " : "") + "parts merge"},
                                       {"@NAME@", job.name}});

@@ -1,12 +1,12 @@
 // The scripts of a job for Slurm: submit.sh hands over what is missing, task.sh is what each task runs.
 #pragma once
-#include "render/farm/farm_job.h"
+#include "render/farm/forecast.h"
 
 namespace tyndall {
 // Slurm's default MaxArraySize is 1001: no array has a larger index than 1000.
 inline constexpr int tasks_of_array = 1000;
 
-std::string slurm_submit_script(const FarmJob& job);
+std::string slurm_submit_script(const FarmJob& job, const TaskLimits& limits);
 std::string slurm_task_script(const FarmJob& job);
 
 // Task numbers as arrays: "FIRST LIST" each, LIST counted from FIRST as --array takes it.

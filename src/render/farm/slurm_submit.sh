@@ -1,9 +1,11 @@
 #!/bin/bash
 # Hands to Slurm what is missing of this job. Run it again after a failure: nothing that is finished is done twice.
-# What sbatch reads from the environment counts too: SBATCH_PARTITION, SBATCH_TIMELIMIT and so on.
+# What sbatch reads from the environment counts too: SBATCH_PARTITION and so on. Limits of memory (MiB) and time (minutes)
+# come from a forecast where the environment has none; SBATCH_MEM_PER_NODE=0 is for nodes that do not state their memory.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 tyndall=${TYNDALL:-@PROGRAM@}
+@LIMITS@
 options=(@OPTIONS@ --chdir="$PWD")
 
 # Each step waits for the end, good or bad, of the one before. No array has an index above 1000.

@@ -68,33 +68,82 @@ int root_level(int leaves) {
 }
 
 namespace {
-void add_group(std::span<const float> sums, PixelSum& pixel) {
-    const auto color = [&](size_t at) { return vec3(sums[at], sums[at + 1], sums[at + 2]); };
-    if (sums[taken_sum] == 0) return;
-    pixel.surface = color(surface_sum), pixel.background = color(background_sum),
-    pixel.inscatter = color(inscatter_sum);
-    pixel.weight += sums[weight_sum], pixel.alpha += sums[alpha_sum], pixel.transmittance += sums[transmittance_sum],
-        pixel.validity += sums[validity_sum];
-    pixel.kept += static_cast<int>(sums[kept_sum]);
-    pixel.end_batch(static_cast<int>(sums[taken_sum]));
+// The sums of a pixel's sections; those without samples count for nothing.
+struct PixelSections {
+    std::span<const float> sums;
+    size_t numbers; // of each
+
+    template<class Body> void for_each(const Body& body) const {
+        for (size_t at = 0; at < sums.size(); at += numbers)
+            if (const std::span<const float> own = sums.subspan(at, numbers); own[taken_sum] > 0) body(own);
+    }
+};
+
+vec3 color_at(std::span<const float> sums, size_t at) { return {sums[at], sums[at + 1], sums[at + 2]}; }
+
+// Of a value of each section, in two passes: as all of them are there, no running moments are needed.
+template<class Value> RunningSpread spread_of(const PixelSections& sections, const Value& value) {
+    RunningSpread spread;
+    sections.for_each([&](std::span<const float> own) { spread.mean += dvec3(value(own)), ++spread.count; });
+    spread.mean *= 1.0 / std::max(spread.count, 1);
+    sections.for_each([&](std::span<const float> own) {
+        const dvec3 deviation = dvec3(value(own)) - spread.mean, square = deviation * deviation;
+        spread.squares += square, spread.fourths += square * square;
+    });
+    return spread;
+}
+
+template<class Value> RunningMean mean_of(const PixelSections& sections, const Value& value) {
+    RunningMean mean;
+    sections.for_each([&](std::span<const float> own) { mean.mean += dvec3(value(own)), ++mean.count; });
+    mean.mean *= 1.0 / std::max(mean.count, 1);
+    return mean;
+}
+
+// Even sections go to the first half, odd ones to the second.
+void add_halves(const PixelSections& sections, PixelSum& pixel) {
+    int section = 0;
+    sections.for_each([&](std::span<const float> own) {
+        const vec3 color = color_at(own, surface_sum) + color_at(own, background_sum) + color_at(own, inscatter_sum);
+        pixel.half_means[section++ % 2].add(color / own[taken_sum]);
+    });
+}
+
+PixelSum pixel_of(const PixelSections& sections, bool halves) {
+    PixelSum pixel;
+    const auto mean = [](size_t at) {
+        return [at](std::span<const float> own) { return color_at(own, at) * (1 / own[taken_sum]); };
+    };
+    pixel.surface_mean = mean_of(sections, mean(surface_sum));
+    pixel.background_mean = mean_of(sections, mean(background_sum));
+    pixel.inscatter_mean = spread_of(sections, mean(inscatter_sum));
+    pixel.color_mean = spread_of(sections, [](std::span<const float> own) {
+        return (color_at(own, surface_sum) + color_at(own, background_sum) + color_at(own, inscatter_sum)) *
+               (1 / own[taken_sum]);
+    });
+    if (halves) add_halves(sections, pixel);
+    sections.for_each([&](std::span<const float> own) {
+        pixel.weight += own[weight_sum], pixel.alpha += own[alpha_sum], pixel.transmittance += own[transmittance_sum],
+            pixel.validity += own[validity_sum];
+        pixel.kept += static_cast<int>(own[kept_sum]);
+    });
+    return pixel;
 }
 }
 
 void store_sections(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
                     std::span<Image<vec3>* const> parts) {
-    PixelSum pixel;
-    int samples = 0;
-    std::vector<vec3> part_sums(parts.size(), vec3(0));
-    for (size_t at = 0; at < sums.size(); at += numbers) {
-        const std::span<const float> group = sums.subspan(at, numbers);
-        add_group(group, pixel), samples += static_cast<int>(group[taken_sum]);
-        for (size_t k = 0; k < parts.size(); ++k)
-            part_sums[k] +=
-                vec3(group[fixed_sums + 3 * k], group[fixed_sums + 3 * k + 1], group[fixed_sums + 3 * k + 2]);
-    }
+    const PixelSections sections{sums, numbers};
+    PixelSum pixel = pixel_of(sections, !layers.half_a.empty());
     pixel.depth = depth;
+    int samples = 0;
+    sections.for_each([&](std::span<const float> own) { samples += static_cast<int>(own[taken_sum]); });
     store_pixel(pixel, samples, p, layers);
-    for (size_t k = 0; k < parts.size(); ++k) parts[k]->at(p.x, p.y) += part_sums[k] / static_cast<float>(samples);
+    for (size_t k = 0; k < parts.size(); ++k) {
+        vec3 sum{0};
+        sections.for_each([&](std::span<const float> own) { sum += color_at(own, fixed_sums + 3 * k); });
+        parts[k]->at(p.x, p.y) += sum / static_cast<float>(samples);
+    }
 }
 
 int mean_samples(uint64_t samples, const Layers& layers) {

@@ -50,7 +50,7 @@ struct ExrChannel {
     bool full_float; // else half
 };
 
-enum class ExrPacking { none, zip };
+enum class ExrPacking { none, run_lengths, zip };
 
 // Channels of any names. Throws Error (unwritable, internal).
 void write_exr_channels(const std::filesystem::path& file, const ExrWindow& window,

@@ -24,7 +24,7 @@ namespace {
 // OpenEXR writes the line table last, over its place holder: inside the bytes already there.
 class MemoryStream : public Imf::OStream {
 public:
-    explicit MemoryStream(const char* name) : OStream(name) {}
+    MemoryStream(const char* name, size_t room) : OStream(name) { data.reserve(room); }
     void write(const char* bytes, int count) override {
         const size_t end = position_ + static_cast<size_t>(count);
         if (end > data.size()) data.resize(end);
@@ -127,6 +127,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const ExrWindo
     // Slices point at the image's own floats, or at halves made here.
     Imf::Header header = make_exr_header(frame, provenance);
     if (packing == ExrPacking::none) header.compression() = Imf::NO_COMPRESSION;
+    if (packing == ExrPacking::run_lengths) header.compression() = Imf::RLE_COMPRESSION;
     const Imath::Box2i window = header.dataWindow();
     const size_t width = static_cast<size_t>(frame.size.x), count = width * static_cast<size_t>(frame.size.y);
     Imf::FrameBuffer buffer;
@@ -146,7 +147,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const ExrWindo
     header.insert("tyndall:clamped", Imf::StringAttribute(std::to_string(clamped)));
     header.insert(check_name, Imf::StringAttribute(std::string(no_check)));
 
-    MemoryStream stream(file.c_str());
+    MemoryStream stream(file.c_str(), count * channels.size() * sizeof(float));
     {
         // Blocks of lines are packed at once; one thread means one.
         const int threads = thread_count() > 1 ? thread_count() : 0;

@@ -96,7 +96,7 @@ void read_target(const Json& target, const std::filesystem::path& file, RenderRe
 
 RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     RenderRequest request;
-    request.scene_file = file.parent_path() / json.string_or("scene", "");
+    request.scene_file = (file.parent_path() / json.string_or("scene", "")).lexically_normal();
     request.frames = parse_frames(json.string_or("frames", ""));
     request.mode = json.string_or("mode", "");
     request.quality = quality_named(json.string_or("quality", ""));
@@ -168,6 +168,7 @@ void save_plan(const std::filesystem::path& file, const Scene& scene, const Save
         members.emplace_back("orders", error_json(orders->tiles));
         members.emplace_back("orders_mean", orders->mean);
     }
+    if (!plan.plan.certificate.empty()) members.emplace_back("certificate", plan.plan.certificate);
     if (plan.request.grouping.counts) members.emplace_back("target", target_json(file, plan.request.grouping));
     write_file_atomically(file, json_line(std::move(members)));
 }
@@ -187,6 +188,7 @@ SavedPlan load_plan(const std::filesystem::path& file) {
     for (const Json& input : json.find("inputs")->items) plan.inputs.push_back(input.string);
     plan.request.grouping.plan_hash = content_hash(text);
     plan.plan = plan_as_asked(plan.request);
+    plan.plan.certificate = json.string_or("certificate", "");
     return plan;
 }
 

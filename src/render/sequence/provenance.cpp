@@ -208,6 +208,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     }
     if (!request.unsaved.empty()) attributes["tyndall:unsavedEdits"] = request.unsaved;
     if (!plan.certificate.empty()) attributes["tyndall:plan"] = plan.certificate;
+    if (!request.grouping.plan_hash.empty()) attributes["tyndall:planHash"] = request.grouping.plan_hash;
     return result;
 }
 

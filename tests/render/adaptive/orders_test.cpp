@@ -127,6 +127,16 @@ TEST(Orders, TilesCountByTheirPixels) {
     EXPECT_NEAR(mean, below / all, 4 * std::sqrt(2 * (squares - mean * mean) / (count - 1)));
 }
 
+TEST(Orders, ImagesOfAnySizeAreLookedAt) {
+    // Sizes that leave a single row or column of pixels to the last tiles, or to all.
+    const Snapshot snapshot = milk();
+    View view = view_of(1);
+    for (const ivec2 size : {ivec2(1, 1), ivec2(5, 9), ivec2(9, 1), ivec2(16, 9)}) {
+        view.size = size;
+        EXPECT_NEAR(orders_error(off_by<20>(), view, snapshot, all_orders_settings(), 0, {}).mean, 0.2, 1e-4);
+    }
+}
+
 TEST(Orders, NoiseAloneIsNoError) {
     // Two that differ by noise only: the estimate's mean is 0, so that it is as often below as above, where the error
     // it stands for is 0. Of 20 at one half, fewer than 4 in one of 700.

@@ -1,0 +1,141 @@
+// A loaded frame is rendered: by a number of samples, to an error or a time, or the part of it that was asked for.
+#include "base/clock.h"
+#include "base/error.h"
+#include "base/io/cache_folder.h"
+#include "base/text.h"
+#include "modes/history.h"
+#include "modes/mode.h"
+#include "render/adaptive/planned.h"
+#include "render/adaptive/to_target.h"
+#include "render/parts/part_file.h"
+#include "render/sequence/pipeline.h"
+#include "render/sequence/provenance.h"
+#include "scene/scene.h"
+#include "trace/moment.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+// Writing is likely to take so long.
+double seconds_to_write(const RenderRequest& request, const View& view) {
+    const double pixels = static_cast<double>(view.size.x) * view.size.y;
+    return 0.01 + pixels * (request.png ? 1e-6 : 5e-7);
+}
+
+// Until the next frame has to be rendered; 0 where there is no limit. What earlier frames left, it may use.
+double seconds_left(const Pipeline& pipeline, const View& view) {
+    const RenderRequest& request = pipeline.request;
+    if (request.time_budget == 0) return 0;
+    const double end = request.started + request.time_budget * (pipeline.rendered + 1);
+    constexpr double safe = 0.96; // something may hold the process up
+    return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
+}
+
+// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
+// the scene's first frame time stands still. Each shares with the last; the first with what the sequence's frame before
+// kept.
+void warm_up(const Pipeline& pipeline, Work& work, History& history) {
+    const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
+    Snapshot previous = work.snapshot;
+    previous.cache = work.snapshot.cache_before;
+    for (int back = pipeline.request.history; back > 0 && !pipeline.cancel; --back) {
+        const int earlier = std::max(frame - back, first);
+        Snapshot snapshot =
+            make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.request.missing);
+        View view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, earlier);
+        view.frame = frame - back;
+        pipeline.plan.mode->prepare(view, snapshot, pipeline.plan.settings, &history);
+        previous = std::move(snapshot);
+    }
+    work.snapshot.cache_before = previous.cache;
+}
+
+// What a frame will take, where that is long enough to be told.
+void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
+    constexpr double long_work = 10;
+    if (seconds < long_work) return;
+    if (seconds == infinity)
+        return say(pipeline, work, "will not get to the error that is wanted: it may be too small");
+    say(pipeline, work, "will take about " + seconds_text(seconds));
+}
+
+// Whether a technique that was chosen for the first frame missed the target.
+bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
+    return plan.wanted && plan.mode != &main_mode() && request.time_budget == 0 && stats.integrator &&
+           stats.error()->bound > request.target_error;
+}
+
+void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
+    const RenderPlan& plan = pipeline.plan;
+    say(pipeline, work,
+        std::string(plan.mode->name) + " is too far off: rendered again with " + std::string(main_mode().name));
+    work.report.mode = main_mode().name;
+    work.by = RenderPlan{&main_mode(), *plan.wanted, plan.certificate, nullptr, plan.wanted};
+    Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
+    if (work.index == 0) goal.choice = plan.main;
+    options.history = nullptr;
+    work.layers =
+        render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
+}
+
+// The part of the frame's samples that was asked for, from its last checkpoint on.
+void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work& work) {
+    const RenderRequest& request = pipeline.request;
+    const Mode& mode = *pipeline.plan.mode;
+    const std::filesystem::path file = checkpoint_name(work.report.file);
+    std::string why;
+    Checkpoints checkpoints{request.checkpoint_seconds};
+    if (request.resume) checkpoints.last = read_checkpoint(file, work.hash, request.grouping, why);
+    if (checkpoints.last) say(pipeline, work, "goes on from " + file.string());
+    if (!why.empty()) say(pipeline, work, "begins again: the checkpoint " + why);
+    checkpoints.keep = [&](const FramePart& part) {
+        try {
+            write_part(file, part, provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, {}),
+                       request.grouping);
+        } catch (const Error& error) {
+            say(pipeline, work, std::string("goes on without a checkpoint: ") + error.what());
+        }
+    };
+    const PartRange range = range_of(request.grouping, mode, work.view);
+    work.part = render_part(mode, work.view, work.snapshot, pipeline.plan.settings, options, range,
+                            std::move(checkpoints), work.report.stats);
+}
+}
+
+void render(Pipeline& pipeline, Work& work) {
+    const RenderRequest& request = pipeline.request;
+    const RenderPlan& plan = pipeline.plan;
+    const double start = steady_seconds();
+    FrameOptions options{wants_layer(request, "halves"), nullptr, &pipeline.cancel, {}, {}};
+    options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
+    FrameStats& stats = work.report.stats;
+    try {
+        History history;
+        if (request.history > 0) warm_up(pipeline, work, history), options.history = &history;
+        const Goal goal{request.target_error,
+                        seconds_left(pipeline, work.view),
+                        request.quality,
+                        {},
+                        work.index == 0 ? plan.choice : nullptr,
+                        plan.wanted,
+                        work.index == 0 ? plan.orders : std::nullopt};
+        options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
+        if (is_part(request.grouping))
+            render_own_part(pipeline, options, work);
+        else if (has_goal(request))
+            work.layers = render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats);
+        else
+            work.layers = render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
+        if (!is_part(request.grouping))
+            judge_planned(request.grouping.error, *plan.mode, work.view, work.snapshot, plan.settings, work.layers,
+                          options, stats);
+        if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
+        if (request.files) check_unchanged(*request.files);
+    } catch (const Error& error) {
+        fail_in_frame(work.report.frame, error);
+    }
+    ++pipeline.settled, ++pipeline.rendered;
+    work.report.seconds = steady_seconds() - start;
+}
+}
