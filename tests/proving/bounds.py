@@ -168,7 +168,8 @@ def main():
     parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once")
     options = parser.parse_args()
-    options.output.mkdir(parents=True, exist_ok=True)
+    for folder in filter(None, (options.output, options.truths)):
+        folder.mkdir(parents=True, exist_ok=True)
     rows = []
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
         for done in concurrent.futures.as_completed([pool.submit(prove, seed, options) for seed in options.seeds]):
