@@ -4,7 +4,8 @@
 
 Every seed has one mode, with single scattering or with all orders, and is planned, rendered in two parts and merged four
 times: by numbers of samples, whose bound is for noise alone and is held against many more samples of the same, and by a
-target, whose bound is for all and is held against the truth: exact single scattering, or path tracing for all orders.
+target, whose bound is for all and is held against exact single scattering. Bounds of all orders are for all in both cases,
+and held against path tracing.
 Prints a row a frame and what they add up to, by mode and number of groups; writes DIR/bounds.json. Ends with 1 when more
 than one bound in twenty is false, or the median bound is more than twice the error."""
 import argparse
@@ -81,20 +82,31 @@ def row_of(common, program, scene, folder, asked, truth):
                      "orders_error": plan.get("target", {}).get("orders")}
 
 
-def by_samples(seed, common, options, folder):
+def small(drawn, options):
+    return ["--frames", drawn.frame, "--res", "{}x{}".format(*options.size)]
+
+
+def all_orders(seed, options, folder):
+    """The truth of all orders, which bounds of a grid of multiple scattering are held against."""
+    drawn, size = draw(seed)
+    scene = write_scene(drawn, size, folder / "scene", options.program)
+    return by_seeds(options.program, scene, folder, ["--orders", "all", "--mode", "path", *small(drawn, options)])
+
+
+def by_samples(seed, common, options, folder, truth):
     mode, orders = common["mode"], common["orders"]
     drawn, size = draw(seed)
     scene = write_scene(drawn, size, folder / "scene", options.program)
-    plain = ["--mode", mode, "--orders", orders, "--frames", drawn.frame, "--res", "{}x{}".format(*options.size)]
+    plain = ["--mode", mode, "--orders", orders, *small(drawn, options)]
     plain += () if mode == "path" else ("--quality", "draft")  # noise is the same at any
     plain += FEW_PATHS if orders == "all" and mode != "path" else ()
-    truth = by_seeds(options.program, scene, folder, plain)
+    truth = truth if orders == "all" else by_seeds(options.program, scene, folder, plain)
     if truth is None:
         return [common | {"what": "samples", "refused": "no truth"}]
     return [row_of(common | {"what": "noise"}, options.program, scene, folder, [*plain, *asked], truth) for asked in SAMPLES]
 
 
-def by_target(seed, common, options, folder):
+def by_target(seed, common, options, folder, truth):
     mode, orders = common["mode"], common["orders"]
     common = common | {"what": "target"}
     if orders == "1":
@@ -104,10 +116,8 @@ def by_target(seed, common, options, folder):
         plain = ["--mode", mode, "--orders", orders, "--frames", frame]
     else:
         drawn, size = draw(seed)
-        scene, plain = write_scene(drawn, size, folder / "scene", options.program), ["--orders", "all", "--frames", drawn.frame]
-        plain += ["--res", "{}x{}".format(*options.size)]
-        truth = by_seeds(options.program, scene, folder, [*plain, "--mode", "path"])
-        plain = [*plain, "--mode", mode, *(FEW_PATHS if mode != "path" else ())]
+        scene = write_scene(drawn, size, folder / "scene", options.program)
+        plain = ["--orders", "all", *small(drawn, options), "--mode", mode, *(FEW_PATHS if mode != "path" else ())]
     if truth is None:
         return [common | {"refused": "no truth"}]
     return [row_of(common, options.program, scene, folder, [*plain, "--target-error", TARGET], truth)]
@@ -117,12 +127,14 @@ def prove(seed, options):
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"proving_bounds_{seed}_"))
     mode, orders = KINDS[seed % len(KINDS)]
     common = {"seed": seed, "family": family_of(seed).__name__, "mode": mode, "orders": orders}
-    rows, start = [], time.monotonic()
+    rows, start, kind = [], time.monotonic(), "truth"
     try:
+        (folder / kind).mkdir()
+        truth = all_orders(seed, options, folder / kind) if orders == "all" else None
         for kind, frames in (("samples", by_samples), ("target", by_target)):
             (folder / kind).mkdir()
             if kind in options.kinds:
-                rows += frames(seed, common, options, folder / kind)
+                rows += frames(seed, common, options, folder / kind, truth)
     except subprocess.TimeoutExpired as late:
         rows.append(common | {"what": kind, "refused": f"took more than {late.timeout} s"})
     finally:

@@ -51,6 +51,13 @@ FAULTS = [
           "request.started + request.time_budget * (pipeline.rendered + 1)", "steady_seconds() + request.time_budget"),
     Fault("misses-by-the-likely-error", "src/render/sequence/sequence.cpp",
           "frame.stats.error()->bound > request.target_error", "frame.stats.error()->error > 2 * request.target_error"),
+    Fault("leaf-counted-twice", "src/render/frame/merge.cpp",
+          "sums = node_sums(nodes, {node.section, node.level - 1, 2 * node.index}, first, count);",
+          "sums = node_sums(nodes, {node.section, node.level - 1, 2 * node.index + 1}, first, count);"),
+    Fault("groups-with-one-scramble", "src/trace/view.cpp", "return {batch ? hash(key, static_cast<uint32_t>(batch)) : key,",
+          "return {key,"),
+    Fault("planned-integrator-left-out", ADAPTIVE + "planned.cpp", "if (planned.target == 0) return;", "return;"),
+    Fault("planned-orders-left-out", ADAPTIVE + "planned.cpp", "if (planned.orders) stats.orders = planned.orders;", ""),
     Fault("variances-known-for-certain", "src/render/frame/layers.cpp", "squared_error += square;",
           "squared_error += 1e-6 * square;"),
 ]
