@@ -120,6 +120,12 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
     add_decay_breaks(packet, seen, stretch);
 }
 
+// What a light's filter lets through of the current channel. Not in the loop of lights that have none.
+HWY_NOINLINE Floats filter_factor(const Packet& packet, const ConeLight& light, const Vec3s& point,
+                                  const Floats& distance) {
+    return filter_channel(*light.light.filter, point * (1.0f / distance), packet.channel, light.filter_level);
+}
+
 // Light of a local light at the nodes of one piece.
 void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Interval<Floats>& piece,
                int count) {
@@ -143,9 +149,7 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
         const Floats depth =
             fused(view_depth(packet, t), packet.cone.style.view_depth, light_depth(packet, light, point, distance));
         amount = amount * exp(-depth) * fade(packet, t);
-        if (light.light.filter)
-            amount = amount *
-                     filter_channel(*light.light.filter, point * (1.0f / distance), packet.channel, light.filter_level);
+        if (light.light.filter) amount = amount * filter_factor(packet, light, point, distance);
         if (packet.cone.settings.noise > 0) amount = amount * dust(packet.cone, point + splat(vec3(packet.fog.anchor)));
         add_node(packet, t, amount, -(s * inverse), true);
     }
