@@ -3,9 +3,12 @@
 #include "file_kind.h"
 
 #include "base/error.h"
+#include "base/io/file.h"
 #include "base/io/frames.h"
 #include "render/image/exr.h"
+#include "scene/file/scene_file.h"
 #include "scene/gltf/gltf.h"
+#include "scene/photometry/ies_file.h"
 #include "trace/enclosed_lights.h"
 #include "volume/vdb/vdb.h"
 
@@ -67,6 +70,19 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
     }
 }
 
+// Every numbered gobo that the scene names on its frames, each file once.
+void check_gobos(const std::string& file, const Scene& scene, Problems& problems) {
+    std::set<std::filesystem::path> seen;
+    for (const LightSource& light : scene.lights)
+        for (int frame = scene.first_frame; light.gobo && !light.gobo->still && frame <= scene.last_frame; ++frame)
+            guarded(file, problems, [&] {
+                const std::filesystem::path image = gobo_file(*light.gobo, frame, MissingFrame::error);
+                std::string note;
+                if (seen.insert(image).second)
+                    make_gobo(read_file(image, largest_gobo_file), light.gobo->space, image.string(), note);
+            });
+}
+
 // Lights that light nothing.
 void check_lights(const std::string& file, const Scene& scene, Problems& problems) {
     guarded(file, problems, [&] {
@@ -79,6 +95,7 @@ void check_scene(const std::string& file, Problems& problems) {
     for (const std::string& warning : scene.warnings) problems.push_back({file, warning});
     check_lights(file, scene, problems);
     check_media(file, scene, problems);
+    check_gobos(file, scene, problems);
 }
 
 // As a part of a scene: that it has no light, fog or camera of its own is no problem.
@@ -113,6 +130,8 @@ void check_file(const std::string& file, Problems& problems) {
         return check_vdb(file, "", problems);
     case FileKind::exr:
         return check_exr(file, problems);
+    case FileKind::ies:
+        return static_cast<void>(read_ies(read_file(file, largest_ies_file), file));
     case FileKind::recipe:
         return static_cast<void>(read_recipe(file));
     case FileKind::schema:

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 namespace tyndall {
-enum class FileKind { vdb, gltf, exr, scene, recipe, schema };
+enum class FileKind { vdb, gltf, exr, ies, scene, recipe, schema };
 
 // Throws Error: unreadable, or refused when it is none of these.
 FileKind file_kind(const std::filesystem::path& file);

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "scene/light.h"
+#include "scene/light_filter.h"
 #include "scene/light_reach.h"
 #include "volume/medium.h"
 
@@ -136,7 +137,10 @@ LightSamplesAt arriving_at(const LightAlong& along, double t) {
         const double edge = std::clamp(cosine * along.cone_scale + along.cone_offset, 0.0, 1.0);
         amount *= edge * edge;
     }
-    return {to_light, amount};
+    if (!light.filter || !(amount > 0)) return {to_light, amount};
+    const dvec3 factors = filtered(*light.filter, -to_light);
+    const double most = std::max({factors.x, factors.y, factors.z});
+    return most > 0 ? LightSamplesAt{to_light, amount * most, factors / most} : LightSamplesAt{to_light, 0};
 }
 
 void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,

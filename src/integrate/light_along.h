@@ -40,6 +40,7 @@ struct LightAlong {
 struct LightSamplesAt {
     dvec3 to_light;    // unit
     double amount = 0; // multiplies the light's intensity
+    dvec3 tint{1};     // likewise: colours of a gobo
 };
 LightSamplesAt arriving_at(const LightAlong& along, double t);
 

@@ -9,6 +9,7 @@
 #include "base/simd/simd.h"
 #include "integrate/ray_batch.h"
 #include "trace/fluence/fluence_simd.h"
+#include "trace/light_simd.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
 #include "volume/medium.h"
@@ -32,7 +33,8 @@ HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, co
                                  const Floats& amount, const Vec3s& scattering) {
     const Mask16 wanted = amount > 0.0f;
     const Floats dimmed = exp(-light_depth16(depth, position, wanted));
-    return scattering * zero_unless(wanted, amount * dimmed) * splat(light.intensity * light.volume_scale);
+    const Vec3s sum = scattering * zero_unless(wanted, amount * dimmed) * splat(light.intensity * light.volume_scale);
+    return light.filter && has_colors(*light.filter) ? sum * tint_at(light, position) : sum;
 }
 
 // Emission, ambient light and, with a grid, light that has been scattered before: none has a side it comes from.

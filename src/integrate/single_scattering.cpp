@@ -1,5 +1,6 @@
 #include "integrate/single_scattering.h"
 
+#include "scene/light_filter.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -20,6 +21,13 @@ ShadowsBy exact_shadows(const Light& light, const Occluders& occluders) {
     return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
 }
 
+FilterSteps filter_steps(const Light& light) {
+    if (!light.filter) return {};
+    const double detail = finest_detail(*light.filter), sets = gobo_nodes / 4;
+    if (!light.filter->gobo) return {4 * detail, sets, false};
+    return whole_angle(light) <= sets * detail ? FilterSteps{detail, sets, false} : FilterSteps{1e-9, gobo_nodes, true};
+}
+
 bool has_grid(const Snapshot& snapshot) {
     return std::ranges::any_of(snapshot.media, [](const Medium& m) { return m.density.kind == DensityKind::bricks; });
 }
@@ -32,6 +40,7 @@ void add_lights(const View& view, LightTransmittance method, int light_resolutio
         frame.depths.push_back(make_light_depth(frame.snapshot, light, method, light_resolution, &view));
         frame.depths.back().scale = frame.style.light_depth;
         frame.cones.push_back(cone_falloff(light));
+        frame.filter_steps.push_back(filter_steps(light));
         LightShadows& shadows = frame.shadows.emplace_back();
         const auto& casters = shadow_casters(light, frame.snapshot);
         if (!casters) continue;

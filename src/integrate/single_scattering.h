@@ -35,6 +35,17 @@ struct Shells {
     float intensity; // share of that length: the depth of lit fog a shell is as bright as
 };
 
+// Nodes of a ray on all that it sees of a light with a gobo.
+inline constexpr double gobo_nodes = 64;
+
+// How finely rays follow a light's IES profile and gobo.
+struct FilterSteps {
+    double angle = 0;     // seen from the light, that one set of nodes may span; 0 = no filter
+    double parts = 1;     // that what a ray sees of the light has at most
+    bool sampled = false; // by one jittered node each: of a gobo too fine for any quadrature
+};
+FilterSteps filter_steps(const Light& light);
+
 struct SingleScattering {
     Snapshot snapshot; // media and lights as the settings see them
     StyleSettings style;
@@ -50,6 +61,7 @@ struct SingleScattering {
     std::vector<Box> heterogeneous; // fog that is not what it is taken for
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
+    std::vector<FilterSteps> filter_steps;      // one per light
     std::vector<LightShadows> shadows;          // one per light
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 };

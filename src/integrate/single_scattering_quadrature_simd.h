@@ -44,17 +44,30 @@ double angular_parts(double from, double to, double widest) {
 
 // The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Piece& piece) {
-    if (piece.light >= 0 && packet.frame.shadows[static_cast<size_t>(piece.light)].by == ShadowsBy::rays)
-        return {&packet.jittered[piece.ray], 1};
+    if (piece.light >= 0) {
+        const size_t light = static_cast<size_t>(piece.light);
+        if (packet.frame.shadows[light].by == ShadowsBy::rays || packet.frame.filter_steps[light].sampled)
+            return {&packet.jittered[piece.ray], 1};
+    }
     const int more = piece.soft ? 2 : 0;
     if (!packet.frame.sampled) return gauss_legendre(packet.frame.nodes + more);
     return gauss_legendre(packet.spread == Spread::angle ? 2 + more / 2 : 1);
 }
 
+// The angle that a set of nodes of a local light's piece may span.
+double widest_angle(const Packet& packet, const Piece& piece) {
+    const double smooth = packet.frame.sampled ? 1 : widest_angle(packet.frame);
+    const FilterSteps& steps = packet.frame.filter_steps[static_cast<size_t>(piece.light)];
+    if (steps.angle == 0) return smooth;
+    const LightAlong& along = packet.scratch.along[piece.ray];
+    const EquiAngular<double> whole = along.angles(along.lit.front().low, along.lit.back().high);
+    return std::min(smooth, std::max(steps.angle, (whole.to - whole.from) / steps.parts));
+}
+
 void push_equi_angular(Packet& packet, const Piece& piece) {
     const std::span<const QuadratureNode> rule = rule_for(packet, piece);
     const double nearest = packet.scratch.along[piece.ray].nearest, away = packet.away[piece.ray];
-    const double end = (piece.high - nearest) / away, widest = packet.frame.sampled ? 1 : widest_angle(packet.frame);
+    const double end = (piece.high - nearest) / away, widest = widest_angle(packet, piece);
     for (double x = (piece.low - nearest) / away; x < end;) {
         const double next = std::min(next_bound(x), end), parts = angular_parts(x, next, widest);
         for (double i = 0; i < parts; ++i)

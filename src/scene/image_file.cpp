@@ -120,6 +120,46 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where) {
     return image;
 }
 
+namespace {
+// Adds up the blocks of a picture whose colours `color_of(pixel)` gives.
+template<class Color> void add_blocks(ReducedPicture& picture, const Color& color_of) {
+    const float share = 1 / static_cast<float>(picture.factor * picture.factor);
+    picture.image = Image<vec3>((picture.size + picture.factor - 1) / picture.factor);
+    for (int y = 0; y < picture.size.y; ++y)
+        for (int x = 0; x < picture.size.x; ++x)
+            picture.image.at(x / picture.factor, y / picture.factor) +=
+                share * color_of(static_cast<size_t>(y) * picture.size.x + x);
+}
+}
+
+ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where) {
+    const ImageFormat format = image_format(bytes);
+    if (format == ImageFormat::other) refuse(where, "the image is neither PNG, JPEG nor Radiance .hdr");
+    ReducedPicture picture{image_size(bytes, where), 1, {}};
+    const int side = std::max(picture.size.x, picture.size.y),
+              limit = largest / (format == ImageFormat::radiance ? 2 : 1);
+    if (side > limit)
+        refuse(where, "the image has " + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +
+                          " pixels; at most " + std::to_string(limit) + " on a side can be used here");
+    picture.factor = (side + most - 1) / most;
+    if (format == ImageFormat::radiance) {
+        const Image<vec3> pixels = decode_radiance(bytes, where);
+        add_blocks(picture, [&](size_t pixel) { return pixels.pixels[pixel]; });
+        return picture;
+    }
+    int channels;
+    const std::unique_ptr<stbi_uc, Free> data(stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()),
+                                                                    &picture.size.x, &picture.size.y, &channels, 4));
+    if (!data) refuse_undecodable(where, "the image cannot be decoded");
+    std::array<float, 256> table = linear_table();
+    for (int i = 0; i < 256 && linear; ++i) table[static_cast<size_t>(i)] = static_cast<float>(i) / 255;
+    add_blocks(picture, [&](size_t pixel) {
+        const stbi_uc* texel = data.get() + 4 * pixel;
+        return vec3(table[texel[0]], table[texel[1]], table[texel[2]]) * (texel[3] / 255.0f);
+    });
+    return picture;
+}
+
 Image<vec4> halved(const Image<vec4>& image) {
     Image<vec4> result(glm::max(image.size / 2, ivec2(1)));
     for (int y = 0; y < result.size.y; ++y)

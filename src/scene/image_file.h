@@ -22,6 +22,18 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 // A picture behind the scene: sRGB PNG or JPEG, or Radiance .hdr. Throws Error (refused) naming `where`.
 Image<vec3> decode_picture(std::string_view bytes, std::string_view where);
 
+// A picture whose sides were divided by a whole number, each texel the mean of a block; blocks at the right and lower
+// edge may stick out of the picture, where it is black.
+struct ReducedPicture {
+    ivec2 size{0}; // of the file
+    int factor = 1;
+    Image<vec3> image;
+};
+
+// As decode_picture(); `linear`: numbers of PNG and JPEG are light as they are. Sides are at most `largest` in the file
+// (Radiance: half of that) and `most` afterwards. Throws Error (refused) naming `where`.
+ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where);
+
 // Half the size, each texel the mean of four (alpha-weighted colour); odd edges repeat their last texel.
 Image<vec4> halved(const Image<vec4>& image);
 }

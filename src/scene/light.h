@@ -3,9 +3,12 @@
 #include "base/math.h"
 #include "scene/light_kind.h"
 
+#include <memory>
 #include <string>
 
 namespace tyndall {
+struct LightFilter;
+
 struct Light {
     std::string name;
     LightKind kind = LightKind::point;
@@ -19,6 +22,7 @@ struct Light {
     float radius = 0;                          // metres; point, spot: soft shadows, and 1/r² is capped inside
     float core = 1e-4f;                        // metres; 1/r² is capped inside of this in any case
     float angle = 0;                           // radians, half angle of the sun's disc
+    std::shared_ptr<const LightFilter> filter; // point, spot: what of the intensity goes where; null = all everywhere
     bool shadows = true;
     int casters = -1, lit = -1; // surfaces that shadow it, and that it lights: sets of the snapshot; -1 = all
 };

@@ -64,6 +64,19 @@ Box box_of(const Mesh& mesh) {
 Box finite(const Box& box) { return is_finite(box.low) && is_finite(box.high) ? box : Box{}; }
 }
 
+std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing) {
+    return *sequence_file(gobo.sequence, frame, missing == MissingFrame::skip ? MissingFrame::hold : missing);
+}
+
+std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing) {
+    std::vector<FrameFile> files;
+    for (const MediumSource& medium : scene.media)
+        if (medium.kind == MediumKind::vdb) files.push_back({true, sequence_file(medium.sequence, frame, missing)});
+    for (const LightSource& light : scene.lights)
+        if (light.gobo && !light.gobo->still) files.push_back({false, gobo_file(*light.gobo, frame, missing)});
+    return files;
+}
+
 Box scene_bounds(const Scene& scene, double seconds) {
     std::vector<Box> boxes;
     for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));

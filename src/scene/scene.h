@@ -1,6 +1,7 @@
 // What the files say: plain data, every number possibly animated. How to render is not in here.
 #pragma once
 #include "scene/background_kind.h"
+#include "scene/gobo.h"
 #include "scene/keyed.h"
 #include "scene/light_kind.h"
 #include "scene/load_options.h"
@@ -16,6 +17,8 @@
 #include <vector>
 
 namespace tyndall {
+struct IesProfile;
+
 // A place in the hierarchy; parents stand before their children.
 struct Node {
     std::string name;
@@ -41,13 +44,38 @@ struct CameraSource {
     std::string entry; // JSON pointer of what the scene file says of it; empty = nothing
 };
 
+// What the number of a light's intensity means.
+enum class LightUnit {
+    native, // candela (point, spot) or lux (sun)
+    lumen,  // of all the light
+    watt,   // times an efficacy: lumens, or lux of a sun
+    profile // the candela of its IES file, times this
+};
+
+struct GoboSource {
+    std::shared_ptr<const Gobo> still; // null: one of a sequence for every frame
+    VdbSequence sequence;
+    ColorSpace space = ColorSpace::srgb;
+    Keyed<float> turn{0.0f}; // radians, counterclockwise as seen from the light
+    Keyed<float> scale{1.0f};
+};
+
 struct LightSource {
     std::string name;
     LightKind kind = LightKind::point;
     int node = -1;                                            // glTF light: at the node's origin, along its -Z ...
     Keyed<vec3> position{vec3(0)}, direction{vec3(0, -1, 0)}; // ... else these; any length above 0
     Keyed<vec3> color{vec3(1)};
-    Keyed<float> intensity{1.0f}; // candela or lux
+    Keyed<float> intensity{1.0f}; // in the unit below
+    LightUnit unit = LightUnit::native;
+    float efficacy = 0;              // lumens per watt, of watts
+    bool whole_sphere = false;       // a spot's lumens are spread over the sphere, and most do not leave its cone
+    Keyed<float> exposure{0.0f};     // stops
+    Keyed<float> temperature{0.0f};  // kelvin, multiplies the colour; 0 = none
+    Keyed<vec3> up{vec3(0, 1, 0)};   // of profile and gobo, where the light has no node
+    Keyed<float> profile_turn{0.0f}; // radians, counterclockwise as seen from the light
+    std::shared_ptr<const IesProfile> profile; // null = none
+    std::optional<GoboSource> gobo;
     Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};
     Keyed<float> inner_cone{0.0f}, outer_cone{pi / 4}; // radians, half angles
     Keyed<float> radius{0.0f}, angle{0.0f};
@@ -143,6 +171,16 @@ mat4 node_matrix(const Scene& scene, int node, double seconds);
 bool is_moving(const Scene& scene, int node);
 
 mat4 medium_matrix(const MediumSource& medium, double seconds); // of the medium's own space, to world
+
+// The files of sequences that a frame reads, volumes first; nothing where one has none for it. Throws Error for a gap.
+struct FrameFile {
+    bool volume = true; // else a gobo
+    std::optional<std::filesystem::path> path;
+};
+std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing);
+
+// The picture of a gobo for a frame; where gaps are skipped elsewhere, the one before goes on.
+std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing);
 
 // Around every instance at a moment, and every medium whose extent is known without opening volumes.
 Box scene_bounds(const Scene& scene, double seconds);

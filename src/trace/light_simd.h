@@ -8,6 +8,7 @@
 
 #include "base/simd/simd.h"
 #include "scene/light.h"
+#include "trace/light_filter_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -15,8 +16,14 @@ namespace tyndall::HWY_NAMESPACE {
 struct LightSamples {
     Vec3s to_light; // unit
     Floats distance;
-    Floats amount; // multiplies the light's intensity
+    Floats amount; // multiplies the light's intensity; of colours of a gobo the largest channel
 };
+
+// What the other channels of a light's gobo are of the largest one.
+HWY_INLINE Vec3s tint_at(const Light& light, const Vec3s& position) {
+    const Vec3s offset = position - splat(light.position);
+    return filter_tint(*light.filter, offset * (1.0f / max(sqrt(dot(offset, offset)), 1e-12f)));
+}
 
 // As arrival() of scene/light.h. `cone`: the light's cone_falloff().
 HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
@@ -35,6 +42,7 @@ HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, co
         const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
         result.amount = result.amount * edge * edge;
     }
+    if (light.filter) result.amount = result.amount * filter_strength(*light.filter, result.to_light * -1.0f);
     return result;
 }
 }

@@ -1,5 +1,10 @@
 #include "trace/small_scenes.h"
 
+#include "base/image.h"
+#include "scene/gobo.h"
+#include "scene/light_filter.h"
+#include "scene/photometry/ies_file.h"
+#include "scene/photometry/ies_profile.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/bricks/bricks.h"
@@ -59,6 +64,33 @@ Light spot_light(vec3 position, vec3 direction, float candela, float inner_cone,
     Light light = point_light(position, candela);
     light.name = "spot", light.kind = LightKind::spot, light.direction = glm::normalize(direction);
     light.inner_cone = inner_cone, light.outer_cone = outer_cone;
+    return light;
+}
+
+std::shared_ptr<const IesProfile> lobe_profile(double power) {
+    IesFile file;
+    file.horizontal = {0};
+    for (int i = 0; i <= 360; ++i) {
+        file.vertical.push_back(0.25 * i);
+        file.candela.push_back(std::pow(std::max(std::cos(glm::radians(0.25 * i)), 0.0), power));
+    }
+    return make_ies_profile(file, "lobe " + std::to_string(power));
+}
+
+std::shared_ptr<const Gobo> board_gobo(int squares, int texels_each, vec3 light, vec3 dark) {
+    Image<vec3> image(ivec2(squares * texels_each), dark);
+    for (int y = 0; y < image.size.y; ++y)
+        for (int x = 0; x < image.size.x; ++x)
+            if ((x / texels_each + y / texels_each) % 2 == 0) image.at(x, y) = light;
+    return make_gobo(image);
+}
+
+Light filtered_light(Light light, std::shared_ptr<const IesProfile> profile, std::shared_ptr<const Gobo> gobo) {
+    auto filter = std::make_shared<LightFilter>();
+    filter->direction = light.direction, filter->profile = std::move(profile), filter->gobo = std::move(gobo);
+    filter->profile_axes = filter->gobo_axes = light_axes(light.direction, {0, 1, 0}, 0.3f);
+    filter->gobo_half = vec2(std::tan(light.outer_cone));
+    light.filter = std::move(filter);
     return light;
 }
 

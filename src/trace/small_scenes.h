@@ -9,6 +9,9 @@
 #include <functional>
 
 namespace tyndall {
+struct Gobo;
+struct IesProfile;
+
 Phase forward_phase(float g);
 
 Medium homogeneous_medium(float extinction, Box box = everywhere(), Phase phase = {}, vec3 albedo = vec3(1));
@@ -21,6 +24,11 @@ Medium medium_of(const SparseVolume& volume, float extinction = 1);
 Light sun_light(vec3 direction, float lux = 1);
 Light point_light(vec3 position, float candela = 1);
 Light spot_light(vec3 position, vec3 direction, float candela, float inner_cone, float outer_cone);
+
+// What of a light goes where: candela ~ cosine^power in the half space ahead, and a board of light and dark squares.
+std::shared_ptr<const IesProfile> lobe_profile(double power);
+std::shared_ptr<const Gobo> board_gobo(int squares, int texels_each, vec3 light, vec3 dark);
+Light filtered_light(Light light, std::shared_ptr<const IesProfile> profile, std::shared_ptr<const Gobo> gobo);
 
 // A parallelogram: corner, and the two edges from it.
 Mesh quad(vec3 corner, vec3 a, vec3 b, int material = -1);

@@ -4,9 +4,11 @@
 #include "base/text.h"
 #include "scene/camera.h"
 #include "scene/light.h"
+#include "scene/photometry/light_power.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
 #include "trace/frame_cache.h"
+#include "trace/light_filters.h"
 #include "trace/light_links.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
@@ -28,13 +30,14 @@ Frame node_frame(const Scene& scene, int node, double seconds, const std::string
     return {vec3(matrix[3]), vec3(matrix[1]), -glm::normalize(back)};
 }
 
-Light light_at(const Scene& scene, const LightSource& source, double seconds) {
+Light light_at(const Scene& scene, const LightSource& source, double seconds, vec3& up) {
     Light light;
+    up = source.up.at(seconds);
     light.name = source.name;
     light.kind = source.kind;
     if (source.node >= 0) {
         const Frame frame = node_frame(scene, source.node, seconds, "light " + source.name);
-        light.position = frame.position, light.direction = frame.forward;
+        light.position = frame.position, light.direction = frame.forward, up = frame.up;
     } else {
         light.position = source.position.at(seconds);
         const vec3 direction = source.direction.at(seconds);
@@ -43,7 +46,7 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds) {
             refuse(scene.file.string(), "light " + source.name + ": its direction has no length");
         if (length > 0) light.direction = direction / length;
     }
-    light.intensity = source.color.at(seconds) * source.intensity.at(seconds);
+    light.intensity = intensity_of(source, seconds);
     light.volume_scale = source.volume_scale.at(seconds), light.surface_scale = source.surface_scale.at(seconds);
     light.outer_cone = source.outer_cone.at(seconds);
     light.inner_cone = std::min(source.inner_cone.at(seconds), light.outer_cone);
@@ -127,7 +130,9 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     LightLinks links = light_links(scene, moment.seconds, previous);
     snapshot.casters = std::move(links.casters), snapshot.lit = std::move(links.lit);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
-        Light light = light_at(scene, scene.lights[i], moment.seconds);
+        vec3 up;
+        Light light = light_at(scene, scene.lights[i], moment.seconds, up);
+        add_filter(scene.lights[i], moment, up, missing, previous, light);
         if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
         light.core = core_share * snapshot.extent;
         if (shines(light)) snapshot.lights.push_back(std::move(light));

@@ -20,8 +20,10 @@ double unitless_value(const LightSource& light, double intensity) {
     return is_distant(light) ? intensity : intensity * sphere;
 }
 
-// 0 for a light of the scene file, whose unit is known.
-double exported(const LightSource& light) { return light.node < 0 ? 0 : light.intensity.at(0); }
+// 0 for a light whose unit is known: of the scene file, or with one of its own.
+double exported(const LightSource& light) {
+    return light.node < 0 || light.unit != LightUnit::native ? 0 : light.intensity.at(0);
+}
 
 bool all_typed(const Scene& scene, double (*value)(const LightSource&, double)) {
     for (const LightSource& light : scene.lights) {

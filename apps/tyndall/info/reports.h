@@ -8,5 +8,6 @@ std::string vdb_report(const std::filesystem::path& file, bool json);
 std::string gltf_report(const std::filesystem::path& file, bool json);
 std::string scene_report(const std::filesystem::path& file, bool json);
 std::string recipe_report(const std::filesystem::path& file, bool json);
+std::string ies_report(const std::filesystem::path& file, bool json);
 std::string exr_report(const std::filesystem::path& file, bool json);
 }

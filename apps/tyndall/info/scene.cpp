@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/gltf/gltf.h"
+#include "scene/photometry/light_power.h"
 
 namespace tyndall {
 namespace {
@@ -50,9 +51,12 @@ Json lights_json(const Scene& scene) {
     return json_list(scene.lights, [](const LightSource& light) {
         return json_object({{"name", light.name},
                             {"kind", traits_of(light.kind).name},
-                            {"intensity", light.intensity.at(0)},
+                            {"intensity", candela_of(light, 0)},
                             {"unit", traits_of(light.kind).unit},
                             {"color", light.color.at(0)},
+                            {"temperature", light.temperature.at(0)},
+                            {"profile", light.profile != nullptr},
+                            {"gobo", light.gobo.has_value()},
                             {"range", light.range}});
     });
 }
@@ -113,10 +117,11 @@ std::string content_text(const Scene& scene) {
                                          : formatted(", vertical field of view %.1f degrees\n",
                                                      glm::degrees(double{camera.vertical_fov.at(0)})));
     for (const LightSource& light : scene.lights)
-        text += formatted("  light         %s, %s, %g %s\n",
+        text += formatted("  light         %s, %s, %g %s%s%s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),
-                          std::string(traits_of(light.kind).name).c_str(), double{light.intensity.at(0)},
-                          std::string(traits_of(light.kind).unit).c_str());
+                          std::string(traits_of(light.kind).name).c_str(), double{candela_of(light, 0)},
+                          std::string(traits_of(light.kind).unit).c_str(),
+                          light.profile ? " at the peak of its profile" : "", light.gobo ? ", with a gobo" : "");
     const std::string hint = light_units_hint(scene);
     if (!hint.empty()) text += "  light units   " + hint + "\n";
     for (const MediumSource& medium : scene.media)

@@ -141,7 +141,7 @@ vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& pa
         sum += place.densities[m] * grey_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
                dvec3(optics.albedo);
     }
-    return vec3(arriving.amount * sum * dvec3(along.light->intensity * along.light->volume_scale));
+    return vec3(arriving.amount * sum * arriving.tint * dvec3(along.light->intensity * along.light->volume_scale));
 }
 
 std::vector<Place> places_of(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {

@@ -148,8 +148,8 @@ std::string_view name_of(Verdict verdict) {
 const std::vector<StressCase>& stress_cases() {
     static const std::vector<StressCase> cases = [] {
         std::vector<StressCase> all;
-        for (auto* group : {stress_lamps, stress_fog, stress_shadows, stress_history, stress_scattering, stress_orders,
-                            stress_files, stress_data, stress_looks, stress_program})
+        for (auto* group : {stress_lamps, stress_filters, stress_fog, stress_shadows, stress_history, stress_scattering,
+                            stress_orders, stress_files, stress_data, stress_looks, stress_program})
             for (StressCase& stress : group()) all.push_back(std::move(stress));
         return all;
     }();

@@ -4,6 +4,7 @@
 
 #include "measure/metrics/halves.h"
 #include "measure/metrics/metrics.h"
+#include "modes/light_filters.h"
 #include "modes/mode.h"
 #include "render/adaptive/candidates.h"
 #include "scene/light.h"
@@ -35,12 +36,14 @@ uint64_t non_finite_in(const Image<vec3>& image) {
 }
 
 // Whether all that is wrong with a picture is noise, of which its variance tells: a march looks at soft lights by
-// chance, as paths do.
+// chance, as paths do, and several techniques at gobos.
 bool is_noise(const Trial& trial) {
     const Snapshot& snapshot = trial.scene.snapshot;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
-    return error_is_noise(*trial.mode) ||
-           (trial.mode->samples_soft_lights && shadows && std::ranges::any_of(snapshot.lights, is_soft));
+    if (error_is_noise(*trial.mode)) return true;
+    if (trial.mode->samples_soft_lights && shadows && std::ranges::any_of(snapshot.lights, is_soft)) return true;
+    const Limitations said = trial.mode->limitations(trial.scene.view, snapshot, trial.scene.settings);
+    return std::ranges::any_of(said, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
 }
 
 // Depths that are none; infinite ones are those of the background.

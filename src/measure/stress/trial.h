@@ -71,6 +71,7 @@ StressScene stress_scene(std::vector<Medium> media, std::vector<Light> lights, C
 
 // --- the groups of cases -------------------------------------------------------------------------------------------
 std::vector<StressCase> stress_lamps();
+std::vector<StressCase> stress_filters();
 std::vector<StressCase> stress_fog();
 std::vector<StressCase> stress_shadows();
 std::vector<StressCase> stress_history();

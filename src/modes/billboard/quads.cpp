@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "integrate/style.h"
+#include "modes/light_filters.h"
 #include "scene/light.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -100,6 +101,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
         veil *= settings.of<BillboardSettings>().veil * settings.of<BillboardSettings>().brightness;
     billboards.settings = settings.of<BillboardSettings>(), billboards.style = settings.style;
     billboards.snapshot = stylised(snapshot, settings.style);
+    average_filters(billboards.snapshot);
     billboards.snapshot.media = homogeneous_media(billboards.snapshot.media);
     billboards.camera = view.camera;
     billboards.seconds = static_cast<float>(snapshot.seconds);

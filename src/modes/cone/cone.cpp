@@ -8,6 +8,7 @@
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "modes/mode.h"
+#include "scene/light_filter.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
@@ -103,6 +104,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
     if (has_cone(light) && light.outer_cone > 0)
         result.near_plane = static_cast<float>(cone.settings.near_radius / std::tan(double(light.outer_cone)));
     result.light.position = vec3(0);
+    if (light.filter) result.filter_level = blurred_level(*light.filter, filter_node_angle(light));
     result.linear_range = std::isinf(light.range) ? glm::length(snapshot.bounds.size()) : light.range;
     return result;
 }
@@ -113,6 +115,8 @@ float AnchoredFog::extinction() const {
     for (const Medium& medium : media) sum += grey_extinction(medium.optics);
     return sum;
 }
+
+float filter_node_angle(const Light& light) { return whole_angle(light) / (8 * filter_pieces_of_ray); }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Snapshot seen = with_terms(stylised(snapshot, settings.style), settings.terms);

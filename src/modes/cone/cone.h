@@ -38,6 +38,7 @@ struct ConeLight {
     float reach = 0;               // metres: 1/r² is capped inside
     float near_plane = 0;          // along the axis
     float linear_range = infinity; // with ConeAttenuation::linear
+    int filter_level = 0;          // of a gobo: as blurred as nodes are apart
 };
 
 struct Cone {
@@ -51,6 +52,10 @@ struct Cone {
     float noise_rise = 0; // metres so far
     bool casts = false;   // there are surfaces to cast the shadows that are not drawn
 };
+
+// Of an IES profile or gobo each of so many pieces of what a ray sees of the light has some eight nodes.
+inline constexpr int filter_pieces_of_ray = 12;
+float filter_node_angle(const Light& light);
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings);
 

@@ -110,6 +110,25 @@ Vec3s glow_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
     return light;
 }
 
+// Light of one light, scattered once; false where there is none. Colours of a gobo are integrated one by one.
+bool add_light(Packet& packet, const ConeLight& light, Vec3s& added) {
+    const vec3 intensity = light.light.intensity * light.light.volume_scale;
+    const bool colors = light.light.filter && has_colors(*light.light.filter);
+    bool some = false;
+    for (int channel = 0; channel < (colors ? 3 : 1); ++channel) {
+        packet.channel = channel;
+        if (!(is_distant(light.light) ? add_even(packet, &light) : add_local(packet, light))) continue;
+        vec3 seen = intensity;
+        if (colors) seen = vec3(0), seen[channel] = intensity[channel];
+        const Vec3s light_of_channel =
+            light_of_sums(packet, [&](size_t m) { return packet.fog.media[m].optics.albedo * seen; });
+        added = some ? added + light_of_channel : light_of_channel;
+        clear_sums(packet);
+        some = true;
+    }
+    return some;
+}
+
 // Half for each kind of thing that is not as the scene has it: fog drawn even, light without its shadows.
 float validity_of(const Cone& cone, const Ray& ray, bool unshadowed) {
     float validity = unshadowed ? 0.5f : 1.0f;
@@ -130,11 +149,8 @@ void cone_packet_kernel(const Cone& cone, const RayBatch& batch, std::span<Scatt
     for (size_t l = 0; media > 0 && l < cone.lights.size(); ++l) {
         const ConeLight& light = cone.lights[l];
         Packet packet = make_packet(cone, light.fog, batch, scratch);
-        if (!(is_distant(light.light) ? add_even(packet, &light) : add_local(packet, light))) continue;
-        const vec3 intensity = light.light.intensity * light.light.volume_scale;
-        const Vec3s added =
-            light_of_sums(packet, [&](size_t m) { return packet.fog.media[m].optics.albedo * intensity; });
-        clear_sums(packet);
+        Vec3s added = splat(vec3(0));
+        if (!add_light(packet, light, added)) continue;
         radiance = radiance + added;
         if (cone.casts && light.light.shadows) unshadowed = unshadowed + added.x + added.y + added.z;
         add_part(added, l, batch);

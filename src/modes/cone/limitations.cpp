@@ -1,6 +1,8 @@
 #include "modes/cone/limitations.h"
 
+#include "modes/cone/cone.h"
 #include "modes/cone/settings.h"
+#include "modes/light_filters.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
@@ -43,6 +45,7 @@ void add_light(const View& view, const Snapshot& snapshot, const Light& light, c
         add(Severity::degraded, limitation::unphysical_attenuation);
     if (spot && settings.edge == ConeEdge::soft) add(Severity::degraded, limitation::inner_cone_ignored);
     if (spot && settings.near_radius > 0) add(Severity::info, limitation::cut_near_light);
+    if (!sun) add_blurred_filter(light, filter_node_angle(light), limitations);
     if (!sun && settings.noise > 0) add(Severity::info, limitation::artistic_noise);
 }
 }

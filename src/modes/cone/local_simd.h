@@ -9,6 +9,7 @@
 
 #include "modes/cone/packet_simd.h"
 #include "modes/cone/settings.h"
+#include "trace/light_filter_simd.h"
 #include "volume/noise/noise.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -96,6 +97,14 @@ void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Interval
     }
 }
 
+// Equal angles of what the rays see of a light with a filter, which varies in all of them.
+void add_filter_breaks(const Packet& packet, const SeenRays& seen, const Interval<Floats>& stretch) {
+    const Floats away = max(seen.distance, 1e-12f);
+    const Floats from = atan(stretch.low / away), to = atan(stretch.high / away);
+    for (int i = 1; i < filter_pieces_of_ray; ++i)
+        add_break(packet, away * tan(fused(to - from, static_cast<float>(i) / filter_pieces_of_ray, from)));
+}
+
 void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen,
                       const Interval<Floats>& stretch) {
     add_break(packet, 0.0f);
@@ -107,7 +116,14 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
         const Interval<Floats> even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
         add_break(packet, even.low), add_break(packet, even.high);
     }
+    if (light.light.filter) add_filter_breaks(packet, seen, stretch);
     add_decay_breaks(packet, seen, stretch);
+}
+
+// What a light's filter lets through of the current channel. Not in the loop of lights that have none.
+HWY_NOINLINE Floats filter_factor(const Packet& packet, const ConeLight& light, const Vec3s& point,
+                                  const Floats& distance) {
+    return filter_channel(*light.light.filter, point * (1.0f / distance), packet.channel, light.filter_level);
 }
 
 // Light of a local light at the nodes of one piece.
@@ -133,6 +149,7 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
         const Floats depth =
             fused(view_depth(packet, t), packet.cone.style.view_depth, light_depth(packet, light, point, distance));
         amount = amount * exp(-depth) * fade(packet, t);
+        if (light.light.filter) amount = amount * filter_factor(packet, light, point, distance);
         if (packet.cone.settings.noise > 0) amount = amount * dust(packet.cone, point + splat(vec3(packet.fog.anchor)));
         add_node(packet, t, amount, -(s * inverse), true);
     }
@@ -174,7 +191,8 @@ bool add_local(Packet& packet, const ConeLight& light) {
         if (!any(bright)) continue;
         const float share = most(zero_unless(bright, AnglePiece(piece, seen).angle)) * (2 / pi);
         const Floats length = zero_unless(bright, piece.high - piece.low);
-        add_piece(packet, light, seen, piece, node_count(packet, share, zero_unless(bright, change), length));
+        const int count = node_count(packet, share, zero_unless(bright, change), length);
+        add_piece(packet, light, seen, piece, light.light.filter ? std::max(count, 8) : count);
     }
     return true;
 }

@@ -38,6 +38,7 @@ struct Packet {
     Floats t_max, before;    // length, and the way from the eye to the origin
     Scratch& scratch;
     Interval<Floats> stretch; // from first to last fog
+    int channel = 0;          // of a light's gobo
 
     HWY_INLINE size_t media() const { return fog.media.size(); }
     HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }

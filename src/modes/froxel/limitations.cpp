@@ -1,7 +1,9 @@
 #include "modes/froxel/limitations.h"
 
+#include "modes/froxel/beams/beams.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/settings.h"
+#include "modes/light_filters.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
@@ -77,6 +79,9 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
         add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
     if (shadows && is_soft(light) && settings.shadow_rays == 1 && !by_rays.exact)
         add(Severity::degraded, limitation::hard_shadows);
+    const float away = glm::distance(light.position, snapshot.bounds.center());
+    const float across = by_rays.all ? 0 : size.coarse() / std::max(away, size.coarse());
+    if (light.filter) add_blurred_filter(light, std::max(filter_point_angle(light), across), limitations);
     if (by_rays.all) return;
     if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
     if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))
@@ -103,6 +108,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     Settings terms = settings; // what the march says of single scattering holds here too
     terms.march.visibility = Visibility::rays;
     Limitations limitations = main_mode().limitations(view, snapshot, terms);
+    std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     if (snapshot.media.empty()) return limitations;
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();

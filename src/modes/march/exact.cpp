@@ -3,6 +3,7 @@
 #include "base/gauss_legendre.h"
 #include "integrate/light_along.h"
 #include "integrate/style.h"
+#include "scene/light_filter.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_pieces.h"
 
@@ -45,6 +46,7 @@ struct RayMarch {
     float jitter = 0.5f; // in [0,1)
     Scratch& scratch;
     double longest = 0; // step by length alone
+    double detail = 0;  // angle seen from the light over which its filter may change; 0 = none
     int nodes = 0;
 
     dvec3 at(double t) const { return dvec3(ray.origin) + t * dvec3(ray.direction); }
@@ -67,7 +69,11 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Ligh
     const double voxels = std::max(fog.pieces[piece].voxels, along ? along->shadow_voxels(low, high) : 0.0);
     const double wanted = std::max({depth / settings.step_depth, length * voxels / settings.step_voxels,
                                     length / on.longest, length / (settings.near_light * away)});
-    const double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));
+    double parts = std::max(1.0, std::ceil(wanted * (1 - 1e-6)));
+    if (along && on.detail > 0) {
+        const EquiAngular<double> seen_from_light = along->angles(low, high);
+        parts = std::max(parts, std::ceil((seen_from_light.to - seen_from_light.from) / on.detail));
+    }
     for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
 }
 
@@ -208,7 +214,7 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
         const Optics& optics = on.frame.snapshot.media[m].optics;
         scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
     }
-    return scattering * (weight * light_at.amount * seen(on, piece, t));
+    return scattering * (weight * light_at.amount * seen(on, piece, t)) * light_at.tint;
 }
 
 // Nodes of one part: even in t for the sun, in the angle seen from a local light.
@@ -281,6 +287,7 @@ dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_i
     std::vector<LitPart>& lit = on.scratch.lit;
     std::vector<LitEnd>& ends = on.scratch.ends;
     dvec3 sum(0);
+    on.detail = light.filter ? finest_detail(*light.filter) : 0;
     ends.clear();
     for (uint32_t k = 0; k < count; ++k) {
         find_light(light, light_point(batch, ray, light, light_index, k, count), on.ray, slices, frame.snapshot.media,

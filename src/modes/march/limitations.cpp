@@ -1,6 +1,7 @@
 #include "modes/march/limitations.h"
 
 #include "integrate/single_scattering.h"
+#include "modes/light_filters.h"
 #include "modes/map_shadows.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
@@ -49,6 +50,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_visibility(view, snapshot, settings, limitations);
     add_light_transmittance(snapshot, terms.light, limitations);
+    add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     if (snapshot.scene)
         for (const Material& material : snapshot.scene->materials)
             if (max_component(material.emission) > 0)

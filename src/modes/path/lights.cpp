@@ -2,6 +2,7 @@
 #include "modes/path/lights.h"
 
 #include "scene/light.h"
+#include "scene/light_filter.h"
 #include "scene/light_reach.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -9,6 +10,21 @@
 
 namespace tyndall {
 namespace {
+// Roughly what a light's filter leaves of it on a line, and never nothing: where none arrives chances may be small, but
+// chances that are 0 must be right.
+float filter_mean(const Light& light, const Ray& line, const LineLight& along) {
+    constexpr int places = 8;
+    constexpr float certain = 0.05f;
+    if (!light.filter) return 1;
+    double sum = 0;
+    for (int i = 0; i < places; ++i) {
+        const vec3 offset = line.at(along.distance((static_cast<float>(i) + 0.5f) / places)) - light.position;
+        const float distance = glm::length(offset);
+        if (distance > 0) sum += luminance(vec3(filtered(*light.filter, dvec3(offset) / double{distance})));
+    }
+    return certain + (1 - certain) * static_cast<float>(sum / places);
+}
+
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
 
 // From the first fog to the last; of fog without end what lies within 8 optical depths or in the scene.
@@ -40,7 +56,9 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
     along.angles = equi_angular<double>(closest, std::max(glm::length(offset - closest * direction), nearest),
                                         along.reach.low, along.reach.high);
     const double angle = along.angles.to - along.angles.from;
-    if (angle > 0) along.chance = static_cast<float>(volume_brightness(light) * angle / along.angles.height);
+    if (angle > 0)
+        along.chance = static_cast<float>(volume_brightness(light) * angle / along.angles.height) *
+                       filter_mean(light, line, along);
     return along;
 }
 

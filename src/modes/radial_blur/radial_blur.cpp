@@ -7,6 +7,7 @@
 #include "integrate/homogeneous_fog.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
+#include "modes/light_filters.h"
 #include "modes/mode.h"
 #include "modes/radial_blur/glow.h"
 #include "scene/light.h"
@@ -57,6 +58,7 @@ PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const 
     auto blur = std::make_shared<RadialBlur>();
     blur->view = view, blur->settings = settings.of<RadialBlurSettings>();
     blur->snapshot = stylised(snapshot, settings.style);
+    average_filters(blur->snapshot);
     blur->lights = blur_lights(view, blur->snapshot, settings.of<RadialBlurSettings>());
     blur->line = make_line(settings.of<RadialBlurSettings>());
     return [blur](const PlainPicture& picture) { return added_rays(*blur, picture); };

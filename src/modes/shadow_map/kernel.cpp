@@ -88,6 +88,8 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
         vec3 part(0);
         for (size_t m = 0; m < packet.media(); ++m)
             part += snapshot.media[m].optics.albedo * packet.scratch.scattered[i * packet.media() + m][lane];
+        if (!packet.scratch.tinted.empty())
+            for (int c = 0; c < 3; ++c) part[c] += packet.scratch.tinted[3 * i + static_cast<size_t>(c)][lane];
         part *= snapshot.lights[i].intensity * snapshot.lights[i].volume_scale;
         result.radiance += part;
         if (apart) batch.part(lane, i) += part;

@@ -1,5 +1,6 @@
 #include "modes/shadow_map/limitations.h"
 
+#include "modes/light_filters.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -38,6 +39,8 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_map_shadows(view, snapshot, settings, limitations);
     add_steps(view, snapshot, own.steps, true, limitations);
     add_few_steps(view, snapshot, own.steps, limitations);
+    std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
+    add_sampled_filters(snapshot, Sampled::all_filters, own.steps, limitations);
     return limitations;
 }
 }

@@ -98,6 +98,19 @@ HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, cons
     return share * part;
 }
 
+// What all media scatter of light that a gobo colours.
+HWY_INLINE void add_tinted(const Packet& packet, size_t light, const Vec3s& tint, const Sixteen* extinctions,
+                           const Floats& weight, const Floats& cosine) {
+    for (size_t m = 0; m < packet.media(); ++m) {
+        const Optics& optics = packet.march.snapshot.media[m].optics;
+        const Floats scattered = load(extinctions[m].data()) * weight * phase_value(optics.phase, cosine);
+        Sixteen* sums = packet.scratch.tinted.data() + 3 * light;
+        add(scattered * tint.x * optics.albedo.x, sums[0]);
+        add(scattered * tint.y * optics.albedo.y, sums[1]);
+        add(scattered * tint.z * optics.albedo.z, sums[2]);
+    }
+}
+
 // The steps of a local light, on the part of each ray that it reaches.
 void march_light(const Packet& packet, size_t index, Floats& taken) {
     const ShadowMapMarch& march = packet.march;
@@ -128,9 +141,13 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
             const Floats dimmed = exp(-light_depth16(march.depths[index], position, active));
             const Floats weight = zero_unless(active, turning.length(seen, slope) * light_at.amount * share * dimmed);
             const Floats cosine = dot(light_at.to_light, packet.direction);
-            for (size_t m = 0; m < packet.media(); ++m)
-                add(load(extinctions[m].data()) * weight * phase_value(march.snapshot.media[m].optics.phase, cosine),
-                    packet.scratch.scattered[index * packet.media() + m]);
+            if (light.filter && has_colors(*light.filter))
+                add_tinted(packet, index, tint_at(light, position), extinctions, weight, cosine);
+            else
+                for (size_t m = 0; m < packet.media(); ++m)
+                    add(load(extinctions[m].data()) * weight *
+                            phase_value(march.snapshot.media[m].optics.phase, cosine),
+                        packet.scratch.scattered[index * packet.media() + m]);
             taken = taken + select(active, 1.0f, 0.0f);
         }
         low = high;

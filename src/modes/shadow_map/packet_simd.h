@@ -34,6 +34,7 @@ struct Scratch {
     std::vector<Sixteen> extinction; // of each medium in each step: [step · media + medium]
     std::vector<Sixteen> glowing;    // ∫ of what each medium scatters of even light, before its albedo
     std::vector<Sixteen> scattered;  // the same of each light, by each medium: [light · media + medium]
+    std::vector<Sixteen> tinted; // of lights with coloured gobos, by all media after their albedos: [light · 3 + c]
 };
 
 struct Packet {
@@ -94,6 +95,7 @@ Packet make_packet(const ShadowMapMarch& march, const RayBatch& batch, Scratch& 
     scratch.depth.resize(scratch.border.size()), scratch.weight.resize(scratch.border.size());
     scratch.extinction.resize(media * static_cast<size_t>(steps + 1));
     scratch.glowing.assign(media, {}), scratch.scattered.assign(lights * media, {});
+    scratch.tinted.assign(march.colored ? 3 * lights : 0, {});
     const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
     const Packet packet{march, batch, scratch, rays.origin, rays.direction, rays.jitter, steps, styled};
     if (!place_even_steps(packet, rays.t_max))

@@ -8,6 +8,7 @@
 #include "modes/shadow_map/kernel.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
+#include "scene/light_filter.h"
 #include "scene/scene.h"
 #include "volume/medium.h"
 
@@ -38,6 +39,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
                                                  settings.terms.light_resolution, &view));
         march->depths.back().scale = settings.style.light_depth;
         march->cones.push_back(cone_falloff(light));
+        march->colored |= light.filter && has_colors(*light.filter);
     }
     ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
         march_shadow_maps(*march, batch, results);

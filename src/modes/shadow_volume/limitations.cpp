@@ -1,5 +1,7 @@
 #include "modes/shadow_volume/limitations.h"
 
+#include "integrate/single_scattering.h"
+#include "modes/light_filters.h"
 #include "modes/settings.h"
 #include "modes/shadow_volume/settings.h"
 #include "modes/shared_limitations.h"
@@ -53,6 +55,7 @@ Limitations shadow_volume_limitations(const View& view, const Snapshot& snapshot
         limitations.push_back({Severity::wrong, &limitation::shells, Subject::setting, "shadow_volume.draw"});
     add_fog(view, snapshot, settings, limitations);
     add_light_transmittance(snapshot, settings.terms.light, limitations);
+    add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     add_shadows(snapshot, limitations);
     return limitations;
 }

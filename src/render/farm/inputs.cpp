@@ -12,10 +12,9 @@ std::vector<std::filesystem::path> input_files(const Scene& scene, const std::ve
         files.insert(std::filesystem::absolute(file).lexically_normal());
     };
     for (const InputFile& input : scene.inputs) add(input.path);
-    for (const MediumSource& medium : scene.media)
-        if (medium.kind == MediumKind::vdb)
-            for (const int frame : frames)
-                if (const auto file = sequence_file(medium.sequence, frame, missing)) add(*file);
+    for (const int frame : frames)
+        for (const FrameFile& file : frame_files(scene, frame, missing))
+            if (file.path) add(*file.path);
     return {files.begin(), files.end()};
 }
 }

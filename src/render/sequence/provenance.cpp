@@ -24,7 +24,7 @@ std::string number(double value) { return formatted("%.9g", value); }
 std::string numbers(vec3 v) { return number(v.x) + "," + number(v.y) + "," + number(v.z); }
 std::string pair_text(ivec2 v, const char* between) { return std::to_string(v.x) + between + std::to_string(v.y); }
 
-// The scene's own files as they were when it was loaded; volumes count by frame.
+// The scene's own files as they were when it was loaded; sequences of volumes and gobos count by frame.
 std::string scene_text(const Scene& scene) {
     std::string text;
     for (const InputFile& input : scene.inputs) text += "input=" + input.hash + "\n";
@@ -33,11 +33,9 @@ std::string scene_text(const Scene& scene) {
 
 std::string fog_text(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
     std::string text;
-    for (const MediumSource& medium : scene.media) {
-        if (medium.kind != MediumKind::vdb) continue;
-        const auto file = sequence_file(medium.sequence, frame, request.missing);
-        text += "fog=" + (file ? file_hash(*file, files) : std::string("none")) + "\n";
-    }
+    for (const FrameFile& file : frame_files(scene, frame, request.missing))
+        text +=
+            (file.volume ? "fog=" : "gobo=") + (file.path ? file_hash(*file.path, files) : std::string("none")) + "\n";
     return text;
 }
 

@@ -9,15 +9,19 @@ LightKind kind_named(std::string_view name) {
 }
 
 // Fields that mean something only for some kinds of light.
-void check_fields(const Field& field, const LightTraits& kind) {
+void check_fields(const Field& field, const LightSource& light) {
+    const LightTraits& kind = traits_of(light.kind);
+    const bool aimed = kind.aimed || light.profile || field.member("ies");
     const auto only = [&](const char* name, bool fits, const char* who) {
         if (const Field given = field.member(name); given && !fits)
             refuse(given, "is for " + std::string(who) + " only; this light is a " + std::string(kind.noun));
     };
     only("inner_cone", kind.cone, "spots");
     only("outer_cone", kind.cone, "spots");
-    only("direction", kind.aimed, "spots and suns");
-    only("target", kind.aimed, "spots and suns");
+    only("direction", aimed, "spots, suns and lights with a profile");
+    only("target", aimed, "spots, suns and lights with a profile");
+    only("ies", !kind.distant, "point lights and spots");
+    only("gobo", kind.cone, "spots");
     only("range", !kind.distant, "point lights and spots");
     only("radius", !kind.distant, "point lights and spots");
     only("angle", kind.distant, "suns");
@@ -48,12 +52,13 @@ void read_placement(const Field& field, dvec3 origin, LightSource& light) {
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
 }
 
-void read_fields(const Field& field, const Scene& scene, LightSource& light) {
+void read_fields(const Field& field, Scene& scene, LightSource& light) {
     const auto number = [&](const char* name, Keyed<float>& value, Keyed<float> (*read)(const Field&)) {
         if (const Field given = field.member(name)) value = read(given);
     };
     if (const Field color = field.member("color")) light.color = keyed_color(color);
-    number("intensity", light.intensity, keyed_number);
+    read_profile(field, scene, light), read_gobo(field, scene, light);
+    read_light_power(field, light);
     number("volume_scale", light.volume_scale, keyed_number);
     number("surface_scale", light.surface_scale, keyed_number);
     number("inner_cone", light.inner_cone, keyed_degrees);
@@ -83,7 +88,7 @@ LightSource* find(Scene& scene, const std::string& name) {
 
 LightSource new_light(const Field& field, const Scene& scene) {
     for (const char* needed : {"type", "intensity"})
-        if (!field.member(needed)) {
+        if (!field.member(needed) && !(field.member("ies") && needed == std::string_view("intensity"))) {
             std::string hint;
             if (field.member("name") && !scene.lights.empty())
                 hint = " (no light of the glTF has the name \"" + field.json->string_or("name", "") + "\")";
@@ -116,7 +121,7 @@ void read_lights(const Field& root, Scene& scene) {
                                              std::string(traits_of(known->kind).noun) + "; its type cannot be changed");
         LightSource light = known ? *known : new_light(field, scene);
         if (!known && find(scene, light.name)) refuse(field, "the name \"" + light.name + "\" is taken");
-        check_fields(field, traits_of(light.kind));
+        check_fields(field, light);
         light.entry = field.pointer;
         read_placement(field, scene.origin, light);
         read_fields(field, scene, light);

@@ -101,18 +101,12 @@ bool read_metadata(const std::filesystem::path& path, MediumSource& medium) {
     return extinction;
 }
 
-SequenceMode mode_named(std::string_view name) {
-    if (name == "loop") return SequenceMode::loop;
-    if (name == "ping_pong") return SequenceMode::ping_pong;
-    return name == "clip" ? SequenceMode::clip : SequenceMode::hold;
-}
-
 void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     const Field file = field.member("file");
     with_place(file, [&] { medium.sequence = find_sequence(file.json->string, scene.file.parent_path()); });
     medium.sequence.grid = field.json->string_or("grid", "");
     if (const Field sequence = field.member("sequence")) {
-        medium.sequence.mode = mode_named(sequence.json->string_or("mode", "hold"));
+        medium.sequence.mode = sequence_mode_named(sequence.json->string_or("mode", "hold"));
         medium.sequence.offset = static_cast<int>(sequence.json->number_or("offset", 0));
     }
 
@@ -145,6 +139,12 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     if (const Field falloff = field.member("falloff")) medium.height_falloff = keyed_number(falloff);
     return medium;
 }
+}
+
+SequenceMode sequence_mode_named(std::string_view name) {
+    if (name == "loop") return SequenceMode::loop;
+    if (name == "ping_pong") return SequenceMode::ping_pong;
+    return name == "clip" ? SequenceMode::clip : SequenceMode::hold;
 }
 
 void read_media(const Field& root, Scene& scene) {

@@ -26,6 +26,18 @@ bool cones_fit(const LightSource& light);
 // The path a field gives, relative to the scene file. Throws Error (unreadable) when there is no such regular file.
 std::filesystem::path named_file(const Field& field, const Scene& scene);
 
+// The profile of an IES file; its notes become warnings that name `where`.
+inline constexpr uint64_t largest_ies_file = uint64_t{16} << 20; // bytes
+std::shared_ptr<const IesProfile> read_profile(std::string_view bytes, std::string_view where, Scene& scene);
+
+// Reads profile, gobo and units of a light.
+void read_light_power(const Field& field, LightSource& light); // after its profile
+void read_profile(const Field& field, Scene& scene, LightSource& light);
+void read_gobo(const Field& field, Scene& scene, LightSource& light);
+
+// How a sequence goes on before its first and after its last file.
+SequenceMode sequence_mode_named(std::string_view name);
+
 // Runs `read` on a file that `field` names; its errors then name the field as well.
 void with_place(const Field& field, const std::function<void()>& read);
 

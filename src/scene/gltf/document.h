@@ -38,6 +38,7 @@ struct GltfDocument {
     std::vector<int> nodes;
     std::map<int, std::vector<int>> meshes; // mesh index to one scene mesh per drawn primitive
     std::map<int, int> materials;
+    std::map<int, std::shared_ptr<const IesProfile>> profiles;
     std::map<std::string, int> textures; // by what makes one: image, sampler, transform
     std::map<std::string, int> counts;   // warnings said once with a number
     size_t texels = 0, triangles = 0;    // so far
@@ -80,5 +81,7 @@ int gltf_material(GltfDocument& document, int material, int& uv_set);
 const std::vector<int>& gltf_mesh(GltfDocument& document, int mesh);
 void add_gltf_nodes(GltfDocument& document);
 void add_gltf_cameras_and_lights(GltfDocument& document);
+// gltf_ies_lights.cpp: the light of EXT_lights_ies at a node, if it has one.
+std::optional<LightSource> gltf_ies_light(GltfDocument& document, size_t node);
 void add_gltf_animations(GltfDocument& document);
 }

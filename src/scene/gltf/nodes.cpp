@@ -241,6 +241,11 @@ void add_gltf_cameras_and_lights(GltfDocument& document) {
             light.node = document.nodes[i];
             document.scene->lights.push_back(light);
         }
+        if (std::optional<LightSource> light = gltf_ies_light(document, i)) {
+            light->name = unique_name(object_name(node, "", "light"), light_names);
+            light->node = document.nodes[i];
+            document.scene->lights.push_back(*light);
+        }
     }
 }
 }

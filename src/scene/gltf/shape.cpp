@@ -139,10 +139,11 @@ private:
 
 const Json* gltf_collection(const Json& document, std::string_view name) {
     const Json* value = document.find(name);
-    if (name == "lights") {
+    if (name == "lights" || name == "profiles") {
         const Json* extensions = document.find("extensions");
-        const Json* punctual = extensions ? extensions->find("KHR_lights_punctual") : nullptr;
-        value = punctual ? punctual->find("lights") : nullptr;
+        const Json* own =
+            extensions ? extensions->find(name == "lights" ? "KHR_lights_punctual" : "EXT_lights_ies") : nullptr;
+        value = own ? own->find("lights") : nullptr;
     }
     return value && value->kind == Json::Kind::array ? value : nullptr;
 }

@@ -10,6 +10,6 @@ void check_gltf_shape(const Json& document, std::string_view file);
 // What one member says may need another beside it. After the shape has been checked. Throws Error (refused).
 void check_gltf_needs(const Json& document, std::string_view file);
 
-// The array of a collection ("nodes"; "lights" of KHR_lights_punctual), or null.
+// The array of a collection ("nodes"; "lights" of KHR_lights_punctual, "profiles" of EXT_lights_ies), or null.
 const Json* gltf_collection(const Json& document, std::string_view name);
 }

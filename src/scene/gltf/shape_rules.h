@@ -142,7 +142,9 @@ constexpr Rule primitive[] = {index_map("attributes", "accessors", required), in
 constexpr Rule mesh[] = {text("name"), objects("primitives", primitive, required), numbers("weights", 0)};
 constexpr Rule node_light[] = {index("light", "lights", required)};
 constexpr Rule node_instancing[] = {index_map("attributes", "accessors", required)};
-constexpr Rule node_extensions[] = {object("KHR_lights_punctual", node_light),
+constexpr Rule node_profile[] = {index("light", "profiles", required), number("multiplier", 0, 1e30),
+                                 numbers("color", 3, 0, 1e30)};
+constexpr Rule node_extensions[] = {object("KHR_lights_punctual", node_light), object("EXT_lights_ies", node_profile),
                                     object("EXT_mesh_gpu_instancing", node_instancing)};
 constexpr Rule node[] = {text("name"),
                          index("camera", "cameras"),
@@ -183,7 +185,9 @@ constexpr Rule light[] = {text("name"),
                           positive("range", 1e30),
                           object("spot", spot)};
 constexpr Rule lights[] = {objects("lights", light, required)};
-constexpr Rule root_extensions[] = {object("KHR_lights_punctual", lights)};
+constexpr Rule profile[] = {text("name"), text("uri"), text("mimeType"), index("bufferView", "bufferViews")};
+constexpr Rule profiles[] = {objects("lights", profile, required)};
+constexpr Rule root_extensions[] = {object("KHR_lights_punctual", lights), object("EXT_lights_ies", profiles)};
 
 constexpr Rule asset[] = {text("version", required), text("minVersion")};
 constexpr Rule root[] = {object("asset", asset, required), objects("accessors", accessor),

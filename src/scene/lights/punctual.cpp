@@ -1,4 +1,5 @@
 // Point lights and spots, by KHR_lights_punctual; with a radius, balls of light.
+#include "scene/light_filter.h"
 #include "scene/light_reach.h"
 #include "scene/lights/functions.h"
 
@@ -11,7 +12,9 @@ LightSample punctual_arrival(const Light& light, const vec3& point) {
     const vec3 to_light = distance > 0 ? towards / distance : -light.direction;
     float share = range_window(distance, light.range) / std::max(distance * distance, reach * reach);
     if (has_cone(light)) share *= cone_falloff(light).at(-glm::dot(to_light, light.direction));
-    return {light.intensity * share, to_light, distance};
+    vec3 irradiance = light.intensity * share;
+    if (light.filter && share > 0) irradiance *= vec3(filtered(*light.filter, -dvec3(to_light)));
+    return {irradiance, to_light, distance};
 }
 
 float one_minus_cosine(float sine_squared) { return sine_squared / (1 + std::sqrt(std::max(0.0f, 1 - sine_squared))); }

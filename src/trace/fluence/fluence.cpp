@@ -2,7 +2,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scene/gobo.h"
 #include "scene/light.h"
+#include "scene/light_filter.h"
+#include "scene/photometry/ies_profile.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"
 #include "trace/fluence/walls.h"
@@ -154,14 +157,27 @@ void add_links(const Light& light, const Snapshot& snapshot, CacheKey& key) {
     for (const bool instance : snapshot.lit[static_cast<size_t>(light.lit)]) key.add(instance);
 }
 
+// Where a light's intensity goes.
+void add_filter(const Light& light, CacheKey& key) {
+    if (!light.filter) return;
+    const LightFilter& filter = *light.filter;
+    const std::string contents = (filter.profile ? filter.profile->content : std::string()) + " " +
+                                 (filter.gobo ? filter.gobo->content : std::string());
+    for (const char c : contents) key.add(c);
+    for (const LightAxes& axes : {filter.profile_axes, filter.gobo_axes}) key.add(axes.right).add(axes.up);
+    key.add(filter.gobo_half);
+}
+
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     CacheKey key;
     key.add(seed);
     key.add(snapshot.occluders).add(snapshot.bounds);
     key.add(settings.orders).add(settings.resolution).add(settings.paths);
-    for (const Light& light : snapshot.lights)
+    for (const Light& light : snapshot.lights) {
         add_links(light, snapshot,
                   key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale));
+        add_filter(light, key);
+    }
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
         key.add(medium.density.kind)

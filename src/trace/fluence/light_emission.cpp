@@ -1,5 +1,6 @@
 #include "trace/fluence/light_emission.h"
 #include "scene/light.h"
+#include "scene/light_filter.h"
 
 namespace tyndall {
 namespace {
@@ -70,7 +71,9 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
     return {light->position + light->radius * (direction + disc.x * x + disc.y * y), direction};
 }
 
-float LightSquare::share(vec3 direction) const {
-    return has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f;
+vec3 LightSquare::share(vec3 direction) const {
+    vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
+    if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));
+    return share;
 }
 }

@@ -17,7 +17,7 @@ struct LightSquare {
     // The ray at a place of the square with 1 = all of `power`; `soft` picks a point of a soft light.
     Ray ray(vec2 place, vec2 soft) const;
     // Share of `power` along it.
-    float share(vec3 direction) const;
+    vec3 share(vec3 direction) const;
 };
 
 LightSquare square_of(const Light& light, const Box& reach);

@@ -22,6 +22,10 @@ std::vector<InputTime> input_times(const Scene& scene) {
             if (const auto file = sequence_file(medium.sequence, number - medium.sequence.offset, MissingFrame::hold))
                 files.push_back(*file);
     }
+    for (const LightSource& light : scene.lights)
+        if (light.gobo)
+            for (const int number : light.gobo->sequence.files)
+                files.push_back(gobo_file(*light.gobo, number - light.gobo->sequence.offset, MissingFrame::hold));
     std::vector<InputTime> times;
     for (const std::filesystem::path& file : files)
         if (const auto time = time_of(file)) times.push_back(*time);

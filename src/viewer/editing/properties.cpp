@@ -11,6 +11,12 @@ using enum ValueKind;
 bool is_spot(const Scene& scene, size_t i) { return has_cone(scene.lights[i]); }
 bool is_sun(const Scene& scene, size_t i) { return is_distant(scene.lights[i]); }
 bool is_local(const Scene& scene, size_t i) { return !is_sun(scene, i); }
+template<LightUnit unit> bool is_local_in(const Scene& scene, size_t i) {
+    return is_local(scene, i) && scene.lights[i].unit == unit;
+}
+template<LightUnit unit> bool is_sun_in(const Scene& scene, size_t i) {
+    return is_sun(scene, i) && scene.lights[i].unit == unit;
+}
 bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
 bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
 bool has_direction(const Scene& scene, size_t i) { return is_aimed(scene.lights[i]) && !has_target(scene, i); }
@@ -46,9 +52,17 @@ const Property table[] = {
     {Part::light, "color", color, "", 0, bright, 0, 1, "Colour, multiplies the intensity",
      of_light<&LightSource::color>, always},
     {Part::light, "intensity", number, "cd", 0, bright, 0, 2000, "Luminous intensity",
-     of_light<&LightSource::intensity>, is_local},
+     of_light<&LightSource::intensity>, is_local_in<LightUnit::native>},
+    {Part::light, "intensity", number, "lm", 0, bright, 0, 10000, "Luminous flux", of_light<&LightSource::intensity>,
+     is_local_in<LightUnit::lumen>},
+    {Part::light, "intensity", number, "W", 0, bright, 0, 1000, "Power, times the efficacy",
+     of_light<&LightSource::intensity>, is_local_in<LightUnit::watt>},
     {Part::light, "intensity", number, "lx", 0, bright, 0, 100, "Illuminance across the light",
-     of_light<&LightSource::intensity>, is_sun},
+     of_light<&LightSource::intensity>, is_sun_in<LightUnit::native>},
+    {Part::light, "intensity", number, "W/m2", 0, bright, 0, 10, "Irradiance, times the efficacy",
+     of_light<&LightSource::intensity>, is_sun_in<LightUnit::watt>},
+    {Part::light, "exposure", number, "stops", -64, 64, -8, 8, "Brightens the light: times 2 for each",
+     of_light<&LightSource::exposure>, always},
     {Part::light, "volume_scale", number, "", 0, bright, 0, 4, "Multiplies the light in fog only",
      of_light<&LightSource::volume_scale>, always},
     {Part::light, "surface_scale", number, "", 0, bright, 0, 4, "Multiplies the light on surfaces only",

@@ -21,6 +21,7 @@ const Row rows[] = {
      {"target", "The point the light shines at, metres. It goes on doing so when the light is moved."}},
     {Part::light, "color", {"colour", "Tint of the light, linear. It multiplies the intensity."}},
     {Part::light, "intensity", {"intensity", "How bright the light is: candela for lamps, lux for the sun.", true}},
+    {Part::light, "exposure", {"exposure", "Brightens the light by stops: each is twice as bright."}},
     {Part::light,
      "volume_scale",
      {"volume scale", "Makes the light's beam in fog stronger or weaker, surfaces left alone. 1 is as in nature."}},

@@ -80,13 +80,13 @@ TEST(SceneEdit, ListsWhatEachThingHas) {
         return result;
     };
     ASSERT_EQ(scene.lights.size(), 7u); // three of the model
-    EXPECT_THAT(names(Part::light, 2), ElementsAre("position", "color", "intensity", "volume_scale", "surface_scale",
-                                                   "range", "radius", "shadows"));
+    EXPECT_THAT(names(Part::light, 2), ElementsAre("position", "color", "intensity", "exposure", "volume_scale",
+                                                   "surface_scale", "range", "radius", "shadows"));
     EXPECT_THAT(names(Part::light, 4),
-                ElementsAre("position", "target", "color", "intensity", "volume_scale", "surface_scale", "inner_cone",
-                            "outer_cone", "range", "radius", "shadows"));
-    EXPECT_THAT(names(Part::light, 6),
-                ElementsAre("direction", "color", "intensity", "volume_scale", "surface_scale", "angle", "shadows"));
+                ElementsAre("position", "target", "color", "intensity", "exposure", "volume_scale", "surface_scale",
+                            "inner_cone", "outer_cone", "range", "radius", "shadows"));
+    EXPECT_THAT(names(Part::light, 6), ElementsAre("direction", "color", "intensity", "exposure", "volume_scale",
+                                                   "surface_scale", "angle", "shadows"));
     EXPECT_THAT(names(Part::medium, 1), ElementsAre("extinction", "albedo", "g", "emission", "base", "falloff",
                                                     "translate", "rotate", "scale", "bounds/low", "bounds/high"));
     EXPECT_THAT(names(Part::medium, 2),

@@ -101,7 +101,8 @@ HWY_INLINE Floats mean_over(const Floats& depth) {
 // the lamp: there 1/r² is constant. A beam of few slices is cut finer; a small angle has one point in its middle.
 Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice, const BeamSlice& here,
                    const Mask16& wanted) {
-    constexpr float gauss = 0.2113248654f, pieces = 6; // (1 - 1/√3) / 2
+    constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
+    const float pieces = walk.light.filter ? filter_pieces : 6;
     const FroxelGrid& grid = walk.picture.grid;
     const float low = grid.faces[static_cast<size_t>(slice)],
                 thickness = grid.faces[static_cast<size_t>(slice) + 1] - low;
@@ -141,8 +142,9 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);
-        const Vec3s towards = scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
-                                         [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, slice, point); });
+        Vec3s towards = scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
+                                   [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, slice, point); });
+        if (walk.light.filter) towards = walk.filtered(towards, point, distance);
         sum = fused(towards, zero_unless(here_too, amount), sum);
     }
     return sum;
@@ -260,6 +262,7 @@ Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays
                   0.0f,
                   0.0f,
                   {0.0f, 0.0f}};
+    if (light.filter) walk.filter_level = blurred_level(*light.filter, filter_point_angle(light));
     const Floats nearest = walk.by_lamp.nearest;
     const float radius = std::min(light.range, walk.near.radius);
     Interval<Floats> chord = inside_ball(std::min(radius, 1e15f), walk.by_lamp);

@@ -11,6 +11,7 @@
 #include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/beams/near_simd.h"
 #include "modes/froxel/lookup/place_simd.h"
+#include "trace/light_filter_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -118,6 +119,16 @@ struct BeamWalk {
     Floats whole;          // angle of all of the beam on each ray
     Floats close;          // 1 for rays that pass the lamp within a few froxels, less further off, then 0
     Interval<Floats> full; // within a spot's soft edge
+    int filter_level = 0;  // of a gobo: as blurred as the points are apart
+
+    // What a light's profile and gobo leave of it at points of the rays.
+    HWY_INLINE Vec3s filtered(const Vec3s& scattered, const Vec3s& point, const Floats& distance) const {
+        const LightFilter& filter = *light.filter;
+        const Vec3s from_light = (point - splat(light.position)) * (1.0f / max(distance, 1e-20f));
+        if (!has_colors(filter)) return scattered * filter_channel(filter, from_light, 0, filter_level);
+        return scattered * filter_tint(filter, from_light, filter_level) *
+               filter_strength(filter, from_light, filter_level);
+    }
 };
 
 // Adds up what `add` gives for the parts of a stretch before, within and behind another.

@@ -5,6 +5,7 @@
 #include "base/recycled.h"
 #include "modes/froxel/grid.h"
 #include "scene/light.h"
+#include "scene/light_filter.h"
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
@@ -23,6 +24,10 @@ struct NearLight {
     }
 };
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t light);
+
+// Of an IES profile or gobo rays see this many pieces across what they see of the light, with two points each.
+inline constexpr float filter_pieces = 48;
+inline float filter_point_angle(const Light& light) { return whole_angle(light) / (2 * filter_pieces); }
 
 // What is near to a lamp by the size of the froxels around it: from half of that on they show its 1/r², and the fog
 // that it lights, as they are. None of a lamp behind the camera.

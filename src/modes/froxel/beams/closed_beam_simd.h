@@ -18,13 +18,16 @@ namespace {
 // constant. A piece spans 0.3 radians, in cones 0.2, and two optical depths at most, of the way to the lamp and that to
 // the eye.
 Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted) {
-    constexpr float gauss = 0.2113248654f, most = 24; // (1 - 1/√3) / 2
+    constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
+    const float most = walk.light.filter ? 2 * filter_pieces : 24;
     const FroxelScene& scene = *walk.picture.scene;
     const size_t index = walk.picture.beams.lights[walk.beam];
     const EquiAngular16 angles(stretch, walk.by_lamp.away);
     const Floats across = closed_depth_before(walk, stretch.high) - closed_depth_before(walk, stretch.low);
     // A soft edge may be narrow.
-    const float wide = has_cone(walk.light) ? 0.2f : 0.3f, least = has_cone(walk.light) ? 2 : 1;
+    float wide = has_cone(walk.light) ? 0.2f : 0.3f;
+    const float least = has_cone(walk.light) ? 2 : 1;
+    if (walk.light.filter) wide = std::min(wide, whole_angle(walk.light) / filter_pieces);
     const Floats pieces = min(floor(max(angles.angle * (1 / wide), across)) + least, most);
     const Mask16 single = (angles.angle < (has_cone(walk.light) ? 0.0f : 0.05f)) & (across < 0.1f);
     const Floats points = select(single, 1.0f, pieces * 2.0f), weight = 1.0f / points;
@@ -41,10 +44,11 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               angles.length(weight, slope) * exp(-dimmed) *
                               style_fade(scene.style, walk.picture.grid.camera, point);
-        const Vec3s towards = scattering(scene.snapshot.media, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
+        Vec3s towards = scattering(scene.snapshot.media, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
             const Medium& medium = scene.snapshot.media[m];
             return density16(medium, point) * grey_extinction(medium.optics);
         });
+        if (walk.light.filter) towards = walk.filtered(towards, point, distance);
         sum = fused(towards, zero_unless(here, amount), sum);
     }
     return sum;

@@ -216,7 +216,7 @@ void add_local(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTil
                const ivec2* lanes, size_t ray, const uint32_t* indices, LightInjection::Arrivals* slices) {
     static thread_local std::vector<double> lengths[16];
     const Light& shining = scene.snapshot.lights[light];
-    const bool all = has_cone(shining);
+    const bool all = has_cone(shining) || shining.filter;
     for (std::vector<double>& of_lane : lengths) of_lane.assign(static_cast<size_t>(grid.slices()), 0);
     for (size_t i = all ? 0 : ray; i < (all ? tiles.rays() : ray + 1); ++i) {
         const Lines lines = find_lines(grid, tiles, shining, static_cast<uint32_t>(light), lanes, i, indices);

@@ -48,7 +48,7 @@ float falloff_at(const Light& light, const NearLight& near, vec3 point, float wi
     const LightSample arriving = arrival(unit, point);
     const float reach = capped_radius(light);
     const float squared = std::max(arriving.distance * arriving.distance, reach * reach);
-    return arriving.irradiance.x * squared / std::max(squared, width2) * (1 - near.at(arriving.distance));
+    return max_component(arriving.irradiance) * squared / std::max(squared, width2) * (1 - near.at(arriving.distance));
 }
 }
 

@@ -1,0 +1,30 @@
+// IES profiles and gobos in techniques that have no place for all of them.
+#pragma once
+#include "modes/limitation.h"
+
+namespace tyndall {
+struct Light;
+struct Snapshot;
+
+namespace limitation {
+inline constexpr LimitationKind sampled_gobo{
+    "sampled_gobo", "its gobo or IES profile has {} texels or angles for each place where a ray looks at it: edges are "
+                    "noise that more samples resolve"};
+inline constexpr LimitationKind blurred_filter{"blurred_filter",
+                                               "what its IES profile or gobo has finer than {} degrees is lost"};
+inline constexpr LimitationKind mean_filter{
+    "mean_filter", "its IES profile or gobo is drawn as its mean: what the light sends varies by {} times that"};
+}
+
+// Lights that send the mean of what their filters let through, evenly.
+void average_filters(Snapshot& snapshot);
+
+void add_mean_filters(const Snapshot& snapshot, Limitations& limitations);
+
+// Gobos, or profiles as well, that rays see by so many jittered nodes across a light's beam.
+enum class Sampled { fine_gobos, all_filters };
+void add_sampled_filters(const Snapshot& snapshot, Sampled which, double nodes, Limitations& limitations);
+
+// A filter that shows nothing finer than an angle, radians.
+void add_blurred_filter(const Light& light, float angle, Limitations& limitations);
+}

@@ -1,0 +1,236 @@
+#include "scene/photometry/ies_file.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+namespace tyndall {
+namespace {
+constexpr double metres_per_foot = 0.3048, max_candela = 1e15;
+
+std::string_view trimmed(std::string_view text) {
+    const auto blank = [](char c) { return static_cast<unsigned char>(c) <= ' '; };
+    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+    return text;
+}
+
+bool starts_with_tilt(std::string_view line) {
+    constexpr std::string_view word = "TILT=";
+    return line.size() >= word.size() && std::equal(word.begin(), word.end(), line.begin(), [](char a, char b) {
+               return a == std::toupper(static_cast<unsigned char>(b));
+           });
+}
+
+// The file from front to back, line by line at first, then number by number.
+class Reader {
+public:
+    Reader(std::string_view bytes, std::string_view where) : left_(bytes), where_(where) {}
+
+    // The next line; nothing at the end.
+    std::optional<std::string_view> line() {
+        if (left_.empty()) return {};
+        const size_t end = std::min(left_.find_first_of("\r\n"), left_.size());
+        const std::string_view text = left_.substr(0, end);
+        left_.remove_prefix(end);
+        if (left_.starts_with("\r\n"))
+            left_.remove_prefix(2);
+        else if (!left_.empty())
+            left_.remove_prefix(1);
+        ++line_;
+        return trimmed(text);
+    }
+
+    double number(const char* what) {
+        skip_blanks();
+        if (left_.empty()) fail_at(std::string("the file ends before ") + what);
+        const std::string_view word = left_.substr(0, std::min(left_.find_first_of(" \t\r\n,\f\v"), left_.size()));
+        const std::optional<double> value = parsed<double>(word.starts_with('+') ? word.substr(1) : word);
+        if (!value || !std::isfinite(*value))
+            fail_at(std::string("expected ") + what + ", found \"" + printable(word, 40) + "\"");
+        left_.remove_prefix(word.size());
+        return *value;
+    }
+
+    // A count of numbers that the rest of the file has room for.
+    size_t count(const char* what, double at_least) {
+        const double value = number(what);
+        if (!(value >= at_least) || value != std::floor(value))
+            fail_at(std::string(what) + " is " + shortest_text(value));
+        if (value > static_cast<double>(left_.size()) / 2 + 1)
+            fail_at(std::string(what) + " is " + shortest_text(value) + ", more than the file has room for");
+        return static_cast<size_t>(value);
+    }
+
+    std::vector<double> numbers(size_t count, const char* what) {
+        if (count > left_.size() / 2 + 1)
+            fail_at(std::to_string(count) + " numbers should follow, more than the file has room for");
+        std::vector<double> values(count);
+        for (double& value : values) value = number(what);
+        return values;
+    }
+
+    bool at_end() {
+        skip_blanks();
+        return left_.empty();
+    }
+
+    [[noreturn]] void fail_at(const std::string& what) const {
+        refuse(where_, "line " + std::to_string(line_ + 1) + ": " + what);
+    }
+    [[noreturn]] void fail(const std::string& what) const { refuse(where_, what); }
+
+private:
+    void skip_blanks() {
+        while (!left_.empty() && (static_cast<unsigned char>(left_.front()) <= ' ' || left_.front() == ',')) {
+            if (left_.front() == '\n') ++line_;
+            left_.remove_prefix(1);
+        }
+    }
+
+    std::string_view left_;
+    std::string where_;
+    size_t line_ = 0;
+};
+
+// "IESNA:LM-63-2002", "IESNA91", "IES:LM-63-2019"; any other first line is one of 1986.
+std::string standard_of(std::string_view line) {
+    if (const size_t at = line.find("LM-63-"); line.starts_with("IES") && at != line.npos)
+        return std::string(line.substr(at, 10));
+    if (line == "IESNA91") return "LM-63-1991";
+    return line.starts_with("IESNA95") ? "LM-63-1995" : "LM-63-1986";
+}
+
+// The lines before the numbers: what the file is, its keywords, how the lamp is tilted.
+void read_head(Reader& reader, IesFile& file) {
+    bool first = true;
+    while (const std::optional<std::string_view> line = reader.line()) {
+        if (first && !line->empty()) file.standard = standard_of(*line), first = false;
+        if (starts_with_tilt(*line)) {
+            file.tilt = trimmed(line->substr(5));
+            return;
+        }
+        const size_t end = line->find(']');
+        if (!line->starts_with('[') || end == line->npos) continue;
+        const std::string name(line->substr(1, end - 1)), text(trimmed(line->substr(end + 1)));
+        if (name == "MORE" && !file.keywords.empty())
+            file.keywords.back().second += " " + text;
+        else
+            file.keywords.emplace_back(name, text);
+    }
+    reader.fail("no line \"TILT=\": not an IES photometric file");
+}
+
+// What the lamp gives when its luminaire is tilted; how it hangs is not known here.
+void read_tilt(Reader& reader, IesFile& file) {
+    std::string upper = file.tilt;
+    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    if (upper == "NONE") {
+        file.tilt = upper;
+        return;
+    }
+    if (upper != "INCLUDE") {
+        file.notes.push_back("the tilt factors in \"" + printable(file.tilt, 60) + "\" are left out");
+        return;
+    }
+    file.tilt = upper;
+    reader.number("the lamp's position");
+    const size_t count = reader.count("the number of tilt angles", 1);
+    reader.numbers(count, "a tilt angle");
+    const std::vector<double> factors = reader.numbers(count, "a tilt factor");
+    file.tilt_factors = {*std::ranges::min_element(factors), *std::ranges::max_element(factors)};
+    file.notes.push_back("tilt factors of " + shortest_text(file.tilt_factors.low) + " to " +
+                         shortest_text(file.tilt_factors.high) + " are left out");
+}
+
+// Angles of one kind, which have to go up.
+std::vector<double> read_angles(Reader& reader, size_t count, const char* what, double low, double high) {
+    std::vector<double> angles = reader.numbers(count, what);
+    for (size_t i = 0; i < count; ++i) {
+        if (i && !(angles[i] > angles[i - 1])) reader.fail_at(std::string(what) + " does not go up");
+        if (angles[i] < low - 0.01 || angles[i] > high + 0.01)
+            reader.fail_at(std::string(what) + " is " + shortest_text(angles[i]) + ", not within " +
+                           shortest_text(low) + " to " + shortest_text(high));
+        angles[i] = std::clamp(angles[i], low, high);
+    }
+    return angles;
+}
+
+bool near(double a, double b) { return std::abs(a - b) < 0.01; }
+
+// The planes that LM-63 knows: others would have to be guessed.
+void check_planes(const Reader& reader, IesFile& file) {
+    const size_t count = file.horizontal.size();
+    const double first = file.horizontal.front(), last = file.horizontal.back();
+    if (file.type != Photometry::type_c) {
+        if (count < 2) reader.fail("photometry of type A or B needs more than one horizontal angle");
+        return;
+    }
+    if (count == 1) return;
+    const bool known = (near(first, 0) && (near(last, 90) || near(last, 180) || near(last, 360))) ||
+                       (near(first, 90) && near(last, 270));
+    if (known) return;
+    if (!near(first, 0) || last < 180)
+        reader.fail("the horizontal angles go from " + shortest_text(first) + " to " + shortest_text(last) +
+                    "; known are 0, 0 to 90, 0 to 180, 90 to 270 and 0 to 360");
+    file.notes.push_back("the horizontal angles end at " + shortest_text(last) + ": the first plane closes the circle");
+    file.horizontal.push_back(360);
+    for (size_t i = 0; i < file.vertical.size(); ++i) file.candela.push_back(file.candela[i]);
+}
+
+void read_candela(Reader& reader, double factor, IesFile& file) {
+    file.candela = reader.numbers(file.vertical.size() * file.horizontal.size(), "a candela value");
+    size_t below = 0;
+    for (double& value : file.candela) {
+        below += value < 0;
+        value = std::max(value * factor, 0.0);
+        if (!(value <= max_candela)) reader.fail_at("a candela value is over 1e15");
+    }
+    if (below) file.notes.push_back(count_text(below, "candela value") + " below 0 taken for 0");
+    if (!reader.at_end()) file.notes.push_back("what follows the candela values is left out");
+}
+
+void read_body(Reader& reader, IesFile& file) {
+    file.lamps = reader.number("the number of lamps"), file.lumens_per_lamp = reader.number("the lumens per lamp");
+    file.multiplier = reader.number("the candela multiplier");
+    const size_t vertical = reader.count("the number of vertical angles", 2);
+    const size_t horizontal = reader.count("the number of horizontal angles", 1);
+    const double type = reader.number("the photometric type"), units = reader.number("the type of units");
+    if (type != 1 && type != 2 && type != 3)
+        reader.fail_at("the photometric type is " + shortest_text(type) + "; known are 1 (C), 2 (B) and 3 (A)");
+    file.type = static_cast<Photometry>(static_cast<int>(type));
+    for (int axis = 0; axis < 3; ++axis)
+        file.size[axis] = reader.number("the size of the luminaire") * (units == 1 ? metres_per_foot : 1);
+    file.ballast = reader.number("the ballast factor");
+    // Until 1995 a factor, in 2002 always 1; in 2019 a code of digits that tells who made the file.
+    const double third = reader.number("the ballast-lamp factor");
+    file.standard == "LM-63-2019" ? file.generation = third : file.ballast *= third;
+    file.watts = reader.number("the input watts");
+    if (!(file.multiplier >= 0) || !(file.ballast >= 0)) reader.fail_at("a factor on the candela is below 0");
+
+    const bool c = file.type == Photometry::type_c;
+    file.vertical = read_angles(reader, vertical, "a vertical angle", c ? 0 : -90, c ? 180 : 90);
+    file.horizontal = read_angles(reader, horizontal, "a horizontal angle", c ? 0 : -90, c ? 360 : 90);
+    read_candela(reader, file.multiplier * file.ballast, file);
+    check_planes(reader, file);
+    if (!(file.peak() > 0)) reader.fail("all candela values are 0: the file gives no light");
+}
+}
+
+double IesFile::peak() const { return candela.empty() ? 0 : *std::ranges::max_element(candela); }
+
+IesFile read_ies(std::string_view bytes, std::string_view where) {
+    if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
+    if (const size_t end = bytes.find('\x1a'); end != bytes.npos) bytes = bytes.substr(0, end); // DOS ends texts so
+    Reader reader(bytes, where);
+    IesFile file;
+    read_head(reader, file);
+    read_tilt(reader, file);
+    read_body(reader, file);
+    return file;
+}
+}

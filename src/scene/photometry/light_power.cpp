@@ -1,0 +1,43 @@
+#include "scene/photometry/light_power.h"
+
+#include "base/blackbody.h"
+#include "scene/photometry/ies_profile.h"
+#include "scene/scene.h"
+
+namespace tyndall {
+namespace {
+// Candela of a light of one lumen.
+double candela_per_lumen(const LightSource& light, double seconds) {
+    constexpr double sphere = 4 * double{pi};
+    if (light.profile) return light.profile->peak / light.profile->lumens;
+    if (!has_cone(light) || light.whole_sphere) return 1 / sphere;
+    const double outer = light.outer_cone.at(seconds);
+    const double lumens = cone_lumens(std::min<double>(light.inner_cone.at(seconds), outer), outer);
+    return lumens > 0 ? 1 / lumens : 0; // no cone, no light
+}
+}
+
+double cone_lumens(double inner, double outer) {
+    // As cone_falloff(): ((cosine - edge) / width)² up to the even part.
+    const double edge = std::cos(outer), width = std::max(std::cos(inner) - edge, 1e-6);
+    const double whole = 2 * std::sin(0.5 * outer) * std::sin(0.5 * outer); // 1 - edge
+    const double even = std::max(whole - width, 0.0), soft = std::min(whole, width);
+    return 2 * double{pi} * (even + soft * soft * soft / (3 * width * width));
+}
+
+float candela_of(const LightSource& light, double seconds) {
+    float value = light.intensity.at(seconds);
+    if (light.unit == LightUnit::profile) value *= static_cast<float>(light.profile->peak);
+    if (light.unit == LightUnit::watt) value *= light.efficacy;
+    if ((light.unit == LightUnit::lumen || light.unit == LightUnit::watt) && !is_distant(light))
+        value *= static_cast<float>(candela_per_lumen(light, seconds));
+    const float stops = light.exposure.at(seconds);
+    return stops == 0 ? value : value * std::exp2(stops);
+}
+
+vec3 intensity_of(const LightSource& light, double seconds) {
+    vec3 color = light.color.at(seconds);
+    if (const float kelvin = light.temperature.at(seconds); kelvin > 0) color *= blackbody_color(kelvin);
+    return color * candela_of(light, seconds);
+}
+}
