@@ -11,12 +11,25 @@
 #include "trace/fluence/fluence_simd.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
+#include "volume/emission/emission_field_simd.h"
 #include "volume/medium.h"
 #include "volume/phase_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Of light of 1 from one side: Σ over media of albedo × extinction(medium) × phase function.
+template<class Extinction>
+HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Vec3s& position, const Floats& cosine,
+                            const Extinction& extinction) {
+    Vec3s sum = splat(vec3(0));
+    for (size_t m = 0; m < media.size(); ++m) {
+        const Optics& optics = media[m].optics;
+        sum = fused(albedo16(optics, position), extinction(m) * phase_value(optics.phase, cosine), sum);
+    }
+    return sum;
+}
+
+// The same with the mean albedo of each medium.
 template<class Extinction>
 HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Floats& cosine, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
@@ -35,28 +48,48 @@ HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, co
     return scattering * zero_unless(wanted, amount * dimmed) * splat(light.intensity * light.volume_scale);
 }
 
+// What a medium with fields sends on of emission and even light from all around, per metre.
+template<class Emission>
+HWY_INLINE Vec3s field_source(const Optics& optics, vec3 ambient, bool emits, const Vec3s& position,
+                              const Floats& extinction, const Emission& emission) {
+    if (only_emits(optics)) return emits ? emission() : splat(vec3(0));
+    const vec3 own = emits ? optics.emission.radiance / optics.extinction : vec3(0);
+    return (albedo16(optics, position) * splat(ambient) + splat(own)) * extinction;
+}
+
 // Emission, ambient light and, with a grid, light that has been scattered before: none has a side it comes from.
-template<class Extinction>
+// `emission(m)`: what the field of a medium that only emits gives off per metre.
+template<class Extinction, class Emission>
 HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                      const Vec3s& direction, const Extinction& extinction) {
+                      const Vec3s& direction, const Extinction& extinction, const Emission& emission) {
     Vec3s sum = splat(vec3(0));
-    for (size_t m = 0; m < snapshot.media.size(); ++m)
-        sum = fused(splat(source_radiance(snapshot.media[m].optics, snapshot.ambient)), extinction(m), sum);
+    for (size_t m = 0; m < snapshot.media.size(); ++m) {
+        const Optics& optics = snapshot.media[m].optics;
+        if (!only_emits(optics) && !optics.albedo_field)
+            sum = fused(splat(source_radiance(optics, snapshot.ambient)), extinction(m), sum);
+        else
+            sum = sum + field_source(optics, snapshot.ambient, true, position, extinction(m),
+                                     [&]() HWY_ATTR { return emission(m); });
+    }
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 
 // One kind of that light alone.
-template<class Extinction>
+template<class Extinction, class Emission>
 HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                         const Vec3s& direction, const Extinction& extinction) {
+                         const Vec3s& direction, const Extinction& extinction, const Emission& emission) {
     Vec3s sum = splat(vec3(0));
     if (light == OtherLight::multiple)
         return fluence ? scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
+    const bool emits = light == OtherLight::emission;
+    const vec3 ambient = emits ? vec3(0) : snapshot.ambient;
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
         const Optics& optics = snapshot.media[m].optics;
-        const vec3 source =
-            light == OtherLight::ambient ? optics.albedo * snapshot.ambient : source_radiance(optics, vec3(0));
-        sum = fused(splat(source), extinction(m), sum);
+        if (!only_emits(optics) && !optics.albedo_field)
+            sum = fused(splat(emits ? source_radiance(optics, vec3(0)) : optics.albedo * ambient), extinction(m), sum);
+        else
+            sum = sum +
+                  field_source(optics, ambient, emits, position, extinction(m), [&]() HWY_ATTR { return emission(m); });
     }
     return sum;
 }

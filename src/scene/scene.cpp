@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 mat4 own_matrix(const Node& node, double seconds) {
@@ -42,6 +44,27 @@ mat4 medium_matrix(const MediumSource& medium, double seconds) {
     const mat4 placed = glm::scale(turned, medium.scale.at(seconds));
     const mat4 upright(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1); // (x, y, z) to (x, z, -y), by columns
     return medium.z_up ? placed * upright : placed;
+}
+
+std::vector<const VdbSequence*> volume_sequences(const MediumSource& medium) {
+    std::vector<const VdbSequence*> sequences;
+    if (medium.kind != MediumKind::vdb) return sequences;
+    sequences.push_back(&medium.sequence);
+    for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
+        const auto same = [&](const VdbSequence* one) { return one->pattern == (*grid)->sequence.pattern; };
+        if (*grid && std::ranges::none_of(sequences, same)) sequences.push_back(&(*grid)->sequence);
+    }
+    return sequences;
+}
+
+bool emits_light(const MediumSource& medium) {
+    const auto any = [](const Keyed<vec3>& color) {
+        return std::ranges::any_of(color.values, [](vec3 value) { return value != vec3(0); });
+    };
+    const auto& blackbody = medium.blackbody;
+    const bool scaled =
+        blackbody && std::ranges::any_of(blackbody->scale.values, [](float value) { return value != 0; });
+    return any(medium.emission) || (scaled && any(blackbody->tint));
 }
 
 bool is_moving(const Scene& scene, int node) {

@@ -3,6 +3,7 @@
 #include "modes/billboard/billboard.h"
 #include "modes/billboard/settings.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -36,6 +37,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
         if (std::ranges::none_of(cards, has_light))
             limitations.push_back({Severity::info, &limitation::no_opening, Subject::light, name});
     }
+    add_left_out_emission(snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)
         limitations.push_back({Severity::degraded, &limitation::homogeneous_in_cards, Subject::medium, medium.name});

@@ -4,6 +4,7 @@
 #include "integrate/light_along.h"
 #include "integrate/style.h"
 #include "volume/medium.h"
+#include "volume/rays/emission_nodes.h"
 #include "volume/rays/fog_pieces.h"
 
 #include <utility>
@@ -92,6 +93,24 @@ template<class Body> void at_nodes(RayMarch& on, const Body& body) {
         });
 }
 
+vec3 albedo_on(const RayMarch& on, const Optics& optics, double t) {
+    return optics.albedo_field ? albedo_at(optics, vec3(on.at(t))) : optics.albedo;
+}
+
+// What the field of a medium emits, at nodes of its own.
+dvec3 light_of_field(RayMarch& on, const Medium& medium) {
+    const std::vector<FogPieces::Piece>& pieces = on.scratch.fog.pieces;
+    dvec3 sum(0);
+    size_t piece = 0;
+    find_emission_nodes(*medium.density.bricks, on.ray, [&](EmissionNode node) {
+        while (piece + 1 < pieces.size() && pieces[piece].high < node.t) ++piece;
+        const double t = std::clamp<double>(node.t, pieces[piece].low, pieces[piece].high);
+        sum += seen(on, piece, t) * node.length * dvec3(emission_at(medium, on.ray.at(node.t)));
+        ++on.nodes;
+    });
+    return sum;
+}
+
 // Emission and ambient light of all fog, lit or not.
 struct OtherSums {
     dvec3 ambient{0}, emission{0};
@@ -102,12 +121,15 @@ OtherSums glow(RayMarch& on) {
     at_nodes(on, [&](size_t piece, double t, double weight) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
+            if (only_emits(optics)) continue;
             const dvec3 per_density =
-                double(grey_extinction(optics)) * dvec3(optics.albedo * on.frame.snapshot.ambient);
+                double(grey_extinction(optics)) * dvec3(albedo_on(on, optics, t) * on.frame.snapshot.ambient);
             const double density = weight * fog.density(piece, m, t);
             sum.ambient += density * per_density, sum.emission += density * dvec3(optics.emission.radiance);
         }
     });
+    for (const Medium& medium : on.frame.snapshot.media)
+        if (only_emits(medium.optics)) sum.emission += light_of_field(on, medium);
     return sum;
 }
 
@@ -121,7 +143,7 @@ dvec3 scattered_before(RayMarch& on) {
         const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
-            const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
+            const dvec3 scattered(albedo_on(on, optics, t) * scattered_fluence(at, on.ray.direction, optics.phase));
             sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
         }
     });
@@ -206,7 +228,8 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
         const double density = fog.density(piece, m, t);
         if (density == 0) continue;
         const Optics& optics = on.frame.snapshot.media[m].optics;
-        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
+        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) *
+                      dvec3(albedo_on(on, optics, t));
     }
     return scattering * (weight * light_at.amount * seen(on, piece, t));
 }

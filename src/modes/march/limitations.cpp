@@ -49,6 +49,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_visibility(view, snapshot, settings, limitations);
     add_light_transmittance(snapshot, terms.light, limitations);
+    if (terms.emission) add_emission(snapshot, true, limitations);
     if (snapshot.scene)
         for (const Material& material : snapshot.scene->materials)
             if (max_component(material.emission) > 0)

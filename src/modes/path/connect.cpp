@@ -38,7 +38,7 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
         float passing = visibility[i];
         const Ray way{c.point, c.to_light, c.fog_length};
         for (const Medium& medium : tracer.snapshot.media)
-            if (passing > 0)
+            if (passing > 0 && !only_emits(medium.optics))
                 passing *= ratio_transmittance(medium, way, {0, c.fog_length}, c.random, results[c.lane].steps);
         const vec3 arriving = c.light * passing;
         (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;
@@ -88,6 +88,16 @@ Connection connection_to_glow(vec3 point, const EmissivePoint& target) {
     c.point = point;
     c.to_light = c.shadow = offset / distance;
     c.fog_length = distance, c.shadow_length = distance * 0.9999f;
+    return c;
+}
+
+Connection connection_to_fire(vec3 point, const EmissivePlace& target) {
+    const vec3 offset = target.position - point;
+    const float distance = std::max(glm::length(offset), 1e-20f);
+    Connection c;
+    c.point = point;
+    c.to_light = c.shadow = offset / distance;
+    c.fog_length = c.shadow_length = distance;
     return c;
 }
 

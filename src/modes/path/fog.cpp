@@ -1,16 +1,18 @@
 // Light from fog on a stretch of a line.
 #include "modes/path/vertex.h"
 #include "scene/light.h"
-#include "volume/bricks/bricks.h"
+#include "volume/bricks/brick_walk.h"
 #include "volume/medium.h"
 
 namespace tyndall {
 namespace {
 void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
-    fog.extinction.resize(snapshot.media.size());
+    fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
-        fog.extinction[m] = grey_extinction(snapshot.media[m].optics) * density_at(snapshot.media[m], position);
+        const Optics& optics = snapshot.media[m].optics;
+        fog.extinction[m] = only_emits(optics) ? 0 : grey_extinction(optics) * density_at(snapshot.media[m], position);
+        fog.albedo[m] = albedo_at(optics, position);
         fog.total += fog.extinction[m];
     }
 }
@@ -92,7 +94,7 @@ void weigh(const Walk& walk, const Segment& line, const Connection& connection, 
 float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
     float share = 1;
     for (const Medium& medium : walk.snapshot.media)
-        if (share > 0)
+        if (share > 0 && !only_emits(medium.optics))
             share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
     return share;
 }
@@ -103,9 +105,62 @@ Interval<float> thin_range(const Segment& line, const Medium& medium) {
     return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
 }
 
+// A distance at which to ask for the light of a field, in proportion to the brightest light of each brick.
+struct EmissionPick {
+    float distance = 0, inverse_density = 0; // 0 = there is none
+};
+EmissionPick pick_emission(const BrickPool& luminance, const Ray& ray, float u) {
+    const LocalRay local = local_ray(luminance, ray);
+    double total = 0, passed = 0;
+    walk_bricks(luminance, local, {0, ray.t_max}, [&](ivec3, int64_t at, double low, double high) {
+        total += luminance.maximum[static_cast<size_t>(at)] * (high - low);
+    });
+    EmissionPick pick;
+    const double wanted = u * total;
+    walk_bricks(luminance, local, {0, ray.t_max}, [&](ivec3, int64_t at, double low, double high) {
+        const double most = luminance.maximum[static_cast<size_t>(at)], own = most * (high - low);
+        if (own > 0) {
+            const double t = low + std::clamp((wanted - passed) / own, 0.0, 1.0) * (high - low);
+            pick = {static_cast<float>(t), static_cast<float>(total / most)};
+        }
+        return (passed += own) <= wanted;
+    });
+    return pick;
+}
+
+// Share of the light found on a line that is not found by aiming at it from where the line began (balance heuristic).
+float unaimed_share(const Walk& walk, const Segment& line, size_t medium, float distance) {
+    if (!(line.walker.density > 0)) return 1;
+    const EmissiveDensities densities =
+        emissive_densities(walk.tracer.fire, walk.snapshot, medium, line.rest.at(distance));
+    const float away = line.travelled + distance, found = line.walker.density * densities.line;
+    const float aimed = densities.volume * away * away;
+    return found + aimed > 0 ? found / (found + aimed) : 0;
+}
+
+void gather_field(const Walk& walk, Segment& line, size_t number) {
+    const Medium& medium = walk.snapshot.media[number];
+    Ray stretch = line.rest;
+    stretch.t_max = line.end;
+    const EmissionPick pick = pick_emission(*medium.density.bricks, stretch, line.numbers(use_emission).x);
+    if (!(pick.inverse_density > 0)) return;
+    ++walk.results[line.walker.lane].steps;
+    const vec3 emission = emission_at(medium, stretch.at(pick.distance));
+    if (!(max_component(emission) > 0)) return;
+    const float share =
+        line.through * passing_share(walk, line, {0, pick.distance}) * unaimed_share(walk, line, number, pick.distance);
+    add_light(walk, line, emission * (share * pick.inverse_density), OtherLight::emission,
+              walk.order == 0 || line.walker.in_fog);
+}
+
 // What thin fog emits, from one distance of each medium's range; thicker fog emits where paths collide with it.
 void gather_emission(const Walk& walk, Segment& line) {
-    for (const Medium& medium : walk.snapshot.media) {
+    for (size_t m = 0; m < walk.snapshot.media.size(); ++m) {
+        const Medium& medium = walk.snapshot.media[m];
+        if (only_emits(medium.optics)) {
+            if (line.through > 0) gather_field(walk, line, m);
+            continue;
+        }
         const vec3 emission = medium.optics.emission.radiance;
         const Interval<float> range = thin_range(line, medium);
         if (range.empty() || !(max_component(emission) > 0) || !(line.through > 0)) continue;
@@ -167,6 +222,14 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
               connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft)),
               scattered * (weight / pick.chance), in_fog);
     }
+    if (!walk.tracer.fire.empty()) {
+        const EmissivePlace target = pick_fire(walk, line);
+        const Connection connection = connection_to_fire(fog.position, target);
+        const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;
+        const float chance = target.density * away * away + fog.density(snapshot, cosine) * target.line_density;
+        if (chance > 0)
+            queue(walk, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
+    }
     if (walk.tracer.glow.empty()) return;
     const EmissivePoint target =
         pick_glow_point(walk.tracer.glow, snapshot, line.numbers(use_light).y, line.numbers(use_glow));
@@ -185,6 +248,7 @@ void collide(const Walk& walk, Segment& line) {
     float nearest = line.end;
     int hit = -1;
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
+        if (only_emits(snapshot.media[m].optics)) continue;
         const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
         const float t = collision_distance(snapshot.media[m], line.rest, {0, nearest}, first, line.random,
                                            walk.results[line.walker.lane].steps);
@@ -204,7 +268,7 @@ void collide(const Walk& walk, Segment& line) {
     gather_at_collision(walk, line, nearest, fog);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
-    scatter(walk, line, {fog.position, direction}, optics.albedo, density, in_fog);
+    scatter(walk, line, {fog.position, direction}, fog.albedo[static_cast<size_t>(hit)], density, in_fog);
 }
 }
 

@@ -28,6 +28,7 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
     if (tracer->surfaces_emit) tracer->glow = make_emissive_triangles(tracer->snapshot);
+    tracer->fire = make_emissive_bricks(tracer->snapshot);
     tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }

@@ -8,6 +8,7 @@
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
+#include "trace/emissive_bricks.h"
 #include "trace/emissive_triangles.h"
 #include "trace/snapshot.h"
 
@@ -19,6 +20,7 @@ struct PathTracer {
     Camera camera;
     ivec2 size{0};
     EmissiveTriangles glow;
+    EmissiveBricks fire;       // fog whose light paths aim at
     bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 

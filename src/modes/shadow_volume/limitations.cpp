@@ -24,7 +24,9 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
             if (medium.density.kind == DensityKind::bricks)
                 limitations.push_back(
                     {Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+        add_mean_colors(snapshot, limitations);
     }
+    if (settings.terms.emission) add_emission(snapshot, true, limitations);
     add_single_scattering(view, snapshot, limitations);
 }
 

@@ -13,9 +13,9 @@ std::vector<std::filesystem::path> input_files(const Scene& scene, const std::ve
     };
     for (const InputFile& input : scene.inputs) add(input.path);
     for (const MediumSource& medium : scene.media)
-        if (medium.kind == MediumKind::vdb)
+        for (const VdbSequence* sequence : volume_sequences(medium))
             for (const int frame : frames)
-                if (const auto file = sequence_file(medium.sequence, frame, missing)) add(*file);
+                if (const auto file = sequence_file(*sequence, frame, missing)) add(*file);
     return {files.begin(), files.end()};
 }
 }

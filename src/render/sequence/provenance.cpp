@@ -33,11 +33,11 @@ std::string scene_text(const Scene& scene) {
 
 std::string fog_text(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
     std::string text;
-    for (const MediumSource& medium : scene.media) {
-        if (medium.kind != MediumKind::vdb) continue;
-        const auto file = sequence_file(medium.sequence, frame, request.missing);
-        text += "fog=" + (file ? file_hash(*file, files) : std::string("none")) + "\n";
-    }
+    for (const MediumSource& medium : scene.media)
+        for (const VdbSequence* sequence : volume_sequences(medium)) {
+            const auto file = sequence_file(*sequence, frame, request.missing);
+            text += "fog=" + (file ? file_hash(*file, files) : std::string("none")) + "\n";
+        }
     return text;
 }
 
