@@ -48,49 +48,34 @@ HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, co
     return scattering * zero_unless(wanted, amount * dimmed) * splat(light.intensity * light.volume_scale);
 }
 
-// What a medium with fields sends on of emission and even light from all around, per metre.
-template<class Emission>
-HWY_INLINE Vec3s field_source(const Optics& optics, vec3 ambient, bool emits, const Vec3s& position,
-                              const Floats& extinction, const Emission& emission) {
-    if (only_emits(optics)) return emits ? emission() : splat(vec3(0));
+// What a medium sends on of emission and even light from all around, per unit of its extinction.
+HWY_INLINE Vec3s source16(const Optics& optics, vec3 ambient, bool emits, const Vec3s& position) {
+    if (!optics.albedo_field) return splat(emits ? source_radiance(optics, ambient) : optics.albedo * ambient);
     const vec3 own = emits ? optics.emission.radiance / optics.extinction : vec3(0);
-    return (albedo16(optics, position) * splat(ambient) + splat(own)) * extinction;
+    return albedo16(optics, position) * splat(ambient) + splat(own);
 }
 
 // Emission, ambient light and, with a grid, light that has been scattered before: none has a side it comes from.
-// `emission(m)`: what the field of a medium that only emits gives off per metre.
-template<class Extinction, class Emission>
+template<class Extinction>
 HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                      const Vec3s& direction, const Extinction& extinction, const Emission& emission) {
+                      const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
-    for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const Optics& optics = snapshot.media[m].optics;
-        if (!only_emits(optics) && !optics.albedo_field)
-            sum = fused(splat(source_radiance(optics, snapshot.ambient)), extinction(m), sum);
-        else
-            sum = sum + field_source(optics, snapshot.ambient, true, position, extinction(m),
-                                     [&]() HWY_ATTR { return emission(m); });
-    }
+    for (size_t m = 0; m < snapshot.media.size(); ++m)
+        sum = fused(source16(snapshot.media[m].optics, snapshot.ambient, true, position), extinction(m), sum);
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 
 // One kind of that light alone.
-template<class Extinction, class Emission>
+template<class Extinction>
 HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                         const Vec3s& direction, const Extinction& extinction, const Emission& emission) {
+                         const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
     if (light == OtherLight::multiple)
         return fluence ? scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
     const bool emits = light == OtherLight::emission;
-    const vec3 ambient = emits ? vec3(0) : snapshot.ambient;
-    for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const Optics& optics = snapshot.media[m].optics;
-        if (!only_emits(optics) && !optics.albedo_field)
-            sum = fused(splat(emits ? source_radiance(optics, vec3(0)) : optics.albedo * ambient), extinction(m), sum);
-        else
-            sum = sum +
-                  field_source(optics, ambient, emits, position, extinction(m), [&]() HWY_ATTR { return emission(m); });
-    }
+    for (size_t m = 0; m < snapshot.media.size(); ++m)
+        sum = fused(source16(snapshot.media[m].optics, emits ? vec3(0) : snapshot.ambient, emits, position),
+                    extinction(m), sum);
     return sum;
 }
 }

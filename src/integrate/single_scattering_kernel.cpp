@@ -6,7 +6,6 @@
 #include "integrate/light_along.h"
 #include "integrate/single_scattering.h"
 #include "integrate/style.h"
-#include "volume/rays/emission_nodes.h"
 
 #include "integrate/single_scattering_fluence_simd.h"
 #include "integrate/single_scattering_full_steps_simd.h"
@@ -147,15 +146,13 @@ Floats find_depths(const Packet& packet) {
 // What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.
 vec3 even_glow(const SingleScattering& frame, int light) {
     vec3 common(0);
-    bool first = true;
     for (const Medium& medium : frame.snapshot.media) {
-        if (only_emits(medium.optics)) continue;
         const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
         const vec3 own =
             light == ambient_light ? medium.optics.albedo * ambient : source_radiance(medium.optics, ambient);
         if (medium.optics.albedo_field && own != vec3(0)) return vec3(-1);
-        if (!first && own != common) return vec3(-1);
-        common = own, first = false;
+        if (&medium != &frame.snapshot.media.front() && own != common) return vec3(-1);
+        common = own;
     }
     return common;
 }
@@ -179,33 +176,6 @@ void add_glow(Packet& packet, int light, const Floats& depth) {
             if (counts(packet, i, k)) push_piece(packet, {light, i, k, at[0], at[16]});
         }
     add_nodes(packet, light);
-}
-
-bool has_fields(const SingleScattering& frame) {
-    return std::ranges::any_of(frame.snapshot.media, [](const Medium& medium) { return only_emits(medium.optics); });
-}
-
-// What the fields of media emit, at nodes of their own.
-void add_fields(Packet& packet) {
-    const SingleScattering& frame = packet.frame;
-    const std::vector<Medium>& media = frame.snapshot.media;
-    const RaySegments& cuts = packet.scratch.cuts;
-    packet.spread = Spread::points;
-    for (size_t m = 0; m < media.size(); ++m) {
-        if (!only_emits(media[m].optics)) continue;
-        const int light = field_light - static_cast<int>(m);
-        for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
-            if (cuts.pieces[i] == 0) continue;
-            int cut = 0;
-            find_emission_nodes(*media[m].density.bricks, packet.batch.rays[i], [&](EmissionNode node) {
-                while (cut + 1 < cuts.pieces[i] && cuts.at[16 * static_cast<size_t>(cut + 1) + i] <= node.t) ++cut;
-                const float before = packet.scratch.depth[16 * static_cast<size_t>(cut) + i];
-                if (before * frame.style.view_depth < frame.opaque)
-                    push_node(packet, light, i, cut, node.t, node.t, 0, node.length);
-            });
-        }
-        add_nodes(packet, light);
-    }
 }
 
 float validity_of(const SingleScattering& frame, const Ray& ray) {
@@ -233,17 +203,13 @@ void single_scattering_kernel(const SingleScattering& frame, const RayBatch& bat
         }
         std::fill(packet.radiance, packet.radiance + 16, vec3(0));
     };
-    const bool fields = has_fields(frame);
     if (batch.parts.empty()) {
         add_glow(packet, no_light, depth);
-        if (fields) add_fields(packet);
         add_fluence(packet);
         take_part(0);
     } else {
         add_glow(packet, ambient_light, depth), take_part(batch.index_of(OtherLight::ambient));
-        add_glow(packet, emission_light, depth);
-        if (fields) add_fields(packet);
-        take_part(batch.index_of(OtherLight::emission));
+        add_glow(packet, emission_light, depth), take_part(batch.index_of(OtherLight::emission));
         add_fluence(packet), take_part(batch.index_of(OtherLight::multiple));
     }
     for (size_t light = 0; light < lights; ++light) add_light(packet, light), take_part(light);

@@ -23,7 +23,6 @@ constexpr int no_light = -1;       // emission and ambient light
 constexpr int any_light = -2;      // light that has been scattered before
 constexpr int ambient_light = -3;  // of no_light
 constexpr int emission_light = -4; // likewise
-constexpr int field_light = -5;    // emission of the field of medium 0; of medium m field_light - m
 
 // Places on stretches of rays, sixteen at once, whichever rays they are on. Intervals count from where their ray
 // passes the light (see Spread).
@@ -96,13 +95,12 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
     return scattered_light(light, frame.depths[index], position, amount, towards);
 }
 
-// Emission and ambient light per metre, or one of them; not what fields emit.
+// Emission and ambient light per metre, or one of them.
 HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& position) {
     const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
-        if (only_emits(optics)) continue;
         const vec3 emission = light == ambient_light ? vec3(0) : optics.emission.radiance;
         if (optics.albedo_field) {
             const Vec3s scattered = albedo16(optics, position) * splat(grey_extinction(optics) * ambient);
@@ -169,12 +167,9 @@ void add_nodes(Packet& packet, int light) {
     const Floats depth = depth_at(packet, nodes, {origin, direction, placed.t});
     Floats weight = placed.length * exp(-depth * frame.style.view_depth);
     if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
-    const Vec3s source =
-        light >= 0           ? scattered(packet, static_cast<size_t>(light), position, direction)
-        : light == any_light ? scattered_again(frame, position, direction)
-        : light <= field_light
-            ? emission16(frame.snapshot.media[static_cast<size_t>(field_light - light)].optics.emission, position)
-            : glow(frame, light, position);
+    const Vec3s source = light >= 0           ? scattered(packet, static_cast<size_t>(light), position, direction)
+                         : light == any_light ? scattered_again(frame, position, direction)
+                                              : glow(frame, light, position);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     for (int i = 0; i < nodes.count; ++i) {

@@ -60,7 +60,7 @@ void add_single_scattering(const View& view, const Snapshot& snapshot, Limitatio
 void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations) {
     Box fog;
     for (const Medium& medium : snapshot.media)
-        if (medium.density.kind == DensityKind::bricks) fog.grow(medium.world_bounds);
+        if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
     if (fog.empty() || snapshot.lights.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
     for (const Medium& medium : snapshot.media) {
@@ -90,6 +90,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
     for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue; // is asked at nodes of its own
         float length = 0;
         for (const Ray& ray : rays)
             length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
@@ -142,20 +143,27 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
 }
 
-void add_mean_colors(const Snapshot& snapshot, Limitations& limitations) {
+namespace {
+void add_mean_color(const LimitationKind& kind, const Medium& medium, float spread, Limitations& limitations) {
     constexpr float visible = 0.02f; // share
-    const auto add = [&](const LimitationKind& kind, const Medium& medium, float spread) {
-        limitations.push_back({spread > visible ? Severity::degraded : Severity::info,
-                               &kind,
-                               Subject::medium,
-                               medium.name,
-                               {100 * static_cast<double>(spread)}});
-    };
-    for (const Medium& medium : snapshot.media) {
-        const auto& field = medium.optics.emission.field;
-        if (field) add(limitation::mean_emission_color, medium, field->spread);
-        if (medium.optics.albedo_field) add(limitation::mean_albedo, medium, medium.optics.albedo_field->spread);
-    }
+    limitations.push_back({spread > visible ? Severity::degraded : Severity::info,
+                           &kind,
+                           Subject::medium,
+                           medium.name,
+                           {100 * static_cast<double>(spread)}});
+}
+}
+
+void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (const auto& field = medium.optics.albedo_field)
+            add_mean_color(limitation::mean_albedo, medium, field->spread, limitations);
+}
+
+void add_mean_emission(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (const auto& field = medium.optics.emission.field)
+            add_mean_color(limitation::mean_emission_color, medium, field->spread, limitations);
 }
 
 namespace {

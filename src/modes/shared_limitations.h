@@ -78,8 +78,9 @@ void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light,
 // What a grid of light that has been scattered before cannot show; ambient light too.
 void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
 
-// Where colors of grids count with their mean.
-void add_mean_colors(const Snapshot& snapshot, Limitations& limitations);
+// Where colors of grids count with their mean: of what scatters, and of what emits.
+void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
+void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
 // What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);

@@ -118,14 +118,12 @@ TEST(GridEmission, MarchAgreesWithPathOnAFire) {
     const View view = view_of({6, 3, 7}, {2, 1, 2}, {64, 36});
     const std::vector<Ray> rays = picture_rays(view, snapshot, 100);
     const auto exact = run_mode("march", view, snapshot, exact_settings(), rays);
-    const auto quick = run_mode("march", view, snapshot, settings_for(Quality::preview), rays);
-    EXPECT_LT(relative_rmse(quick, exact), 0.01);
-    const auto froxel = run_mode("froxel", view, snapshot, settings_for(Quality::final), rays);
-    EXPECT_NEAR(mean_of(froxel), mean_of(exact), 0.05 * mean_of(exact));
-    for (const char* mode : {"shadow-map", "shadow-volume"}) {
-        const auto found = run_mode(mode, view, snapshot, settings_for(Quality::final), rays);
-        EXPECT_NEAR(mean_of(found), mean_of(exact), 0.1 * mean_of(exact)) << mode;
+    for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume"}) {
+        const auto found = run_mode(mode, view, snapshot, settings_for(Quality::preview), rays);
+        EXPECT_LT(relative_rmse(found, exact), 0.01) << mode;
     }
+    const auto cone = run_mode("cone", view, snapshot, settings_for(Quality::preview), rays);
+    EXPECT_NEAR(mean_of(cone), mean_of(exact), 0.15 * mean_of(exact)) << "its mean color, evenly spread";
     for (size_t i = 0; i < rays.size(); i += 211) {
         const RayEstimate traced = test::traced(snapshot, rays[i], 64, 0);
         for (int c = 0; c < 3; ++c)

@@ -97,15 +97,19 @@ vec3 albedo_on(const RayMarch& on, const Optics& optics, double t) {
     return optics.albedo_field ? albedo_at(optics, vec3(on.at(t))) : optics.albedo;
 }
 
-// What the field of a medium emits, at nodes of its own.
-dvec3 light_of_field(RayMarch& on, const Medium& medium) {
-    const std::vector<FogPieces::Piece>& pieces = on.scratch.fog.pieces;
+// What a field emits, at nodes of its own.
+dvec3 light_of_field(RayMarch& on, const Medium& field) {
+    const FogPieces& fog = on.scratch.fog;
     dvec3 sum(0);
     size_t piece = 0;
-    find_emission_nodes(*medium.density.bricks, on.ray, [&](EmissionNode node) {
-        while (piece + 1 < pieces.size() && pieces[piece].high < node.t) ++piece;
-        const double t = std::clamp<double>(node.t, pieces[piece].low, pieces[piece].high);
-        sum += seen(on, piece, t) * node.length * dvec3(emission_at(medium, on.ray.at(node.t)));
+    find_emission_nodes(*field.density.bricks, on.ray, [&](EmissionNode node) {
+        while (piece + 1 < fog.pieces.size() && fog.pieces[piece + 1].low <= node.t) ++piece;
+        double share = 1; // before all fog, and without any
+        if (!fog.pieces.empty() && node.t > fog.pieces[piece].low)
+            share = seen(on, piece, std::min<double>(node.t, fog.pieces[piece].high));
+        else if (fades(on.frame.style))
+            share = style_fade(on.frame.style, eye_distance(on.frame.camera, on.ray.at(node.t)));
+        sum += share * node.length * dvec3(emission_at(field, on.ray.at(node.t)));
         ++on.nodes;
     });
     return sum;
@@ -121,15 +125,13 @@ OtherSums glow(RayMarch& on) {
     at_nodes(on, [&](size_t piece, double t, double weight) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
-            if (only_emits(optics)) continue;
             const dvec3 per_density =
                 double(grey_extinction(optics)) * dvec3(albedo_on(on, optics, t) * on.frame.snapshot.ambient);
             const double density = weight * fog.density(piece, m, t);
             sum.ambient += density * per_density, sum.emission += density * dvec3(optics.emission.radiance);
         }
     });
-    for (const Medium& medium : on.frame.snapshot.media)
-        if (only_emits(medium.optics)) sum.emission += light_of_field(on, medium);
+    for (const Medium& field : on.frame.fields) sum.emission += light_of_field(on, field);
     return sum;
 }
 
@@ -335,9 +337,9 @@ void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_
     const FogPieces& fog = scratch.fog;
     find_fog(ray, frame.snapshot.media, frame.rule->settings.min_transmittance, scratch.fog);
     result = {};
-    if (fog.pieces.empty()) return;
+    if (fog.pieces.empty() && frame.fields.empty()) return;
 
-    const double stretch = fog.pieces.back().high - fog.pieces.front().low;
+    const double stretch = fog.pieces.empty() ? 0 : fog.pieces.back().high - fog.pieces.front().low;
     on.longest = frame.rule->settings.step_share * stretch;
     dvec3 sum(0);
     const auto add = [&](size_t index, const dvec3& light) {

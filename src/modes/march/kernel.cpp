@@ -150,19 +150,13 @@ void march_packet_kernel(const SingleScattering& frame, const RayBatch& batch, s
                      style_fade(frame.style, frame.camera, points.position);
         }
         const auto extinction_of = [&](size_t m) HWY_ATTR { return packet.extinction(m); };
-        const auto emission_of = [&](size_t m) HWY_ATTR {
-            return emission16(frame.snapshot.media[m].optics.emission, points.position);
-        };
         const FluenceGrid* fluence = frame.fluence.get();
         totals.radiance =
-            totals.radiance +
-            glow(frame.snapshot, fluence, points.position, packet.direction, extinction_of, emission_of) * weight;
+            totals.radiance + glow(frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight;
         for (size_t i = 0; !batch.parts.empty() && i < other_lights; ++i) {
             const OtherLight other{i};
-            add_part(
-                glow_of(other, frame.snapshot, fluence, points.position, packet.direction, extinction_of, emission_of) *
-                    weight,
-                batch.index_of(other), batch);
+            add_part(glow_of(other, frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight,
+                     batch.index_of(other), batch);
         }
         for (size_t light = 0; light < light_count; ++light) {
             const Vec3s added = scattered_from(frame, light, points, packet, batch, k) * weight;

@@ -38,7 +38,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_map_shadows(view, snapshot, settings, limitations);
     add_steps(view, snapshot, own.steps, true, limitations);
     add_few_steps(view, snapshot, own.steps, limitations);
-    add_mean_colors(snapshot, limitations);
+    add_mean_albedo(snapshot, limitations);
     return limitations;
 }
 }

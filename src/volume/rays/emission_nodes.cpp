@@ -32,12 +32,11 @@ void find_emission_nodes(const BrickPool& luminance, const Ray& ray, const std::
     walk_bricks(luminance, local, {0, ray.t_max}, [&](ivec3 brick, int64_t at, double low, double high) {
         if (luminance.maximum[at] <= faint) return;
         const int32_t id = luminance.index[at];
-        if (id < 0) return add_part(low, high);
-        const uint16_t* values = &luminance.values[size_t(id - 1) * brick_stride];
+        const uint16_t* values = id > 0 ? &luminance.values[size_t(id - 1) * brick_stride] : nullptr;
         const ivec3 first = brick * 8;
         walk_cells(local, {low, high}, 1, first, first + 7, [&](ivec3 cell, double from, double to) {
             const ivec3 in = cell - first;
-            const int parts = parts_of(values + (in.x * 9 + in.y) * 9 + in.z);
+            const int parts = values ? parts_of(values + (in.x * 9 + in.y) * 9 + in.z) : 1;
             for (int i = 0; i < parts; ++i)
                 add_part(from + (to - from) * i / parts, from + (to - from) * (i + 1) / parts);
         });

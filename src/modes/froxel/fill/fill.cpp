@@ -56,8 +56,6 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     const Snapshot& snapshot = fill.scene.snapshot;
     const auto* extinction = reinterpret_cast<const float(*)[16]>(packet.here.data());
     const bool sheet = holds_sheet(fill, slice);
-    const size_t k = static_cast<size_t>(slice);
-    const float thickness = fill.grid.faces[k + 1] - fill.grid.faces[k];
 
     // Extinctions and lights add up over the samples.
     Vec3s light = splat(vec3(0));
@@ -77,7 +75,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
                       extinction,   here * whole.length * fill.scene.style.view_depth};
         if (has_beams(fill) && any(here > 0.0f)) add_beams(fill, packet.beams, lanes, here, job);
         if (!any(lit)) continue;
-        Vec3s sum = other_light(fill, lanes, thickness, extinction);
+        Vec3s sum = other_light(fill, lanes, extinction);
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);
         light = fused(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);

@@ -184,20 +184,14 @@ FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, c
     return cut;
 }
 
-// How often bricks are looked at on a slice: light of a field changes by more than density from voxel to voxel.
-int looks_at(const Medium& medium, float thickness) {
-    const float voxels = thickness * glm::length(vec3(medium.density.bricks->world_to_index[0]));
-    return only_emits(medium.optics) ? static_cast<int>(std::clamp(std::ceil(voxels), 1.0f, 16.0f))
-                                     : static_cast<int>(std::clamp(std::ceil(0.5f * voxels), 1.0f, 4.0f));
-}
-
-// Mean extinction along the stretches: exact for formulas, a few samples for bricks.
+// Mean extinction along the stretches: exact for formulas, up to four samples for bricks.
 Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thickness) {
     if (medium.density.kind != DensityKind::bricks) {
         const LightPaths paths{lanes.start, lanes.toward, lanes.length};
         return zero_unless(lanes.active, analytic_depth16(medium, paths) / max(lanes.length, 1e-20f));
     }
-    const int count = looks_at(medium, thickness);
+    const float voxels = thickness * glm::length(vec3(medium.density.bricks->world_to_index[0]));
+    const int count = static_cast<int>(std::clamp(std::ceil(0.5f * voxels), 1.0f, 4.0f));
     if (count == 1) return zero_unless(lanes.active, density16(medium, lanes.point) * grey_extinction(medium.optics));
     Floats sum = 0.0f;
     for (int i = 0; i < count; ++i) {

@@ -176,27 +176,15 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
     return scattered_light(light, fill.scene.depths[index], arrived.point, arrived.amount, towards);
 }
 
-// Mean of what the field of a medium emits on the stretches.
-HWY_NOINLINE Vec3s mean_emission(const Medium& medium, const FroxelLanes& lanes, float thickness) {
-    const int count = looks_at(medium, thickness);
-    Vec3s sum = splat(vec3(0));
-    for (int i = 0; i < count; ++i) {
-        const Floats at = lanes.length * ((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
-        sum = sum + emission16(medium.optics.emission, fused(lanes.toward, at, lanes.start));
-    }
-    return sum * zero_unless(lanes.active, 1 / static_cast<float>(count));
-}
-
 // Light of no single one, as far as it is wanted.
-Vec3s other_light(const Fill& fill, const FroxelLanes& lanes, float thickness, const float (*extinction)[16]) {
+Vec3s other_light(const Fill& fill, const FroxelLanes& lanes, const float (*extinction)[16]) {
     const Snapshot& snapshot = fill.scene.snapshot;
     const FluenceGrid* fluence = fill.scene.fluence.get();
     const auto extinction_of = [&](size_t m) HWY_ATTR { return load(extinction[m]); };
-    const auto emission_of = [&](size_t m) HWY_ATTR { return mean_emission(snapshot.media[m], lanes, thickness); };
-    if (fill.pass.only < 0) return glow(snapshot, fluence, lanes.point, lanes.toward, extinction_of, emission_of);
+    if (fill.pass.only < 0) return glow(snapshot, fluence, lanes.point, lanes.toward, extinction_of);
     const size_t part = static_cast<size_t>(fill.pass.only), lights = snapshot.lights.size();
     if (part < lights) return splat(vec3(0));
-    return glow_of(OtherLight{part - lights}, snapshot, fluence, lanes.point, lanes.toward, extinction_of, emission_of);
+    return glow_of(OtherLight{part - lights}, snapshot, fluence, lanes.point, lanes.toward, extinction_of);
 }
 }
 }
