@@ -1,8 +1,9 @@
 // Light from fog on a stretch of a line.
 #include "modes/path/vertex.h"
 #include "scene/light.h"
-#include "volume/bricks/brick_walk.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
+#include "volume/rays/emission_nodes.h"
 
 namespace tyndall {
 namespace {
@@ -105,27 +106,29 @@ Interval<float> thin_range(const Segment& line, const Medium& medium) {
     return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
 }
 
-// A distance at which to ask for the light of a field, in proportion to the brightest light of each brick.
+// A distance at which to ask for the light of a field, in proportion to how bright each cell of the line can be.
 struct EmissionPick {
     float distance = 0, inverse_density = 0; // 0 = there is none
 };
 EmissionPick pick_emission(const BrickPool& luminance, const Ray& ray, float u) {
-    const LocalRay local = local_ray(luminance, ray);
-    double total = 0, passed = 0;
-    walk_bricks(luminance, local, {0, ray.t_max}, [&](ivec3, int64_t at, double low, double high) {
-        total += luminance.maximum[static_cast<size_t>(at)] * (high - low);
+    static thread_local std::vector<EmissionCell> cells;
+    cells.clear();
+    double total = 0;
+    find_emission_cells(luminance, ray, 0, [&](const EmissionCell& cell) {
+        if (!(cell.most > 0)) return;
+        cells.push_back(cell), total += cell.most * (cell.high - cell.low);
     });
-    EmissionPick pick;
-    const double wanted = u * total;
-    walk_bricks(luminance, local, {0, ray.t_max}, [&](ivec3, int64_t at, double low, double high) {
-        const double most = luminance.maximum[static_cast<size_t>(at)], own = most * (high - low);
-        if (own > 0) {
-            const double t = low + std::clamp((wanted - passed) / own, 0.0, 1.0) * (high - low);
-            pick = {static_cast<float>(t), static_cast<float>(total / most)};
+    double left = u * total;
+    for (const EmissionCell& cell : cells) {
+        const double own = cell.most * (cell.high - cell.low);
+        if (left < own || &cell == &cells.back()) {
+            const double share = std::min(left / own, 1.0);
+            return {static_cast<float>(cell.low + share * (cell.high - cell.low)),
+                    static_cast<float>(total / cell.most)};
         }
-        return (passed += own) <= wanted;
-    });
-    return pick;
+        left -= own;
+    }
+    return {};
 }
 
 // Share of the light found on a line that is not found by aiming at it from where the line began (balance heuristic).

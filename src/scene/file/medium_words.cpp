@@ -3,8 +3,10 @@
 #include "base/error.h"
 #include "base/io/json.h"
 #include "base/text.h"
+#include "scene/file/scene_words.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace tyndall {
 namespace {
@@ -19,6 +21,11 @@ const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
     return found == info.grids.end() ? nullptr : &*found;
 }
 
+// A number to three digits, without an exponent where people write none.
+std::string digits(float value) {
+    return json_number(parsed<float>(formatted("%.3g", static_cast<double>(value))).value_or(0));
+}
+
 std::string member(const std::string& name, const std::string& value) { return quote_json(name) + ": " + value; }
 
 // A color of three grids goes by what their names have in common.
@@ -29,15 +36,13 @@ std::string color_name(const VdbGridInfo& grid) {
 
 std::string temperature_text(const VdbGridInfo& grid) {
     if (grid.maximum > in_kelvin) return quote_json(grid.key);
-    return "{" + member("grid", quote_json(grid.key)) + ", " +
-           member("scale", formatted("%.3g", static_cast<double>(hottest / grid.maximum))) + "}";
+    return "{" + member("grid", quote_json(grid.key)) + ", " + member("scale", digits(hottest / grid.maximum)) + "}";
 }
 
 // The grid of the density, or a level set, and what is said of it.
 std::string density_text(const VdbGridInfo& grid) {
     if (grid.role != GridRole::level_set) return quote_json(grid.key);
-    return "{" + member("grid", quote_json(grid.key)) + ", " +
-           member("width", formatted("%.3g", 0.5 * static_cast<double>(grid.background))) + "}";
+    return "{" + member("grid", quote_json(grid.key)) + ", " + member("width", digits(0.5f * grid.background)) + "}";
 }
 
 const VdbGridInfo* density_of(const VdbInfo& info) {
@@ -56,21 +61,21 @@ float usual_extinction(const VdbGridInfo& fog) {
 
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo *density = density_of(info), *color = grid_like(info, GridRole::color),
-                      *temperature = grid_like(info, GridRole::temperature), *flame = grid_like(info, GridRole::flame),
-                      *emission = temperature ? nullptr : grid_like(info, GridRole::emission);
+                      *temperature = grid_like(info, GridRole::temperature), *flame = grid_like(info, GridRole::flame);
+    if (!temperature) temperature = std::exchange(flame, nullptr); // hot where it is bright
+    const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
     const bool dims = density && density->maximum > 0;
-    std::vector<std::string> grids,
-        members{member("type", "\"vdb\""), member("file", quote_json(vdb.filename().string()))};
-    members.push_back(
-        member("extinction", dims ? formatted("%.3g", static_cast<double>(usual_extinction(*density))) : "0"));
+    std::vector<std::string> grids;
     if (dims) grids.push_back(member("density", density_text(*density)));
     if (dims && color) grids.push_back(member("albedo", color_name(*color)));
     if (temperature) grids.push_back(member("temperature", temperature_text(*temperature)));
-    if (temperature && flame) grids.push_back(member("flame", quote_json(flame->key)));
+    if (flame) grids.push_back(member("flame", quote_json(flame->key)));
     if (emission) grids.push_back(member("emission", color_name(*emission)));
-    if (!grids.empty()) members.push_back(member("grids", "{" + joined(grids, ", ") + "}"));
-    if (temperature) members.push_back(member("blackbody", "{\"convention\": \"kelvin\", \"emission_scale\": 1}"));
-    return "{" + joined(members, ", ") + "}";
+    std::string text = "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
+                       ", " + member("extinction", dims ? digits(usual_extinction(*density)) : "0");
+    if (!grids.empty()) text += ", " + member("grids", "{" + joined(grids, ", ") + "}");
+    if (temperature) text += ", " + member("blackbody", "{\"convention\": \"kelvin\", \"emission_scale\": 1}");
+    return text + "}";
 }
 }
