@@ -1,6 +1,5 @@
 #include "trace/emissive_bricks.h"
 
-#include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/half.h"
 #include "volume/medium.h"
@@ -47,28 +46,27 @@ vec3 point_in(const BrickPool& pool, uint32_t cell, vec3 v) {
 }
 }
 
-EmissiveBricks make_emissive_bricks(const Snapshot& snapshot) {
+EmissiveBricks make_emissive_bricks(std::span<const Medium> fields) {
     EmissiveBricks glow;
     std::vector<double> powers;
-    glow.media.resize(snapshot.media.size());
-    for (size_t m = 0; m < snapshot.media.size(); ++m)
-        if (only_emits(snapshot.media[m].optics)) add_medium(snapshot.media[m], static_cast<uint32_t>(m), glow, powers);
+    glow.media.resize(fields.size());
+    for (size_t m = 0; m < fields.size(); ++m) add_medium(fields[m], static_cast<uint32_t>(m), glow, powers);
     double total = 0;
     for (const double power : powers) glow.cumulative.push_back(total += power);
     for (double& sum : glow.cumulative) sum /= total;
     for (size_t i = 0; i < powers.size(); ++i) {
         const auto [medium, cell] = glow.bricks[i];
         glow.media[medium].per_volume[cell] =
-            static_cast<float>(powers[i] / (total * brick_volume(*snapshot.media[medium].density.bricks)));
+            static_cast<float>(powers[i] / (total * brick_volume(*fields[medium].density.bricks)));
     }
     return glow;
 }
 
-EmissivePlace pick_emissive_place(const EmissiveBricks& glow, const Snapshot& snapshot, float u, vec3 v) {
+EmissivePlace pick_emissive_place(const EmissiveBricks& glow, std::span<const Medium> fields, float u, vec3 v) {
     const auto found = std::ranges::upper_bound(glow.cumulative, static_cast<double>(u));
     const auto index = std::min<size_t>(static_cast<size_t>(found - glow.cumulative.begin()), glow.bricks.size() - 1);
     const auto [number, cell] = glow.bricks[index];
-    const Medium& medium = snapshot.media[number];
+    const Medium& medium = fields[number];
     EmissivePlace place;
     place.position = point_in(*medium.density.bricks, cell, v);
     place.emission = emission_at(medium, place.position);
@@ -77,8 +75,9 @@ EmissivePlace pick_emissive_place(const EmissiveBricks& glow, const Snapshot& sn
     return place;
 }
 
-EmissiveDensities emissive_densities(const EmissiveBricks& glow, const Snapshot& snapshot, size_t medium, vec3 point) {
-    const BrickPool& pool = *snapshot.media[medium].density.bricks;
+EmissiveDensities emissive_densities(const EmissiveBricks& glow, std::span<const Medium> fields, size_t medium,
+                                     vec3 point) {
+    const BrickPool& pool = *fields[medium].density.bricks;
     const ivec3 brick = glm::clamp(ivec3(glm::floor(local_point(pool, point) / 8.0f)), ivec3(0), pool.size - 1);
     const auto cell = static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z);
     return {glow.media[medium].per_volume[cell], glow.media[medium].line_scale * pool.maximum[cell]};

@@ -1,4 +1,5 @@
 // Light and colors from grids: closed forms for each convention, and modes against each other.
+#include "integrate/field_light.h"
 #include "modes/fire_scenes.h"
 #include "modes/mode.h"
 #include "modes/path/path_rays.h"
@@ -233,7 +234,8 @@ TEST(GridEmission, AimingAtAFlameChangesNoMean) {
     for (const Ray& ray : {Ray{{2, 0.6f, -2}, {0, 0, 1}, 20}, Ray{{-2, 3.2f, 2}, {1, 0, 0}, 20}}) {
         auto unaimed = std::make_shared<PathTracer>();
         unaimed->snapshot = snapshot, unaimed->has_emission = true;
-        unaimed->fire.media.resize(snapshot.media.size());
+        unaimed->fields = take_fields(unaimed->snapshot, {}, {}).fields;
+        unaimed->fire.media.resize(unaimed->fields.size());
         for (auto& medium : unaimed->fire.media) medium.per_volume.assign(1 << 20, 0), medium.line_scale = 1;
         const RayEstimate by_chance = estimate_ray(
             [unaimed](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*unaimed, batch, results); },

@@ -38,7 +38,7 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
         float passing = visibility[i];
         const Ray way{c.point, c.to_light, c.fog_length};
         for (const Medium& medium : tracer.snapshot.media)
-            if (passing > 0 && !only_emits(medium.optics))
+            if (passing > 0)
                 passing *= ratio_transmittance(medium, way, {0, c.fog_length}, c.random, results[c.lane].steps);
         const vec3 arriving = c.light * passing;
         (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;

@@ -12,8 +12,8 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
         const Optics& optics = snapshot.media[m].optics;
-        fog.extinction[m] = only_emits(optics) ? 0 : grey_extinction(optics) * density_at(snapshot.media[m], position);
-        fog.albedo[m] = albedo_at(optics, position);
+        fog.extinction[m] = grey_extinction(optics) * density_at(snapshot.media[m], position);
+        if (optics.albedo_field) fog.albedo[m] = albedo_at(optics, position);
         fog.total += fog.extinction[m];
     }
 }
@@ -95,7 +95,7 @@ void weigh(const Walk& walk, const Segment& line, const Connection& connection, 
 float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
     float share = 1;
     for (const Medium& medium : walk.snapshot.media)
-        if (share > 0 && !only_emits(medium.optics))
+        if (share > 0)
             share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
     return share;
 }
@@ -135,14 +135,14 @@ EmissionPick pick_emission(const BrickPool& luminance, const Ray& ray, float u) 
 float unaimed_share(const Walk& walk, const Segment& line, size_t medium, float distance) {
     if (!(line.walker.density > 0)) return 1;
     const EmissiveDensities densities =
-        emissive_densities(walk.tracer.fire, walk.snapshot, medium, line.rest.at(distance));
+        emissive_densities(walk.tracer.fire, walk.tracer.fields, medium, line.rest.at(distance));
     const float away = line.travelled + distance, found = line.walker.density * densities.line;
     const float aimed = densities.volume * away * away;
     return found + aimed > 0 ? found / (found + aimed) : 0;
 }
 
 void gather_field(const Walk& walk, Segment& line, size_t number) {
-    const Medium& medium = walk.snapshot.media[number];
+    const Medium& medium = walk.tracer.fields[number];
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     const EmissionPick pick = pick_emission(*medium.density.bricks, stretch, line.numbers(use_emission).x);
@@ -158,12 +158,8 @@ void gather_field(const Walk& walk, Segment& line, size_t number) {
 
 // What thin fog emits, from one distance of each medium's range; thicker fog emits where paths collide with it.
 void gather_emission(const Walk& walk, Segment& line) {
-    for (size_t m = 0; m < walk.snapshot.media.size(); ++m) {
-        const Medium& medium = walk.snapshot.media[m];
-        if (only_emits(medium.optics)) {
-            if (line.through > 0) gather_field(walk, line, m);
-            continue;
-        }
+    for (size_t m = 0; m < walk.tracer.fields.size() && line.through > 0; ++m) gather_field(walk, line, m);
+    for (const Medium& medium : walk.snapshot.media) {
         const vec3 emission = medium.optics.emission.radiance;
         const Interval<float> range = thin_range(line, medium);
         if (range.empty() || !(max_component(emission) > 0) || !(line.through > 0)) continue;
@@ -251,7 +247,6 @@ void collide(const Walk& walk, Segment& line) {
     float nearest = line.end;
     int hit = -1;
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        if (only_emits(snapshot.media[m].optics)) continue;
         const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
         const float t = collision_distance(snapshot.media[m], line.rest, {0, nearest}, first, line.random,
                                            walk.results[line.walker.lane].steps);
@@ -271,7 +266,7 @@ void collide(const Walk& walk, Segment& line) {
     gather_at_collision(walk, line, nearest, fog);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
-    scatter(walk, line, {fog.position, direction}, fog.albedo[static_cast<size_t>(hit)], density, in_fog);
+    scatter(walk, line, {fog.position, direction}, fog.albedo_of(optics, static_cast<size_t>(hit)), density, in_fog);
 }
 }
 

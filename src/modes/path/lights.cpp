@@ -15,7 +15,6 @@ float volume_brightness(const Light& light) { return luminance(light.intensity) 
 Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
     Interval<float> stretch{infinity, 0};
     for (const Medium& medium : snapshot.media) {
-        if (only_emits(medium.optics)) continue;
         Interval<float> inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
         if (inside.empty()) continue;
         if (std::isinf(inside.high)) {

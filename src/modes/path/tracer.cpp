@@ -149,7 +149,7 @@ void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight 
 
 EmissivePlace pick_fire(const Walk& walk, const Segment& line) {
     const vec2 first = line.numbers(use_fire), second = line.numbers(use_in_fire);
-    return pick_emissive_place(walk.tracer.fire, walk.snapshot, first.x, {first.y, second.x, second.y});
+    return pick_emissive_place(walk.tracer.fire, walk.tracer.fields, first.x, {first.y, second.x, second.y});
 }
 
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {

@@ -11,6 +11,7 @@
 #include "trace/emissive_bricks.h"
 #include "trace/emissive_triangles.h"
 #include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 struct PathTracer {
@@ -20,8 +21,9 @@ struct PathTracer {
     Camera camera;
     ivec2 size{0};
     EmissiveTriangles glow;
-    EmissiveBricks fire;       // fog whose light paths aim at
-    bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
+    std::vector<Medium> fields; // media that only emit; not in the snapshot
+    EmissiveBricks fire;        // their light, which paths aim at
+    bool has_emission = false;  // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 
 // Traces the paths of one pixel sample of up to 16 pixels.

@@ -64,8 +64,10 @@ struct Segment {
 struct FogPoint {
     vec3 position{0};
     std::vector<float> extinction; // 1/m, of each medium
-    std::vector<vec3> albedo;      // likewise
+    std::vector<vec3> albedo;      // of those where it differs from point to point
     float total = 0;
+
+    vec3 albedo_of(const Optics& optics, size_t m) const { return optics.albedo_field ? albedo[m] : optics.albedo; }
 
     // Σ albedo p, and Σ p, each weighted by the media's shares of the extinction.
     vec3 scattered(const Snapshot& snapshot, float cosine) const {
@@ -73,7 +75,7 @@ struct FogPoint {
         for (size_t m = 0; m < extinction.size(); ++m)
             if (extinction[m] > 0) {
                 const Optics& optics = snapshot.media[m].optics;
-                sum += albedo[m] * (extinction[m] / total * phase_value(optics.phase, cosine));
+                sum += albedo_of(optics, m) * (extinction[m] / total * phase_value(optics.phase, cosine));
             }
         return sum;
     }
