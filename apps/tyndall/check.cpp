@@ -57,16 +57,40 @@ template<class Check> void guarded(const std::string& file, Problems& problems, 
     }
 }
 
-// Every volume the scene names on its frames, each file once.
+// The files of a sequence on the scene's frames, each once.
+template<class Check>
+void check_frames(const std::string& file, const Scene& scene, const VdbSequence& sequence, Problems& problems,
+                  const Check& check) {
+    std::set<std::filesystem::path> seen;
+    for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame)
+        guarded(file, problems, [&] {
+            const auto volume = sequence_file(sequence, frame, MissingFrame::error);
+            if (!volume || !seen.insert(*volume).second) return;
+            VdbReadReport report;
+            check(*volume, report);
+            if (const std::string summary = report.summary(); !summary.empty())
+                problems.push_back({volume->string(), summary});
+        });
+}
+
+// Every volume the scene names, and every grid of it. Without extinction and emission its density is not looked at.
 void check_media(const std::string& file, const Scene& scene, Problems& problems) {
+    const auto some = [](const Keyed<float>& number) {
+        return std::ranges::any_of(number.values, [](float value) { return value > 0; });
+    };
     for (const MediumSource& medium : scene.media) {
         if (medium.kind != MediumKind::vdb) continue;
-        std::set<std::filesystem::path> seen;
-        for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame)
-            guarded(file, problems, [&] {
-                const auto volume = sequence_file(medium.sequence, frame, MissingFrame::error);
-                if (volume && seen.insert(*volume).second) check_vdb(*volume, medium.sequence.grid, problems);
+        if (some(medium.extinction) || (emits_light(medium) && !medium.blackbody && !medium.emission_grid))
+            check_frames(file, scene, medium.sequence, problems, [&](const auto& volume, VdbReadReport& report) {
+                read_vdb(volume, medium.sequence.grid, medium.density_map, infinity, &report);
             });
+        for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
+            if (!*grid) continue;
+            check_frames(file, scene, (*grid)->sequence, problems, [&](const auto& volume, VdbReadReport& report) {
+                const bool share = grid == &medium.albedo_grid;
+                read_color_vdb(volume, (*grid)->grids, (*grid)->map, share ? 1 : infinity, &report);
+            });
+        }
     }
 }
 

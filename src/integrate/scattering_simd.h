@@ -12,12 +12,25 @@
 #include "trace/light_simd.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
+#include "volume/emission/emission_field_simd.h"
 #include "volume/medium.h"
 #include "volume/phase_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Of light of 1 from one side: Σ over media of albedo × extinction(medium) × phase function.
+template<class Extinction>
+HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Vec3s& position, const Floats& cosine,
+                            const Extinction& extinction) {
+    Vec3s sum = splat(vec3(0));
+    for (size_t m = 0; m < media.size(); ++m) {
+        const Optics& optics = media[m].optics;
+        sum = fused(albedo16(optics, position), extinction(m) * phase_value(optics.phase, cosine), sum);
+    }
+    return sum;
+}
+
+// The same with the mean albedo of each medium.
 template<class Extinction>
 HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Floats& cosine, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
@@ -37,13 +50,20 @@ HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, co
     return light.filter && has_colors(*light.filter) ? sum * tint_at(light, position) : sum;
 }
 
+// What a medium sends on of emission and even light from all around, per unit of its extinction.
+HWY_INLINE Vec3s source16(const Optics& optics, vec3 ambient, bool emits, const Vec3s& position) {
+    if (!optics.albedo_field) return splat(emits ? source_radiance(optics, ambient) : optics.albedo * ambient);
+    const vec3 own = emits ? optics.emission.radiance / optics.extinction : vec3(0);
+    return albedo16(optics, position) * splat(ambient) + splat(own);
+}
+
 // Emission, ambient light and, with a grid, light that has been scattered before: none has a side it comes from.
 template<class Extinction>
 HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
                       const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < snapshot.media.size(); ++m)
-        sum = fused(splat(source_radiance(snapshot.media[m].optics, snapshot.ambient)), extinction(m), sum);
+        sum = fused(source16(snapshot.media[m].optics, snapshot.ambient, true, position), extinction(m), sum);
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 
@@ -54,12 +74,10 @@ HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const Fluen
     Vec3s sum = splat(vec3(0));
     if (light == OtherLight::multiple)
         return fluence ? scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
-    for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const Optics& optics = snapshot.media[m].optics;
-        const vec3 source =
-            light == OtherLight::ambient ? optics.albedo * snapshot.ambient : source_radiance(optics, vec3(0));
-        sum = fused(splat(source), extinction(m), sum);
-    }
+    const bool emits = light == OtherLight::emission;
+    for (size_t m = 0; m < snapshot.media.size(); ++m)
+        sum = fused(source16(snapshot.media[m].optics, emits ? vec3(0) : snapshot.ambient, emits, position),
+                    extinction(m), sum);
     return sum;
 }
 }

@@ -59,6 +59,7 @@ struct SingleScattering {
     int light_points = 1;           // of a soft light, asked for shadows at once
     std::optional<Shells> shells;
     std::vector<Box> heterogeneous; // fog that is not what it is taken for
+    std::vector<Medium> fields;     // media that only emit, for the exact march; others add them by themselves
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
     std::vector<FilterSteps> filter_steps;      // one per light

@@ -42,8 +42,8 @@ void add_full_steps(Packet& packet, size_t index) {
             weight = weight * style_fade(frame.style, frame.camera, position);
         const float* extinction = packet.scratch.extinction.data() + 16 * media.size() * k;
         for (size_t m = 0; m < media.size(); ++m)
-            radiance = fused(splat(media[m].optics.albedo), weight * load(extinction + 16 * m) * load(phase[m].data()),
-                             radiance);
+            radiance = fused(albedo16(media[m].optics, position),
+                             weight * load(extinction + 16 * m) * load(phase[m].data()), radiance);
     }
     const vec3 color = light.intensity * light.volume_scale;
     alignas(64) float rgb[3][16], counts[16];

@@ -150,6 +150,7 @@ vec3 even_glow(const SingleScattering& frame, int light) {
         const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
         const vec3 own =
             light == ambient_light ? medium.optics.albedo * ambient : source_radiance(medium.optics, ambient);
+        if (medium.optics.albedo_field && own != vec3(0)) return vec3(-1);
         if (&medium != &frame.snapshot.media.front() && own != common) return vec3(-1);
         common = own;
     }

@@ -89,7 +89,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
                                         frame.light_points, key);
     }
     const std::vector<Medium>& media = frame.snapshot.media;
-    const Vec3s towards = scattering(media, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
+    const Vec3s towards = scattering(media, position, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
         return density16(media[m], position) * grey_extinction(media[m].optics);
     });
     return scattered_light(light, frame.depths[index], position, amount, towards);
@@ -102,6 +102,11 @@ HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& pos
     for (const Medium& medium : frame.snapshot.media) {
         const Optics& optics = medium.optics;
         const vec3 emission = light == ambient_light ? vec3(0) : optics.emission.radiance;
+        if (optics.albedo_field) {
+            const Vec3s scattered = albedo16(optics, position) * splat(grey_extinction(optics) * ambient);
+            sum = fused(scattered + splat(emission), density16(medium, position), sum);
+            continue;
+        }
         const vec3 per_density = grey_extinction(optics) * optics.albedo * ambient + emission;
         sum = fused(splat(per_density), density16(medium, position), sum);
     }

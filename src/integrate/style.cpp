@@ -15,6 +15,7 @@ Medium at_mean_density(const Medium& medium) {
     even.world_bounds = medium.density.bricks->bounds;
     even.optics.extinction *= medium.density.bricks->mean;
     even.optics.emission.radiance *= medium.density.bricks->mean;
+    even.optics.emission.field = nullptr, even.optics.albedo_field = nullptr;
     even.density.bricks = nullptr;
     return even;
 }
@@ -36,6 +37,7 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
     for (Medium& medium : result.media) {
         medium.optics.extinction *= style.density;
         medium.optics.emission.radiance *= style.density * style.tint;
+        medium.optics.emission.scale *= style.density * style.tint;
     }
     drop_clear(result.media);
     for (Light& light : result.lights) light.intensity *= style.tint;

@@ -7,6 +7,8 @@
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/bricks/bricks.h"
+#include "volume/emission/blackbody.h"
+#include "volume/emission/emission_field.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 
@@ -58,7 +60,7 @@ void add_single_scattering(const View& view, const Snapshot& snapshot, Limitatio
 void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations) {
     Box fog;
     for (const Medium& medium : snapshot.media)
-        if (medium.density.kind == DensityKind::bricks) fog.grow(medium.world_bounds);
+        if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
     if (fog.empty() || snapshot.lights.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
     for (const Medium& medium : snapshot.media) {
@@ -88,6 +90,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
     for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue; // is asked at nodes of its own
         float length = 0;
         for (const Ray& ray : rays)
             length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
@@ -138,5 +141,72 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     add(limitation::fog_scatters_alone, "fluence.orders", 0, surfaces ? Severity::degraded : Severity::info);
     if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
+}
+
+namespace {
+void add_mean_color(const LimitationKind& kind, const Medium& medium, float spread, Limitations& limitations) {
+    constexpr float visible = 0.02f; // share
+    limitations.push_back({spread > visible ? Severity::degraded : Severity::info,
+                           &kind,
+                           Subject::medium,
+                           medium.name,
+                           {100 * static_cast<double>(spread)}});
+}
+}
+
+void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (const auto& field = medium.optics.albedo_field)
+            add_mean_color(limitation::mean_albedo, medium, field->spread, limitations);
+}
+
+void add_mean_emission(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (const auto& field = medium.optics.emission.field)
+            add_mean_color(limitation::mean_emission_color, medium, field->spread, limitations);
+}
+
+namespace {
+// Lumens that a medium sends out to all sides: 4π of its luminance per metre over its volume.
+double lumens_of(const Medium& medium) {
+    const double per_volume = 4 * double(pi) * luminance(medium.optics.emission.radiance);
+    const vec3 size = medium.world_bounds.size();
+    const double volume = double(size.x) * size.y * size.z;
+    const bool bricks = medium.density.kind == DensityKind::bricks;
+    return per_volume * volume * (bricks ? double(medium.density.bricks->mean) : 1.0);
+}
+
+bool has_emission(const Medium& medium) {
+    return max_component(medium.optics.emission.radiance) > 0 && is_finite(medium.world_bounds.size());
+}
+
+// Whether there is something that light could fall on.
+bool can_be_lit(const Snapshot& snapshot) {
+    return (snapshot.occluders && !snapshot.occluders->empty()) ||
+           std::ranges::any_of(snapshot.media, [](const Medium& medium) {
+               return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0;
+           });
+}
+}
+
+void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations) {
+    lights_nothing = lights_nothing && can_be_lit(snapshot);
+    for (const Medium& medium : snapshot.media) {
+        if (!has_emission(medium)) continue;
+        const auto add = [&](const LimitationKind& kind, std::array<double, 2> amounts) {
+            limitations.push_back({Severity::info, &kind, Subject::medium, medium.name, amounts});
+        };
+        const auto& field = medium.optics.emission.field;
+        if (field && field->out_of_gamut > 0)
+            add(limitation::out_of_gamut, {100 * static_cast<double>(field->out_of_gamut), lowest_in_gamut()});
+        if (lights_nothing) add(limitation::unscattered_emission, {lumens_of(medium)});
+    }
+}
+
+void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (has_emission(medium))
+            limitations.push_back(
+                {Severity::wrong, &limitation::emission_left_out, Subject::medium, medium.name, {lumens_of(medium)}});
 }
 }

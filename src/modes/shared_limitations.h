@@ -36,6 +36,17 @@ inline constexpr LimitationKind unbounded_fluence{
 inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are left out"};
 inline constexpr LimitationKind drawn_as_homogeneous{"drawn_as_homogeneous",
                                                      "drawn as homogeneous fog of its mean density"};
+inline constexpr LimitationKind mean_emission_color{
+    "mean_emission_color", "its light is drawn in its mean color, which {}% of it differs from, and straight between "
+                           "voxels whatever the temperature there"};
+inline constexpr LimitationKind mean_albedo{"mean_albedo",
+                                            "scatters in its mean color, which {}% of what it scatters differs from"};
+inline constexpr LimitationKind out_of_gamut{
+    "out_of_gamut",
+    "{}% of its light, below {n} K, is redder than Rec.709 can be: shown as red as can be at its luminance"};
+inline constexpr LimitationKind unscattered_emission{
+    "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
+inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
@@ -66,4 +77,14 @@ void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light,
 
 // What a grid of light that has been scattered before cannot show; ambient light too.
 void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
+
+// Where colors of grids count with their mean: of what scatters, and of what emits.
+void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
+void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
+
+// What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing.
+void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
+
+// Where the light of fog is not drawn at all.
+void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);
 }

@@ -4,6 +4,8 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 mat4 own_matrix(const Node& node, double seconds) {
@@ -44,6 +46,27 @@ mat4 medium_matrix(const MediumSource& medium, double seconds) {
     return medium.z_up ? placed * upright : placed;
 }
 
+std::vector<const VdbSequence*> volume_sequences(const MediumSource& medium) {
+    std::vector<const VdbSequence*> sequences;
+    if (medium.kind != MediumKind::vdb) return sequences;
+    sequences.push_back(&medium.sequence);
+    for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
+        const auto same = [&](const VdbSequence* one) { return one->pattern == (*grid)->sequence.pattern; };
+        if (*grid && std::ranges::none_of(sequences, same)) sequences.push_back(&(*grid)->sequence);
+    }
+    return sequences;
+}
+
+bool emits_light(const MediumSource& medium) {
+    const auto any = [](const Keyed<vec3>& color) {
+        return std::ranges::any_of(color.values, [](vec3 value) { return value != vec3(0); });
+    };
+    const auto& blackbody = medium.blackbody;
+    const bool scaled =
+        blackbody && std::ranges::any_of(blackbody->scale.values, [](float value) { return value != 0; });
+    return any(medium.emission) || (scaled && any(blackbody->tint));
+}
+
 bool is_moving(const Scene& scene, int node) {
     for (; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
         const Node& n = scene.nodes[static_cast<size_t>(node)];
@@ -71,7 +94,8 @@ std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame 
 std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing) {
     std::vector<FrameFile> files;
     for (const MediumSource& medium : scene.media)
-        if (medium.kind == MediumKind::vdb) files.push_back({true, sequence_file(medium.sequence, frame, missing)});
+        for (const VdbSequence* sequence : volume_sequences(medium))
+            files.push_back({true, sequence_file(*sequence, frame, missing)});
     for (const LightSource& light : scene.lights)
         if (light.gobo && !light.gobo->still) files.push_back({false, gobo_file(*light.gobo, frame, missing)});
     return files;

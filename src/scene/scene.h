@@ -6,8 +6,10 @@
 #include "scene/light_kind.h"
 #include "scene/load_options.h"
 #include "scene/mesh.h"
+#include "volume/emission/blackbody.h"
 #include "volume/phase.h"
 #include "volume/recipe/recipe.h"
+#include "volume/value_map.h"
 #include "volume/vdb/sequence.h"
 
 #include <filesystem>
@@ -88,6 +90,23 @@ struct LightSource {
 
 enum class MediumKind { homogeneous, height, noise, vdb };
 
+// One property of fog, in a grid of a file or sequence.
+struct GridSource {
+    VdbSequence sequence;
+    std::vector<std::string> grids; // a name, or those of red, green and blue
+    ValueMap map;
+};
+
+// How a temperature becomes light. Times `scale` and `tint` it is emitted per metre; in proportion to what the fog
+// absorbs where `by_absorption` says so.
+struct BlackbodySource {
+    BlackbodyKind kind = BlackbodyKind::kelvin;
+    Keyed<float> scale{1.0f};
+    Keyed<vec3> tint{vec3(1)};
+    float intensity = 1; // cycles
+    bool by_absorption = false;
+};
+
 struct MediumSource {
     std::string name;
     MediumKind kind = MediumKind::homogeneous;
@@ -99,11 +118,15 @@ struct MediumSource {
     Keyed<vec3> rotate{vec3(0)}; // degrees about X, then Y, then Z: what `rotation` is made from
     Keyed<quat> rotation{quat(1, 0, 0, 0)};
     Keyed<float> height_base{0.0f}, height_falloff{1.0f};
-    std::optional<FogRecipe> recipe; // noise
-    float voxel_size = 0;            // noise: instead of the recipe's, metres
-    bool z_up = false;               // noise, vdb: the volume's z is up, its -y is the scene's z
-    VdbSequence sequence;            // vdb
-    std::string entry;               // as of a camera
+    std::optional<FogRecipe> recipe;                      // noise
+    float voxel_size = 0;                                 // noise: instead of the recipe's, metres
+    bool z_up = false;                                    // noise, vdb: the volume's z is up, its -y is the scene's z
+    VdbSequence sequence;                                 // vdb: of the density
+    ValueMap density_map;                                 // vdb
+    std::optional<GridSource> albedo_grid, emission_grid; // vdb: factors on `albedo`, and on `emission`
+    std::optional<GridSource> temperature, flame;         // vdb: kelvin, and a factor on what they emit
+    std::optional<BlackbodySource> blackbody;             // with a temperature
+    std::string entry;                                    // as of a camera
 };
 
 struct Background {
@@ -181,6 +204,11 @@ std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame m
 
 // The picture of a gobo for a frame; where gaps are skipped elsewhere, the one before goes on.
 std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing);
+// The files of a medium: of its density and of every other property, each once.
+std::vector<const VdbSequence*> volume_sequences(const MediumSource& medium);
+
+// Whether it emits light at any time.
+bool emits_light(const MediumSource& medium);
 
 // Around every instance at a moment, and every medium whose extent is known without opening volumes.
 Box scene_bounds(const Scene& scene, double seconds);

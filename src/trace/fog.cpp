@@ -5,6 +5,7 @@
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
+#include "trace/fog_grids.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
@@ -23,10 +24,6 @@ Optics optics_at(const MediumSource& source, double seconds) {
     return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
             source.emission.at(seconds)};
 }
-
-// Of fog that emits and dims nothing. Kernels divide emission by extinction, and multiply by it again: any value
-// does that is nothing over the longest way.
-constexpr float min_extinction = 1e-20f;
 
 // Fog that stands still is grown once.
 bool changes(const FogRecipe& recipe) {
@@ -80,13 +77,14 @@ FogSource read(const MediumSource& source, int frame, MissingFrame missing, Cach
     const uint64_t size = check_readable(*file);
     const auto changed = std::filesystem::last_write_time(*file).time_since_epoch().count();
     const std::string key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) +
-                            " " + source.sequence.grid;
+                            " " + source.sequence.grid + source.density_map.text();
     if (key == before.key) return before;
     const std::string content =
-        files ? "file " + file_hash(*file, *files->inputs) + " " + source.sequence.grid : std::string();
+        files ? "file " + file_hash(*file, *files->inputs) + " " + source.sequence.grid + source.density_map.text()
+              : std::string();
     const StoredFog fog = found_or_made<StoredFog>(files, "bricks", content, [&] {
         VdbReadReport report;
-        const SparseVolume volume = read_vdb(*file, source.sequence.grid, &report);
+        const SparseVolume volume = read_vdb(*file, source.sequence.grid, source.density_map, infinity, &report);
         return stored_fog(volume, report.summary());
     });
     if (!fog.note.empty()) notes.push_back(file->filename().string() + ": " + fog.note);
@@ -141,34 +139,55 @@ Box moved_box(const mat4& matrix, const Box& box) {
     return result;
 }
 
-void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot) {
-    const bool comparable = previous && previous->fog_sources.size() == scene.media.size();
-    for (size_t i = 0; i < scene.media.size(); ++i) {
-        const MediumSource& source = scene.media[i];
-        const FogSource before = comparable ? previous->fog_sources[i] : FogSource{};
-        FogSource& fog = snapshot.fog_sources.emplace_back();
-        Medium medium;
-        medium.name = source.name;
-        medium.optics = optics_at(source, moment.seconds);
-        const bool dims = grey_extinction(medium.optics) > 0;
-        if (!dims && !(max_component(medium.optics.emission.radiance) > 0)) {
-            fog = before;
-            continue;
-        }
+namespace {
+// Fog that dims light or emits it evenly, as far as the medium says so. False when there is none at this moment.
+bool find_fog(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
+              const FogSource& before, Snapshot& snapshot, Medium& medium) {
+    if (source.kind != MediumKind::noise && source.kind != MediumKind::vdb) {
+        add_analytic(scene, source, moment.seconds, medium);
+        return true;
+    }
+    FogSource& fog = snapshot.fog_sources.back();
+    fog = fog_source(scene, source, moment, missing, before, snapshot);
+    if (!fog.placed || !(fog.placed->highest > 0)) return false;
+    medium.density.kind = DensityKind::bricks;
+    medium.density.bricks = fog.placed;
+    medium.world_bounds = fog.placed->bounds;
+    return true;
+}
+
+void add_medium(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
+                const FogSource& before, Snapshot& snapshot) {
+    FogSource& fog = snapshot.fog_sources.emplace_back(before);
+    Medium medium;
+    medium.name = source.name;
+    medium.optics = optics_at(source, moment.seconds);
+    if (source.emission_grid) medium.optics.emission.radiance = vec3(0);
+    const bool dims = grey_extinction(medium.optics) > 0;
+    const bool fog_is_there = (dims || max_component(medium.optics.emission.radiance) > 0) &&
+                              find_fog(scene, source, moment, missing, before, snapshot, medium);
+    if (has_grids(source)) {
+        const mat4 matrix = checked_matrix(scene, source, moment.seconds);
+        fog.grids =
+            medium_grids(source, moment, missing, matrix, dims ? fog : FogSource(), before.grids.get(), snapshot);
+    }
+    if (fog_is_there) {
         if (!dims) medium.optics.extinction = vec3(min_extinction);
-        if (source.kind == MediumKind::noise || source.kind == MediumKind::vdb) {
-            fog = fog_source(scene, source, moment, missing, before, snapshot);
-            if (!fog.placed || !(fog.placed->highest > 0)) continue;
-            medium.density.kind = DensityKind::bricks;
-            medium.density.bricks = fog.placed;
-            medium.world_bounds = fog.placed->bounds;
-        } else {
-            add_analytic(scene, source, moment.seconds, medium);
-        }
         if (!dims && !is_finite(medium.world_bounds.size()))
             refuse(scene.file.string(),
                    "medium " + source.name + ": emits without end; give it bounds or an extinction");
+        if (fog.grids) color_medium(source, moment.seconds, *fog.grids, medium);
         snapshot.media.push_back(std::move(medium));
     }
+    if (fog.grids) append_light(source, moment.seconds, *fog.grids, snapshot);
+}
+}
+
+void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot) {
+    const bool comparable = previous && previous->fog_sources.size() == scene.media.size();
+    snapshot.fog_sources.reserve(scene.media.size());
+    for (size_t i = 0; i < scene.media.size(); ++i)
+        add_medium(scene, scene.media[i], moment, missing, comparable ? previous->fog_sources[i] : FogSource{},
+                   snapshot);
 }
 }

@@ -15,6 +15,7 @@ struct CacheFolder;
 struct FrameCache;
 struct Light;
 struct Medium;
+struct MediumGrids;
 class Occluders;
 struct Scene;
 template<class T> struct Image;
@@ -33,7 +34,8 @@ struct FogSource {
     std::string key;         // empty = nothing to reuse
     dmat4 index_to_world{1}; // before the medium's transform
     std::shared_ptr<const BrickPool> bricks, placed;
-    mat4 matrix{1}; // the medium's transform
+    mat4 matrix{1};                           // the medium's transform
+    std::shared_ptr<const MediumGrids> grids; // what it has beside its density
 };
 
 // Some of the scene's instances, and their surfaces.

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "volume/medium.cpp"
 #include <hwy/foreach_target.h>
 
+#include "volume/emission/emission_field.h"
 #include "volume/medium.h"
 #include "volume/medium_simd.h"
 
@@ -25,6 +26,16 @@ void densities(const Medium& medium, const float* x, const float* y, const float
 
 float Medium::majorant() const {
     return grey_extinction(optics) * (density.kind == DensityKind::bricks ? density.bricks->highest : 1.0f);
+}
+
+vec3 albedo_at(const Optics& optics, vec3 point) {
+    return optics.albedo_field ? optics.base_albedo * albedo_factor(*optics.albedo_field, point) : optics.albedo;
+}
+
+vec3 emission_at(const Medium& medium, vec3 point) {
+    const Emission& emission = medium.optics.emission;
+    return emission.field ? emission.scale * emission_at(*emission.field, point)
+                          : emission.radiance * density_at(medium, point);
 }
 
 float density_at(const Medium& medium, vec3 point) {

@@ -10,7 +10,9 @@
 #include <vector>
 
 namespace tyndall {
+struct AlbedoField;
 struct BrickPool;
+struct EmissionField;
 
 // Where a medium is, and how dense.
 enum class DensityKind { homogeneous, height, bricks };
@@ -25,6 +27,11 @@ struct Density {
 
 struct Emission {
     vec3 radiance{0}; // per metre at density 1
+
+    // Of fog that does nothing but emit, by grids: what it emits at a point is scale · emission_at(field, point), and
+    // `radiance` its mean.
+    std::shared_ptr<const EmissionField> field{};
+    vec3 scale{1};
 };
 
 struct Optics {
@@ -32,7 +39,16 @@ struct Optics {
     vec3 albedo{0.95f};    // scattered share of the extinction, 0..1
     Phase phase;
     Emission emission;
+
+    // Where the albedo differs from point to point: base_albedo · albedo_factor(field, point), and `albedo` its mean.
+    std::shared_ptr<const AlbedoField> albedo_field{};
+    vec3 base_albedo{1};
 };
+
+// Fog that takes no light away: nothing collides with it.
+inline bool only_emits(const Optics& optics) { return optics.emission.field != nullptr; }
+
+vec3 albedo_at(const Optics& optics, vec3 point);
 
 // What kernels ask for while all media are grey.
 inline float grey_extinction(const Optics& optics) {
@@ -57,6 +73,9 @@ struct Medium {
 
 // Density at a point; 0 outside the medium.
 float density_at(const Medium& medium, vec3 point);
+
+// What fog emits at a point, per metre. Of fog without a field it is in proportion to the density.
+vec3 emission_at(const Medium& medium, vec3 point);
 
 // Densities at 16 points (x, y, z of 16 each); 0 outside the medium. Kernels use density16() of medium_simd.h.
 void densities(const Medium& medium, const float* x, const float* y, const float* z, float* density);

@@ -4,6 +4,7 @@
 #include "reports.h"
 
 #include "base/error.h"
+#include "scene/file/medium_words.h"
 
 namespace tyndall {
 namespace {
@@ -16,6 +17,7 @@ Json grid_json(const VdbGridInfo& grid) {
                         {"grid", grid.key},
                         {"type", grid.type},
                         {"class", grid.grid_class},
+                        {"looks_like", grid_role_names[static_cast<size_t>(grid.role)]},
                         {"usable", grid.usable},
                         {"is_fog", grid.is_fog},
                         {"why_not", grid.why_not},
@@ -30,6 +32,10 @@ Json grid_json(const VdbGridInfo& grid) {
                         {"maximum", grid.maximum},
                         {"mean", grid.mean},
                         {"background", grid.background},
+                        {"ranges", json_list(grid.ranges,
+                                             [](Interval<float> range) {
+                                                 return Json(std::vector{range.low, range.high});
+                                             })},
                         {"non_finite", grid.non_finite},
                         {"negative", grid.negative},
                         {"memory_bytes", grid.memory_bytes},
@@ -64,13 +70,16 @@ std::string vdb_report(const std::filesystem::path& file, bool json) {
                           {"library_version", info.library_version},
                           {"compression", info.compression},
                           {"metadata", json_object({info.metadata.begin(), info.metadata.end()})},
-                          {"grids", json_list(info.grids, grid_json)}});
+                          {"grids", json_list(info.grids, grid_json)},
+                          {"scene_medium", medium_text(file, info)}});
     }
     std::string text = printable(file.string()) + ": OpenVDB, " + count_text(info.grids.size(), "grid") +
                        formatted(", file version %u, written by OpenVDB ", info.file_version) +
                        printable(info.library_version, 40) + ", " + printable(info.compression, 60) + "\n";
     text += metadata_lines(info.metadata, "  ");
     for (const VdbGridInfo& grid : info.grids) text += grid_text(grid);
+    if (const std::string medium = medium_text(file, info); !medium.empty())
+        text += "  in a scene file:\n    \"media\": [" + printable(medium, 1000) + "]\n";
     return text;
 }
 }

@@ -88,9 +88,12 @@ RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on,
     step.low = part.start + place.low, step.high = part.start + place.high;
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
+        const vec3 middle = part.ray.at(static_cast<float>(place.middle()));
         step.extinction += place.densities[m] * grey_extinction(optics);
-        step.glow += static_cast<float>(place.densities[m]) *
-                     (grey_extinction(optics) * optics.albedo * scene.fog.ambient + optics.emission.radiance);
+        step.glow += only_emits(optics) ? emission_at(scene.fog.media[m], middle)
+                                        : static_cast<float>(place.densities[m]) *
+                                              (grey_extinction(optics) * albedo_at(optics, middle) * scene.fog.ambient +
+                                               optics.emission.radiance);
     }
     const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
     const bool fades = style.range < StyleSettings{}.range;
@@ -139,7 +142,7 @@ vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& pa
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
         sum += place.densities[m] * grey_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
-               dvec3(optics.albedo);
+               dvec3(albedo_at(optics, part.ray.at(static_cast<float>(place.middle()))));
     }
     return vec3(arriving.amount * sum * arriving.tint * dvec3(along.light->intensity * along.light->volume_scale));
 }

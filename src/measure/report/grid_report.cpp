@@ -21,9 +21,17 @@ Box world_bounds(const VdbGridInfo& grid) {
     return transform(mat4(grid.index_to_world), Box{vec3(grid.active_low) - 0.5f, vec3(grid.active_high) + 0.5f});
 }
 
+namespace {
+std::string article_of(const std::string& noun) {
+    return std::string("aeiou").find(noun[0]) == std::string::npos ? "a" : "an";
+}
+}
+
 std::string kind_text(const VdbGridInfo& grid) {
+    const bool quantity = grid.role != GridRole::other && grid.role != GridRole::density;
+    const std::string role(grid_role_names[static_cast<size_t>(grid.role)]);
     return printable(grid.type, 80) + ", " + (grid.grid_class.empty() ? "no class" : printable(grid.grid_class, 40)) +
-           ", " +
+           (quantity ? ", looks like " + article_of(role) + " " + role : "") + ", " +
            (grid.is_fog   ? "usable as fog"
             : grid.usable ? "usable as fog where a scene names it as \"grid\""
                           : "not usable as fog: " + printable(grid.why_not));
@@ -37,6 +45,14 @@ std::string axes_text(const VdbGridInfo& grid) {
         m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
     if (along_axes && m[0][0] > 0 && m[1][1] > 0 && m[2][2] > 0) return "";
     return "x " + vector_text(vec3(m[0])) + "   y " + vector_text(vec3(m[1])) + "   z " + vector_text(vec3(m[2]));
+}
+
+std::string ranges_text(const std::vector<Interval<float>>& ranges) {
+    std::vector<std::string> parts;
+    for (size_t c = 0; c < ranges.size(); ++c)
+        parts.push_back(formatted("%c %g to %g", "xyz"[c % 3], static_cast<double>(ranges[c].low),
+                                  static_cast<double>(ranges[c].high)));
+    return joined(parts, ", ");
 }
 }
 
@@ -53,10 +69,13 @@ std::vector<std::pair<std::string, std::string>> grid_rows(const VdbGridInfo& gr
     rows.emplace_back("world",
                       bounds.empty() ? "empty" : vector_text(bounds.low) + " to " + vector_text(bounds.high) + " m");
     if (const std::string axes = axes_text(grid); !axes.empty()) rows.emplace_back("axes", axes);
-    rows.emplace_back("values", formatted("%g to %g, mean %g, background %g", static_cast<double>(grid.minimum),
-                                          static_cast<double>(grid.maximum), static_cast<double>(grid.mean),
-                                          static_cast<double>(grid.background)));
-    if (grid.non_finite || grid.negative)
+    if (grid.ranges.empty())
+        rows.emplace_back("values", formatted("%g to %g, mean %g, background %g", static_cast<double>(grid.minimum),
+                                              static_cast<double>(grid.maximum), static_cast<double>(grid.mean),
+                                              static_cast<double>(grid.background)));
+    else
+        rows.emplace_back("values", ranges_text(grid.ranges));
+    if (grid.role != GridRole::velocity && (grid.non_finite || grid.negative))
         rows.emplace_back("faults", std::to_string(grid.non_finite) + " not finite, " + std::to_string(grid.negative) +
                                         " negative: read as 0");
     return rows;

@@ -17,6 +17,7 @@ void scale_medium(MediumSource& medium, float factor) {
     scale(medium.translation, factor), scale(medium.scale, factor);
     scale(medium.height_base, factor), scale(medium.height_falloff, factor);
     scale(medium.extinction, 1 / factor), scale(medium.emission, 1 / factor);
+    if (medium.blackbody && !medium.blackbody->by_absorption) scale(medium.blackbody->scale, 1 / factor);
 }
 }
 

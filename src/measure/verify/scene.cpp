@@ -101,7 +101,10 @@ Scene only_lights(Scene scene) {
     scene.ambient = Keyed<vec3>(vec3(0));
     scene.background = {};
     for (Material& material : scene.materials) material.emission = vec3(0);
-    for (MediumSource& medium : scene.media) medium.emission = Keyed<vec3>(vec3(0));
+    for (MediumSource& medium : scene.media) {
+        medium.emission = Keyed<vec3>(vec3(0)), medium.emission_grid.reset();
+        medium.blackbody.reset(), medium.temperature.reset(), medium.flame.reset();
+    }
     return scene;
 }
 
@@ -127,7 +130,7 @@ void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyCont
     fog.instances.clear(), fog.lights.clear();
     fog.ambient = Keyed<vec3>(vec3(1));
     fog.background.color = Keyed<vec3>(vec3(1));
-    for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1));
+    for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1)), medium.albedo_grid.reset();
     constexpr float thick = 20; // optical depths across
     Snapshot white = moment(fog, proof);
     if (!std::ranges::all_of(white.media, [](const Medium& m) { return is_finite(m.world_bounds.size()); })) return;

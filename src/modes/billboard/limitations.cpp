@@ -4,6 +4,7 @@
 #include "modes/billboard/settings.h"
 #include "modes/light_filters.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -38,6 +39,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
             limitations.push_back({Severity::info, &limitation::no_opening, Subject::light, name});
     }
     add_mean_filters(snapshot, limitations);
+    add_left_out_emission(snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)
         limitations.push_back({Severity::degraded, &limitation::homogeneous_in_cards, Subject::medium, medium.name});

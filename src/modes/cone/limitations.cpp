@@ -59,6 +59,8 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
             limitations.push_back(
                 {Severity::degraded, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_single_scattering(view, snapshot, limitations);
+    add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
+    if (settings.terms.emission) add_emission(snapshot, true, limitations);
     return limitations;
 }
 }

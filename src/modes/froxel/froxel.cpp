@@ -1,6 +1,7 @@
 // Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
 // again for every camera ray.
 #include "base/simd/simd.h"
+#include "integrate/field_light.h"
 #include "integrate/style.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/history/froxel_history.h"
@@ -35,10 +36,11 @@ struct FroxelFrame {
     std::vector<size_t> indices;
 };
 
-// The scene as the settings see it.
-void set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
+// The scene as the settings see it. Returns what rays find by themselves.
+FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
     scene.snapshot = with_terms(stylised(snapshot, settings.style), terms);
+    FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
@@ -55,6 +57,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
     scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
     if (scene.settings.visibility == FroxelVisibility::intervals && has_alpha_shadows(snapshot))
         scene.settings.visibility = FroxelVisibility::rays;
+    return fields;
 }
 
 // The tiles as the pixels of a picture of their own.
@@ -191,14 +194,16 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     auto frame = std::make_shared<FroxelFrame>();
     if (history) frame->frame = follow(*history, view, snapshot, settings);
     if (settings.of<FroxelSettings>().history == 0) frame->frame = 0;
-    set_scene(view, snapshot, settings, frame->scene);
+    FieldLight fields = set_scene(view, snapshot, settings, frame->scene);
 
     const FroxelHistory* memory = history ? history->froxels.get() : nullptr;
     FroxelStatics statics =
         look_at_scene(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->statics : nullptr);
     if (statics.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
-        return [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); };
+        return with_field_light(std::move(fields), [](const RayBatch&, std::span<Scatter> results) {
+            std::ranges::fill(results, Scatter{});
+        });
     }
     set_beams(statics.grid, frame->scene);
     set_shadows(*frame, statics);
@@ -214,10 +219,10 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
                 : integrate_froxels(picture.grid, picture.tiles,
                                     fill_froxels(frame->scene, picture.grid, picture.tiles, {.beams = &picture.beams}),
                                     picture.view_depth);
-    return [frame](const RayBatch& batch, std::span<Scatter> results) {
+    return with_field_light(std::move(fields), [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);
-    };
+    });
 }
 
 Mode froxel_mode() {

@@ -93,6 +93,7 @@ void add_medium(const Medium& medium, FroxelSize size, Limitations& limitations)
     const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts) {
         limitations.push_back({severity, &kind, Subject::medium, medium.name, amounts});
     };
+    if (only_emits(medium.optics)) return; // rays ask it by themselves
     const vec3 sides = medium.world_bounds.size();
     const float thin = std::min(sides.x, std::min(sides.y, sides.z));
     const float depth = medium.majorant() * std::min(size.deep, thin);

@@ -5,6 +5,7 @@
 #include "integrate/style.h"
 #include "scene/light_filter.h"
 #include "volume/medium.h"
+#include "volume/rays/emission_nodes.h"
 #include "volume/rays/fog_pieces.h"
 
 #include <utility>
@@ -98,6 +99,28 @@ template<class Body> void at_nodes(RayMarch& on, const Body& body) {
         });
 }
 
+vec3 albedo_on(const RayMarch& on, const Optics& optics, double t) {
+    return optics.albedo_field ? albedo_at(optics, vec3(on.at(t))) : optics.albedo;
+}
+
+// What a field emits, at nodes of its own.
+dvec3 light_of_field(RayMarch& on, const Medium& field) {
+    const FogPieces& fog = on.scratch.fog;
+    dvec3 sum(0);
+    size_t piece = 0;
+    find_emission_nodes(*field.density.bricks, on.ray, [&](EmissionNode node) {
+        while (piece + 1 < fog.pieces.size() && fog.pieces[piece + 1].low <= node.t) ++piece;
+        double share = 1; // before all fog, and without any
+        if (!fog.pieces.empty() && node.t > fog.pieces[piece].low)
+            share = seen(on, piece, std::min<double>(node.t, fog.pieces[piece].high));
+        else if (fades(on.frame.style))
+            share = style_fade(on.frame.style, eye_distance(on.frame.camera, on.ray.at(node.t)));
+        sum += share * node.length * dvec3(emission_at(field, on.ray.at(node.t)));
+        ++on.nodes;
+    });
+    return sum;
+}
+
 // Emission and ambient light of all fog, lit or not.
 struct OtherSums {
     dvec3 ambient{0}, emission{0};
@@ -109,11 +132,12 @@ OtherSums glow(RayMarch& on) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 per_density =
-                double(grey_extinction(optics)) * dvec3(optics.albedo * on.frame.snapshot.ambient);
+                double(grey_extinction(optics)) * dvec3(albedo_on(on, optics, t) * on.frame.snapshot.ambient);
             const double density = weight * fog.density(piece, m, t);
             sum.ambient += density * per_density, sum.emission += density * dvec3(optics.emission.radiance);
         }
     });
+    for (const Medium& field : on.frame.fields) sum.emission += light_of_field(on, field);
     return sum;
 }
 
@@ -127,7 +151,7 @@ dvec3 scattered_before(RayMarch& on) {
         const FluenceAt at = fluence_at(grid, vec3(on.at(t)));
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
-            const dvec3 scattered(optics.albedo * scattered_fluence(at, on.ray.direction, optics.phase));
+            const dvec3 scattered(albedo_on(on, optics, t) * scattered_fluence(at, on.ray.direction, optics.phase));
             sum += weight * fog.density(piece, m, t) * fog.extinction[m] * scattered;
         }
     });
@@ -212,7 +236,8 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
         const double density = fog.density(piece, m, t);
         if (density == 0) continue;
         const Optics& optics = on.frame.snapshot.media[m].optics;
-        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) * dvec3(optics.albedo);
+        scattering += density * fog.extinction[m] * phase_value_of<double>(optics.phase, cosine) *
+                      dvec3(albedo_on(on, optics, t));
     }
     return scattering * (weight * light_at.amount * seen(on, piece, t)) * light_at.tint;
 }
@@ -319,9 +344,9 @@ void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_
     const FogPieces& fog = scratch.fog;
     find_fog(ray, frame.snapshot.media, frame.rule->settings.min_transmittance, scratch.fog);
     result = {};
-    if (fog.pieces.empty()) return;
+    if (fog.pieces.empty() && frame.fields.empty()) return;
 
-    const double stretch = fog.pieces.back().high - fog.pieces.front().low;
+    const double stretch = fog.pieces.empty() ? 0 : fog.pieces.back().high - fog.pieces.front().low;
     on.longest = frame.rule->settings.step_share * stretch;
     dvec3 sum(0);
     const auto add = [&](size_t index, const dvec3& light) {

@@ -96,7 +96,7 @@ Vec3s scattered_from(const SingleScattering& frame, size_t light_index, const Po
     wanted = wanted & (share > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
 
-    const Vec3s towards = scattering(frame.snapshot.media, dot(light_at.to_light, packet.direction),
+    const Vec3s towards = scattering(frame.snapshot.media, points.position, dot(light_at.to_light, packet.direction),
                                      [&](size_t m) HWY_ATTR { return packet.extinction(m); });
     return scattered_light(light, frame.depths[light_index], points.position,
                            zero_unless(wanted, light_at.amount * share), towards);

@@ -48,9 +48,11 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
     for (const Medium& medium : snapshot.media)
         if (!terms.heterogeneity && medium.density.kind == DensityKind::bricks)
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+    if (!terms.heterogeneity) add_mean_emission(snapshot, limitations), add_mean_albedo(snapshot, limitations);
     add_visibility(view, snapshot, settings, limitations);
     add_light_transmittance(snapshot, terms.light, limitations);
     add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
+    if (terms.emission) add_emission(snapshot, true, limitations);
     if (snapshot.scene)
         for (const Material& material : snapshot.scene->materials)
             if (max_component(material.emission) > 0)

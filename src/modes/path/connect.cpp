@@ -91,6 +91,16 @@ Connection connection_to_glow(vec3 point, const EmissivePoint& target) {
     return c;
 }
 
+Connection connection_to_fire(vec3 point, const EmissivePlace& target) {
+    const vec3 offset = target.position - point;
+    const float distance = std::max(glm::length(offset), 1e-20f);
+    Connection c;
+    c.point = point;
+    c.to_light = c.shadow = offset / distance;
+    c.fog_length = c.shadow_length = distance;
+    return c;
+}
+
 void connect(const PathTracer& tracer, std::vector<Connection>& connections, const RayBatch& batch,
              std::span<Scatter> results) {
     for (size_t first = 0; first < connections.size(); first += 16) {

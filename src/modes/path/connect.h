@@ -15,7 +15,7 @@ struct Connection {
     float shadow_length = 0;
     bool shadows = true;
     vec3 light{0};        // what reaches the eye if nothing is in the way
-    int light_index = -1; // of the snapshot; -1 = a glowing surface
+    int light_index = -1; // of the snapshot; -1 = a glowing surface or fog
     size_t lane = 0;      // of the batch
     bool in_fog = false;  // the path's first event was in fog
     RandomStream random;
@@ -26,6 +26,9 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int light, 
 
 // From a point to a point on a glowing surface.
 Connection connection_to_glow(vec3 point, const EmissivePoint& target);
+
+// From a point to a place in glowing fog.
+Connection connection_to_fire(vec3 point, const EmissivePlace& target);
 
 // Share of light that surfaces let through, of up to 16 connections; 1 for dark ones and lights without shadows.
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility);

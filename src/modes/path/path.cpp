@@ -1,4 +1,5 @@
 // The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
+#include "integrate/field_light.h"
 #include "modes/mode.h"
 #include "modes/path/limitations.h"
 #include "modes/path/settings.h"
@@ -12,7 +13,7 @@
 namespace tyndall {
 namespace {
 bool has_emission(const PathTracer& tracer) {
-    if (max_component(tracer.snapshot.ambient) > 0) return true;
+    if (max_component(tracer.snapshot.ambient) > 0 || !tracer.fields.empty()) return true;
     for (const Medium& medium : tracer.snapshot.media)
         if (max_component(medium.optics.emission.radiance) > 0) return true;
     if (tracer.surfaces_emit && tracer.snapshot.scene)
@@ -28,6 +29,8 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
     if (tracer->surfaces_emit) tracer->glow = make_emissive_triangles(tracer->snapshot);
+    tracer->fields = take_fields(tracer->snapshot, settings.style, view.camera).fields;
+    tracer->fire = make_emissive_bricks(tracer->fields);
     tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }

@@ -38,6 +38,15 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         connection.face_normal = surface.face_normal;
         queue(walk, line, connection, reflected * pick.irradiance / pick.chance, line.walker.in_fog);
     }
+    if (!walk.tracer.fire.empty()) {
+        const EmissivePlace target = pick_fire(walk, line);
+        Connection connection = connection_to_fire(surface.position, target);
+        connection.face_normal = surface.face_normal;
+        const float cosine = glm::dot(surface.normal, connection.to_light), away = connection.fog_length;
+        const float chance = target.density * away * away + std::max(cosine, 0.0f) / pi * target.line_density;
+        if (cosine > 0 && chance > 0)
+            queue(walk, line, connection, reflected * target.emission * (cosine / chance), line.walker.in_fog);
+    }
     if (walk.tracer.glow.empty()) return;
     const EmissivePoint target = pick_glow_point(walk.tracer.glow, walk.snapshot, line.numbers(use_surface_light).y,
                                                  line.numbers(use_surface_glow));
@@ -136,6 +145,11 @@ void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight 
     const vec3 added = line.walker.throughput * radiance;
     (in_fog ? walk.results[lane].radiance : walk.results[lane].surface) += added;
     if (in_fog && !walk.batch.parts.empty()) walk.batch.part(lane, walk.batch.index_of(light)) += added;
+}
+
+EmissivePlace pick_fire(const Walk& walk, const Segment& line) {
+    const vec2 first = line.numbers(use_fire), second = line.numbers(use_in_fire);
+    return pick_emissive_place(walk.tracer.fire, walk.tracer.fields, first.x, {first.y, second.x, second.y});
 }
 
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {

@@ -8,8 +8,10 @@
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
+#include "trace/emissive_bricks.h"
 #include "trace/emissive_triangles.h"
 #include "trace/snapshot.h"
+#include "volume/medium.h"
 
 namespace tyndall {
 struct PathTracer {
@@ -19,7 +21,9 @@ struct PathTracer {
     Camera camera;
     ivec2 size{0};
     EmissiveTriangles glow;
-    bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
+    std::vector<Medium> fields; // media that only emit; not in the snapshot
+    EmissiveBricks fire;        // their light, which paths aim at
+    bool has_emission = false;  // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 
 // Traces the paths of one pixel sample of up to 16 pixels.

@@ -23,7 +23,9 @@ enum Use : uint32_t {
     use_surface_soft,
     use_surface_glow,
     use_bounce,
-    use_emission
+    use_emission,
+    use_fire,
+    use_in_fire
 };
 
 // The end of a path: where its next line starts and what it carries.
@@ -62,7 +64,10 @@ struct Segment {
 struct FogPoint {
     vec3 position{0};
     std::vector<float> extinction; // 1/m, of each medium
+    std::vector<vec3> albedo;      // of those where it differs from point to point
     float total = 0;
+
+    vec3 albedo_of(const Optics& optics, size_t m) const { return optics.albedo_field ? albedo[m] : optics.albedo; }
 
     // Σ albedo p, and Σ p, each weighted by the media's shares of the extinction.
     vec3 scattered(const Snapshot& snapshot, float cosine) const {
@@ -70,7 +75,7 @@ struct FogPoint {
         for (size_t m = 0; m < extinction.size(); ++m)
             if (extinction[m] > 0) {
                 const Optics& optics = snapshot.media[m].optics;
-                sum += optics.albedo * (extinction[m] / total * phase_value(optics.phase, cosine));
+                sum += albedo_of(optics, m) * (extinction[m] / total * phase_value(optics.phase, cosine));
             }
         return sum;
     }
@@ -107,6 +112,9 @@ void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight 
 
 // Queues a connection that brings `light` down the line when nothing is in its way.
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
+
+// A place in glowing fog to aim at from the line.
+EmissivePlace pick_fire(const Walk& walk, const Segment& line);
 
 // Starts the walker's next line with a share of what this one carries, unless roulette ends the path. `density`: chance
 // per steradian of the direction.

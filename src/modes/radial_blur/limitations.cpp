@@ -4,6 +4,7 @@
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
 #include "modes/settings.h"
+#include "modes/shared_limitations.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
@@ -16,6 +17,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
         if (medium.density.kind == DensityKind::bricks && own.fog)
             limitations.push_back({Severity::degraded, &limitation::homogeneous_dimming, Subject::medium, medium.name});
     add_mean_filters(snapshot, limitations);
+    add_left_out_emission(snapshot, limitations);
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, own);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const auto found = std::ranges::find(seen, i, &BlurLight::index);

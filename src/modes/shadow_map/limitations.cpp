@@ -41,6 +41,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_few_steps(view, snapshot, own.steps, limitations);
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     add_sampled_filters(snapshot, Sampled::all_filters, own.steps, limitations);
+    add_mean_albedo(snapshot, limitations);
     return limitations;
 }
 }

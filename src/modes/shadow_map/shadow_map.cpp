@@ -1,4 +1,5 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
+#include "integrate/field_light.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
@@ -31,6 +32,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
     march->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms);
+    FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
     march->maps = make_shadow_maps(view, march->snapshot, settings);
@@ -41,9 +43,10 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
         march->cones.push_back(cone_falloff(light));
         march->colored |= light.filter && has_colors(*light.filter);
     }
-    ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
-        march_shadow_maps(*march, batch, results);
-    };
+    ScatterFunction scatter =
+        with_field_light(std::move(fields), [march](const RayBatch& batch, std::span<Scatter> results) {
+            march_shadow_maps(*march, batch, results);
+        });
     const FogBufferOptions picture{settings.of<ShadowMapSettings>().fog_resolution,
                                    settings.of<ShadowMapSettings>().blur};
     if (history) follow(*history, view, snapshot, settings);

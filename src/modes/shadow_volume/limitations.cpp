@@ -23,10 +23,12 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
             add_light_grid_cells(snapshot, settings.terms.light_resolution, limitations);
     } else {
         for (const Medium& medium : snapshot.media)
-            if (medium.density.kind == DensityKind::bricks)
+            if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics))
                 limitations.push_back(
                     {Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+        add_mean_albedo(snapshot, limitations);
     }
+    if (settings.terms.emission) add_emission(snapshot, true, limitations);
     add_single_scattering(view, snapshot, limitations);
 }
 

@@ -1,9 +1,11 @@
 // Shadow volumes: exact shafts without noise.
+#include "integrate/field_light.h"
 #include "integrate/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/mode.h"
 #include "modes/shadow_volume/limitations.h"
 #include "modes/shadow_volume/settings.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -22,20 +24,22 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     frame->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), frame->style = settings.style;
+    FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);
     frame->nodes = own.nodes, frame->steps = own.steps;
     if (own.draw == ShadowDraw::shells)
         frame->shells = {own.shell_length > 0 ? own.shell_length : half_diagonal(snapshot.bounds), own.shell_intensity};
     frame->sampled = samples_fog(frame->snapshot, own);
     if (!frame->sampled) {
         for (const Medium& medium : snapshot.media)
-            if (medium.density.kind == DensityKind::bricks) frame->heterogeneous.push_back(medium.world_bounds);
+            if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics))
+                frame->heterogeneous.push_back(medium.world_bounds);
         frame->snapshot.media = homogeneous_media(frame->snapshot.media);
     }
     const auto by = [](const Light&) { return ShadowsBy::volumes; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
-    return [frame](const RayBatch& batch, std::span<Scatter> results) {
+    return with_field_light(std::move(fields), [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);
-    };
+    });
 }
 
 Mode shadow_volume_mode() {

@@ -92,8 +92,7 @@ std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan
     const bool surfaces_glow =
         plan.mode->surfaces == Surfaces::own &&
         std::ranges::any_of(scene.materials, [](const Material& material) { return material.emission != vec3(0); });
-    const bool fog_glows =
-        std::ranges::any_of(scene.media, [&](const MediumSource& medium) { return lit(medium.emission); });
+    const bool fog_glows = std::ranges::any_of(scene.media, emits_light);
     const auto has = [&](std::string_view layer) {
         if (layer == "ambient") return !scene.media.empty() && lit(scene.ambient);
         if (layer == "emission") return fog_glows || (!scene.media.empty() && surfaces_glow);

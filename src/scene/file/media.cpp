@@ -1,6 +1,7 @@
 // Fog of a scene file.
 #include "base/error.h"
 #include "base/io/file.h"
+#include "scene/file/media_grids.h"
 #include "scene/file/scene_file.h"
 #include "volume/vdb/vdb.h"
 
@@ -129,6 +130,7 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     if (medium.kind == MediumKind::vdb) read_vdb_source(field, medium, scene);
     medium.z_up = field.json->string_or("up_axis", "Y") == "Z";
     read_optics(field, medium);
+    read_grids(field, medium, scene);
     const bool moved = field.member("translate") || field.member("rotate") || field.member("scale");
     const bool analytic = medium.kind == MediumKind::homogeneous || medium.kind == MediumKind::height;
     const dvec3 in_bounds = analytic && !moved ? scene.origin : dvec3(0);

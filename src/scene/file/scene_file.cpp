@@ -52,8 +52,7 @@ bool is_dark(const Scene& scene) {
     };
     const Background& back = scene.background;
     return scene.lights.empty() && black(scene.ambient) && !back.image && black(back.color) && black(back.zenith) &&
-           black(back.ground) &&
-           std::ranges::all_of(scene.media, [&](const auto& fog) { return black(fog.emission); }) &&
+           black(back.ground) && std::ranges::none_of(scene.media, emits_light) &&
            std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
 }
 

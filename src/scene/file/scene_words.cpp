@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/json.h"
+#include "scene/file/medium_words.h"
 #include "scene/file/stand_ins.h"
 #include "volume/vdb/vdb.h"
 
@@ -39,7 +40,6 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
     const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};
     Scene stand_in;
     stand_in.media.emplace_back().bounds = transform(mat4(fog->index_to_world), voxels);
-    const float diagonal = std::max(glm::length(stand_in.media[0].bounds.size()), 1e-3f);
     add_missing_camera(stand_in);
     add_missing_light_and_fog(stand_in);
 
@@ -47,7 +47,7 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
     std::string optics;
     const bool known =
         std::ranges::any_of(info.metadata, [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });
-    if (!known && fog->maximum > 0) optics = ", \"extinction\": " + json_number(4 / (diagonal * fog->maximum));
+    if (!known && fog->maximum > 0) optics = ", \"extinction\": " + json_number(usual_extinction(*fog));
     return "{\n  \"tyndall\": 1,\n  \"camera\": " + camera_text(stand_in.cameras[0]) + ",\n  \"lights\": [\n    " +
            sun_text(stand_in.lights[0]) + "\n  ],\n  \"ambient\": " + json_number(stand_in.ambient.at(0).x) +
            ",\n  \"media\": [\n    { \"name\": " + quote_json(vdb.stem().string()) +

@@ -191,6 +191,7 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
             .add(medium.density.height_falloff);
         for (int column = 0; column < 4; ++column) key.add(medium.density.world_to_local[column]);
         key.add(medium.density.bricks);
+        if (optics.albedo_field) key.add(optics.albedo_field).add(optics.base_albedo);
     }
     return key;
 }

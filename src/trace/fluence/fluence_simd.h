@@ -8,6 +8,7 @@
 
 #include "base/simd/simd.h"
 #include "trace/fluence/fluence.h"
+#include "volume/emission/emission_field_simd.h"
 #include "volume/medium.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -138,8 +139,8 @@ HWY_INLINE Vec3s scattered_fluence(const FluenceGrid& grid, const std::vector<Me
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < media.size(); ++m) {
         const Optics& optics = media[m].optics;
-        sum = fused(scattered_fluence(at, direction, mean_cosine(optics.phase)) * splat(optics.albedo), extinction(m),
-                    sum);
+        sum = fused(scattered_fluence(at, direction, mean_cosine(optics.phase)) * albedo16(optics, point),
+                    extinction(m), sum);
     }
     return sum;
 }

@@ -101,7 +101,7 @@ void turn(const Walk& walk, PathVertex& walker, Ray ray, vec3 share) {
 void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float distance) {
     const vec3 point = walker.ray.at(distance);
     const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
-    vec3 share = optics.albedo;
+    vec3 share = albedo_at(optics, point);
     if (walker.order == 0) share *= light.volume_scale * ranged(walk, walker, point);
     walk.result.first_scatterings += walker.order == 0;
     (walker.order == 0 ? walk.result.scattered_once : walk.result.scattered_more) +=
@@ -143,6 +143,7 @@ void fly(const Walk& walk, PathVertex& walker, float wall, const auto& surface_a
     const Medium* hit = nullptr;
     int lookups = 0;
     for (const Medium& medium : walk.snapshot.media) {
+        if (only_emits(medium.optics)) continue;
         const float t =
             collision_distance(medium, walker.ray, {0, nearest}, walker.random.next(), walker.random, lookups);
         if (t < nearest) nearest = t, hit = &medium;
@@ -200,6 +201,7 @@ Box light_reach(const Snapshot& snapshot) {
 Box fog_bounds(const Snapshot& snapshot, const Box& reach) {
     Box fog;
     for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue;
         const Box& box = medium.world_bounds;
         const Box inside{glm::max(box.low, reach.low), glm::min(box.high, reach.high)};
         if (!inside.empty()) fog.grow(inside);

@@ -94,10 +94,10 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
     if (method == LightTransmittance::off) return depth;
     std::vector<const Medium*> bricks;
     for (const Medium& medium : snapshot.media)
-        if (medium.density.kind == DensityKind::bricks)
-            bricks.push_back(&medium);
-        else
+        if (medium.density.kind != DensityKind::bricks)
             depth.analytic.push_back(medium);
+        else if (!only_emits(medium.optics))
+            bricks.push_back(&medium);
     if (method == LightTransmittance::froxel && !bricks.empty())
         depth.froxels = cached_froxels(snapshot, bricks, light, resolution, *view);
     if (method == LightTransmittance::marched || method == LightTransmittance::froxel) {

@@ -15,13 +15,13 @@ std::optional<InputTime> time_of(const std::filesystem::path& file) {
 std::vector<InputTime> input_times(const Scene& scene) {
     std::vector<std::filesystem::path> files;
     for (const InputFile& input : scene.inputs) files.push_back(input.path);
-    for (const MediumSource& medium : scene.media) {
-        if (medium.kind != MediumKind::vdb) continue;
-        if (medium.sequence.files.empty()) files.push_back(medium.sequence.pattern);
-        for (const int number : medium.sequence.files)
-            if (const auto file = sequence_file(medium.sequence, number - medium.sequence.offset, MissingFrame::hold))
-                files.push_back(*file);
-    }
+    for (const MediumSource& medium : scene.media)
+        for (const VdbSequence* sequence : volume_sequences(medium)) {
+            if (sequence->files.empty()) files.push_back(sequence->pattern);
+            for (const int number : sequence->files)
+                if (const auto file = sequence_file(*sequence, number - sequence->offset, MissingFrame::hold))
+                    files.push_back(*file);
+        }
     for (const LightSource& light : scene.lights)
         if (light.gobo)
             for (const int number : light.gobo->sequence.files)

@@ -6,10 +6,12 @@
 
 namespace tyndall {
 namespace {
-// The file that is held when a gap of the sequence is at the frame; nothing where there is no gap.
+// The file that is held when a gap of a sequence is at the frame; nothing where there is no gap.
 std::optional<std::filesystem::path> held_file(const MediumSource& medium, int frame) {
-    if (medium.kind != MediumKind::vdb || sequence_file(medium.sequence, frame, MissingFrame::skip)) return {};
-    return sequence_file(medium.sequence, frame, MissingFrame::hold);
+    for (const VdbSequence* sequence : volume_sequences(medium))
+        if (!sequence_file(*sequence, frame, MissingFrame::skip))
+            if (const auto held = sequence_file(*sequence, frame, MissingFrame::hold)) return held;
+    return {};
 }
 }
 

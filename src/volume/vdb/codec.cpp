@@ -34,23 +34,27 @@ constexpr size_t max_tiles = size_t{1} << 26; // a few bytes in a file can stand
 
 ivec3 point(const openvdb::Coord& coord) { return {coord.x(), coord.y(), coord.z()}; }
 
+// A value as three numbers; of numbers the first alone counts.
+dvec3 numbers_of(double value) { return {value, 0, 0}; }
+template<class T> dvec3 numbers_of(const openvdb::math::Vec3<T>& value) { return {value[0], value[1], value[2]}; }
+
 // The one value tells active from inactive, whatever the level of the tile.
-template<class Iterator> void append_tile(const Iterator& at, bool active, DecodedTree& result) {
+template<class Iterator> void append_tile(const Iterator& at, bool active, int component, DecodedTree& result) {
     const openvdb::CoordBBox box = at.getBoundingBox();
-    const Tile tile{point(box.min()), point(box.max()), static_cast<float>(at.getValue())};
+    const Tile tile{point(box.min()), point(box.max()), static_cast<float>(numbers_of(at.getValue())[component])};
     if (active)
         result.active_tiles.push_back(tile);
     else if (tile.value != 0)
         result.inactive_tiles.push_back(tile);
 }
 
-template<class Tree> void append_tiles(const Tree& tree, DecodedTree& result) {
+template<class Tree> void append_tiles(const Tree& tree, int component, DecodedTree& result) {
     auto on = tree.cbeginValueOn();
     on.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; on; ++on) append_tile(on, true, result);
+    for (; on; ++on) append_tile(on, true, component, result);
     auto off = tree.cbeginValueOff();
     off.setMaxDepth(Tree::ValueOffCIter::LEAF_DEPTH - 1);
-    for (; off; ++off) append_tile(off, false, result);
+    for (; off; ++off) append_tile(off, false, component, result);
 }
 
 // The tree gives the places of the leaves; their values are decoded in parallel, past the library's tree.
@@ -70,8 +74,7 @@ void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uin
 // The tree is read from a stream that throws and has no file behind it, so nothing is mapped or loaded late.
 // Grids come from the library's registry: making them here would compile every member of every type of tree.
 template<class Grid>
-DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts,
-                    uint32_t file_version) {
+DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts, LeafCoding coding) {
     openvdb::initialize();
     const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid("Tree_" + entry.type + "_5_4_3");
     const size_t topology_end = counts.leaf_begins.empty() ? bytes.size() : counts.leaf_begins.front();
@@ -79,7 +82,7 @@ DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const Vdb
         ByteSource source(bytes);
         std::istream stream(&source);
         stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-        openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), file_version);
+        openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), coding.file_version);
         openvdb::io::setDataCompression(stream, entry.compression);
         grid->setSaveFloatAsHalf(entry.half);
         grid->readTopology(stream);
@@ -87,10 +90,10 @@ DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const Vdb
     }
     const auto& tree = static_cast<const Grid&>(*grid).tree();
     DecodedTree result;
-    result.background = static_cast<float>(tree.background());
+    coding.background = numbers_of(tree.background());
+    result.background = static_cast<float>(coding.background[coding.component]);
     for (auto at = tree.root().cbeginChildAll(); at; ++at) result.root_nodes.push_back(point(at.getCoord()));
-    append_tiles(tree, result);
-    const LeafCoding coding{file_version, entry.compression, entry.half, entry.type == "double", tree.background()};
+    append_tiles(tree, coding.component, result);
     append_leaves(tree, bytes, counts.leaf_begins, coding, result);
     return result;
 }
@@ -194,10 +197,17 @@ void write_grid(std::ostream& stream, openvdb::FloatGrid& grid, uint32_t compres
 }
 
 DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
-                        uint32_t file_version, const std::string& where) {
+                        uint32_t file_version, const std::string& where, int component) {
+    LeafCoding coding{file_version, grid.compression, grid.half, LeafValue::single, component, dvec3(0)};
+    const auto as = [&]<class Grid>(LeafValue value, std::type_identity<Grid>) {
+        coding.value = value;
+        return decoded<Grid>(bytes, grid, counts, coding);
+    };
     return guarded(ExitCode::refused, where, [&] {
-        return grid.type == "double" ? decoded<openvdb::DoubleGrid>(bytes, grid, counts, file_version)
-                                     : decoded<openvdb::FloatGrid>(bytes, grid, counts, file_version);
+        if (grid.type == "vec3s") return as(LeafValue::three_single, std::type_identity<openvdb::Vec3SGrid>());
+        if (grid.type == "vec3d") return as(LeafValue::three_wide, std::type_identity<openvdb::Vec3DGrid>());
+        if (grid.type == "double") return as(LeafValue::wide, std::type_identity<openvdb::DoubleGrid>());
+        return as(LeafValue::single, std::type_identity<openvdb::FloatGrid>());
     });
 }
 

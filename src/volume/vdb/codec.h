@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace tyndall {
-// A tree as stored: nothing cleaned, values of double trees rounded to float.
+// A tree as stored: nothing cleaned, values of double trees rounded to float; of vectors one component.
 struct DecodedTree {
     Leaves leaves;
     std::vector<VoxelMask> active; // of the leaves
@@ -22,7 +22,7 @@ struct DecodedTree {
 
 // Decodes what walk_tree() has accepted and counted. Throws Error (refused, out_of_memory) naming `where`.
 DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
-                        uint32_t file_version, const std::string& where);
+                        uint32_t file_version, const std::string& where, int component = 0);
 
 // The bytes of a file with one fog grid, in order.
 struct EncodedFog {

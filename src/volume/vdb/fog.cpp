@@ -151,6 +151,51 @@ void make_fog(DecodedTree tree, SparseVolume& volume, VdbReadReport& report, con
     report.non_finite = mended.non_finite, report.negative = mended.negative;
 }
 
+void apply(const ValueMap& map, DecodedTree& tree) {
+    if (map.changes_nothing()) return;
+    const bool everywhere = map.width > 0;
+    parallel_ranges(static_cast<int64_t>(tree.leaves.size()), 64, [&](int64_t begin, int64_t end) {
+        for (auto n = static_cast<size_t>(begin); n < static_cast<size_t>(end); ++n)
+            for (uint32_t v = 0; v < 512; ++v) {
+                float& value = tree.leaves[n].values[v];
+                if (everywhere || value != 0 || (tree.active[n][v / 64] >> (v % 64) & 1)) value = map(value);
+            }
+    });
+    for (Tile& tile : tree.active_tiles) tile.value = map(tile.value);
+    for (Tile& tile : tree.inactive_tiles) tile.value = map(tile.value);
+    if (everywhere || tree.background != 0) tree.background = map(tree.background);
+}
+
+void limit(DecodedTree& tree, float most, VdbReadReport& report) {
+    report.most = most;
+    for (size_t n = 0; n < tree.leaves.size(); ++n)
+        for (uint32_t v = 0; v < 512; ++v) {
+            float& value = tree.leaves[n].values[v];
+            if (!(value > most) || std::isinf(value)) continue;
+            report.above += tree.active[n][v / 64] >> (v % 64) & 1, value = most;
+        }
+    for (Tile& tile : tree.active_tiles)
+        if (tile.value > most && !std::isinf(tile.value)) report.above += voxel_count(tile), tile.value = most;
+    for (Tile& tile : tree.inactive_tiles)
+        if (!std::isinf(tile.value)) tile.value = std::min(tile.value, most);
+}
+
+void keep_active(DecodedTree& tree) {
+    for (size_t n = 0; n < tree.leaves.size(); ++n)
+        for (uint32_t v = 0; v < 512; ++v)
+            if (!(tree.active[n][v / 64] >> (v % 64) & 1)) tree.leaves[n].values[v] = 0;
+    tree.inactive_tiles.clear(), tree.background = 0;
+}
+
+DecodedTree active_share(DecodedTree tree) {
+    for (size_t n = 0; n < tree.leaves.size(); ++n)
+        for (uint32_t v = 0; v < 512; ++v)
+            tree.leaves[n].values[v] = static_cast<float>(tree.active[n][v / 64] >> (v % 64) & 1);
+    for (Tile& tile : tree.active_tiles) tile.value = 1;
+    tree.inactive_tiles.clear(), tree.background = 0;
+    return tree;
+}
+
 void add_statistics(const DecodedTree& tree, VdbGridInfo& info) {
     double sum = 0;
     uint64_t finite = 0;

@@ -15,6 +15,18 @@ ActiveBox active_box(const DecodedTree& tree);
 // Inactive values inside the active box are kept. Throws Error (refused) naming `where`.
 void make_fog(DecodedTree tree, SparseVolume& volume, VdbReadReport& report, const std::string& where);
 
+// Maps every value of active voxels, and of others that are not 0 or belong to a level set.
+void apply(const ValueMap& map, DecodedTree& tree);
+
+// Sets values above `most` to it and counts those of active voxels.
+void limit(DecodedTree& tree, float most, VdbReadReport& report);
+
+// Sets what is not active to 0.
+void keep_active(DecodedTree& tree);
+
+// 1 at active voxels, 0 elsewhere.
+DecodedTree active_share(DecodedTree tree);
+
 // Minimum, maximum and mean of the finite active values, and how many are not finite or negative.
 void add_statistics(const DecodedTree& tree, VdbGridInfo& info);
 }

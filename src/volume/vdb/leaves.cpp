@@ -4,6 +4,7 @@
 #include "volume/bricks/half.h"
 #include "volume/vdb/stream.h"
 
+#include <openvdb/Types.h>
 #include <openvdb/io/Compression.h>
 #include <openvdb/io/io.h>
 #include <openvdb/util/NodeMasks.h>
@@ -52,13 +53,32 @@ void encode(const Leaf& leaf, bool half, uint32_t compression, VoxelMask& mask, 
     }
 }
 
-template<class T> void decode(std::istream& stream, bool half, Leaf& leaf, VoxelMask& active) {
+template<class T> constexpr bool is_three = !std::is_floating_point_v<T>;
+
+template<class T> float component_of(const T& value, int component) {
+    if constexpr (is_three<T>)
+        return static_cast<float>(value[component]);
+    else
+        return static_cast<float>(value);
+}
+
+template<class T> T background_of(const LeafCoding& coding) {
+    using Number = typename openvdb::VecTraits<T>::ElementType;
+    if constexpr (is_three<T>)
+        return T(static_cast<Number>(coding.background.x), static_cast<Number>(coding.background.y),
+                 static_cast<Number>(coding.background.z));
+    else
+        return static_cast<T>(coding.background.x);
+}
+
+template<class T> void decode(std::istream& stream, const LeafCoding& coding, Leaf& leaf, VoxelMask& active) {
     openvdb::util::NodeMask<3> mask;
     mask.load(stream);
     for (openvdb::Index w = 0; w < 8; ++w) active[w] = mask.getWord<openvdb::Index64>(w);
     std::array<T, 512> values;
-    openvdb::io::readCompressedValues(stream, values.data(), 512, mask, half);
-    std::ranges::transform(values, leaf.values.begin(), [](T value) { return static_cast<float>(value); });
+    openvdb::io::readCompressedValues(stream, values.data(), 512, mask, coding.half);
+    std::ranges::transform(values, leaf.values.begin(),
+                           [&](const T& value) { return component_of(value, coding.component); });
 }
 
 template<class T>
@@ -67,13 +87,13 @@ void decode_range(std::string_view bytes, std::span<const uint64_t> begins, size
     ByteSource source(bytes.substr(begins[first]));
     std::istream stream(&source);
     stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-    const T background = static_cast<T>(coding.background);
+    const T background = background_of<T>(coding);
     openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), coding.file_version);
     openvdb::io::setDataCompression(stream, coding.compression);
     openvdb::io::setGridBackgroundValuePtr(stream, &background);
     for (size_t n = first; n < last; ++n) {
         if (begins[first] + source.taken() != begins[n]) throw std::runtime_error("a leaf ends elsewhere");
-        decode<T>(stream, coding.half, leaves[n], active[n]);
+        decode<T>(stream, coding, leaves[n], active[n]);
     }
     const uint64_t end = last < begins.size() ? begins[last] : bytes.size();
     if (begins[first] + source.taken() != end) throw std::runtime_error("a leaf ends elsewhere");
@@ -113,8 +133,19 @@ void decode_leaves(std::string_view bytes, std::span<const uint64_t> begins, con
                    std::span<Leaf> leaves, std::span<VoxelMask> active) {
     assert(leaves.size() == begins.size() && active.size() == begins.size());
     parallel_ranges(static_cast<int64_t>(begins.size()), 64, [&](int64_t begin, int64_t end) {
-        const auto range = coding.is_double ? decode_range<double> : decode_range<float>;
-        range(bytes, begins, static_cast<size_t>(begin), static_cast<size_t>(end), coding, leaves, active);
+        const auto decode = [&](auto range) {
+            range(bytes, begins, static_cast<size_t>(begin), static_cast<size_t>(end), coding, leaves, active);
+        };
+        switch (coding.value) {
+        case LeafValue::single:
+            return decode(decode_range<float>);
+        case LeafValue::wide:
+            return decode(decode_range<double>);
+        case LeafValue::three_single:
+            return decode(decode_range<openvdb::Vec3s>);
+        case LeafValue::three_wide:
+            return decode(decode_range<openvdb::Vec3d>);
+        }
     });
 }
 }

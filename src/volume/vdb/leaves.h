@@ -24,11 +24,14 @@ struct EncodedLeaves {
 // vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
 EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression);
 
-// How a file holds the leaves of a float or double tree.
+// How a file holds the leaves of a tree of floats, doubles or three of them, and which of the three is wanted.
+enum class LeafValue { single, wide, three_single, three_wide };
 struct LeafCoding {
     uint32_t file_version = 0, compression = 0;
-    bool half = false, is_double = false;
-    double background = 0;
+    bool half = false;
+    LeafValue value = LeafValue::single;
+    int component = 0;
+    dvec3 background{0}; // of numbers the first
 };
 
 // Decodes the leaf that begins at each position into the leaf and the mask of that number; origins stay. Throws when

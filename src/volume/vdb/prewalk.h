@@ -43,9 +43,10 @@ struct VdbTreeCounts {
     std::vector<uint64_t> leaf_begins;            // where the values of each leaf begin, from the start of the tree
 };
 
-// Grid types whose trees walk_tree can read, and those that hold one density per voxel.
+// Grid types whose trees walk_tree can read, those that hold one number per voxel, and those that hold three.
 bool is_walkable(const VdbGridEntry& grid);
 bool is_scalar_float(const VdbGridEntry& grid);
+bool is_vector_float(const VdbGridEntry& grid);
 
 // Checks topology, voxel masks and every chunk of values from the cursor's position to the end of the tree.
 // Root nodes further than 2^24 voxels from the origin are refused.

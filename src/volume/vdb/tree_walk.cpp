@@ -227,6 +227,10 @@ bool is_scalar_float(const VdbGridEntry& grid) {
     return is_walkable(grid) && (grid.type == "float" || grid.type == "double");
 }
 
+bool is_vector_float(const VdbGridEntry& grid) {
+    return is_walkable(grid) && (grid.type == "vec3s" || grid.type == "vec3d");
+}
+
 VdbTreeCounts walk_tree(ByteCursor& bytes, const VdbGridEntry& grid) {
     const TreeFormat* format = find_format(grid);
     if (!format) bytes.complain("holds " + printable(grid.type, 40) + " values");

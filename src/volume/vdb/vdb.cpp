@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/text.h"
+#include "volume/vdb/choose.h"
 #include "volume/vdb/codec.h"
 #include "volume/vdb/fog.h"
 #include "volume/vdb/head.h"
@@ -11,111 +12,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <fstream>
 #include <limits>
 #include <new>
 
 namespace tyndall {
 namespace {
-std::string label(const ByteCursor& file, const VdbGridEntry& grid) {
-    return file.where + ": grid \"" + printable(grid.name, 80) + "\"";
-}
-
-// Why a grid cannot be fog; empty when it can.
-std::string obstacle(const VdbGridEntry& grid) {
-    if (!is_scalar_float(grid) && (grid.type == "float" || grid.type == "double"))
-        return "has the tree shape " + printable(grid.tree_shape, 40) + ", only 5_4_3 can be read";
-    if (!is_scalar_float(grid)) return "holds " + printable(grid.type, 40) + " values, not a density per voxel";
-    if (grid.grid_class == "level set")
-        return "is a level set; convert it to fog first (vdb_tool -read in.vdb -ls2fog -write fog.vdb)";
-    return grid.transform_problem;
-}
-
-// The grids of a name in file order.
-std::vector<const VdbGridEntry*> grids_named(const VdbDirectory& directory, std::string_view name) {
-    std::vector<const VdbGridEntry*> found;
-    for (const VdbGridEntry& grid : directory.grids)
-        if (grid.name == name) found.push_back(&grid);
-    return found;
-}
-
-// What grid_called finds it by: its name, with an index where several have the name or it has none.
-std::string key_of(const VdbDirectory& directory, const VdbGridEntry& grid) {
-    const auto alike = grids_named(directory, grid.name);
-    if (alike.size() == 1 && !grid.name.empty()) return grid.name;
-    return grid.name + "[" + std::to_string(std::ranges::find(alike, &grid) - alike.begin()) + "]";
-}
-
-std::string listing(const VdbDirectory& directory) {
-    std::vector<std::string> names;
-    for (const VdbGridEntry& grid : directory.grids) {
-        const bool level_set = grid.grid_class == "level set";
-        names.push_back(printable(key_of(directory, grid), 40) + " (" + printable(grid.type, 24) +
-                        (level_set ? ", level set)" : ")"));
-    }
-    return joined(names, ", ");
-}
-
-// A name, or name[index] when no grid is called so to the letter.
-const VdbGridEntry* grid_called(const VdbDirectory& directory, std::string_view wanted) {
-    if (const auto exact = grids_named(directory, wanted); !exact.empty()) return exact.front();
-    const size_t open = wanted.rfind('[');
-    if (open == std::string_view::npos || !wanted.ends_with(']')) return nullptr;
-    const auto index = parsed<size_t>(wanted.substr(open + 1, wanted.size() - open - 2));
-    const auto found = grids_named(directory, wanted.substr(0, open));
-    return index && *index < found.size() ? found[*index] : nullptr;
-}
-
-// Names by which programs write quantities other than a density.
-bool names_another_quantity(std::string_view name) {
-    constexpr std::string_view others[] = {"temperature", "temp",  "heat", "flame",    "flames",  "fire", "fuel",
-                                           "burn",        "color", "cd",   "emission", "shadow",  "vel",  "velocity",
-                                           "pressure",    "v",     "rest", "uvw",      "surface", "sdf"};
-    std::string lower(name);
-    for (char& letter : lower) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return std::ranges::count(others, std::string_view(lower).substr(0, lower.find('.'))) > 0;
-}
-
-// What is taken when no grid is named: the first density; else the only one that can be fog and is not called something
-// else, or is alone of class fog volume; null when there is none such.
-const VdbGridEntry* fog_of(const VdbDirectory& directory) {
-    std::vector<const VdbGridEntry*> usable, fog;
-    for (const VdbGridEntry& grid : directory.grids) {
-        if (!obstacle(grid).empty()) continue;
-        if (grid.name == "density") return &grid;
-        if (names_another_quantity(grid.name)) continue;
-        usable.push_back(&grid);
-        if (grid.grid_class == "fog volume") fog.push_back(&grid);
-    }
-    if (!grids_named(directory, "density").empty()) return nullptr;
-    if (usable.size() == 1) return usable.front();
-    return fog.size() == 1 ? fog.front() : nullptr;
-}
-
-[[noreturn]] void refuse_without_fog(const VdbDirectory& directory, const ByteCursor& file) {
-    const auto named = grids_named(directory, "density");
-    const bool one = directory.grids.size() == 1;
-    const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return obstacle(grid).empty(); });
-    const VdbGridEntry& first = named.empty() ? directory.grids.front() : *named.front();
-    if (any && one) refuse(label(file, first), "is not called a density; if it is the fog, name it as \"grid\"");
-    const std::string others = "; \"grid\" takes one of " + listing(directory);
-    if (one || !named.empty()) refuse(label(file, first), obstacle(first) + (any ? others : ""));
-    refuse(file.where, any ? "it is not clear which grid is the fog" + others
-                           : "none of its grids can be fog: " + listing(directory));
-}
-
-const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, const ByteCursor& file) {
-    if (wanted.empty()) {
-        if (const VdbGridEntry* fog = fog_of(directory)) return *fog;
-        refuse_without_fog(directory, file);
-    }
-    const VdbGridEntry* grid = grid_called(directory, wanted);
-    if (!grid) refuse(file.where, "has no grid \"" + printable(wanted, 60) + "\", it holds " + listing(directory));
-    if (const std::string why = obstacle(*grid); !why.empty()) refuse(label(file, *grid), why);
-    return *grid;
-}
-
 // Most memory this process may hope for: of the machine, its control group and its own limit.
 uint64_t available_memory() {
     uint64_t most = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
@@ -143,8 +45,8 @@ void check_memory(uint64_t bytes, const std::string& where) {
 }
 
 // Reads the bytes of a tree once, walks them, and decodes the very bytes that were walked.
-DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid,
-                      VdbTreeCounts& counts) {
+DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid, VdbTreeCounts& counts,
+                      int component = 0) {
     const std::string where = label(file, grid);
     const uint64_t size = grid.tree_end - grid.tree_begin;
     check_memory(size, where);
@@ -157,7 +59,7 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     counts = walk_tree(tree, grid);
     if (tree.left() > 0) tree.complain("its voxels end before the grid does");
     check_memory(size + memory_needed(counts), where);
-    return decode_tree(bytes, grid, counts, directory.file_version, where);
+    return decode_tree(bytes, grid, counts, directory.file_version, where, component);
 }
 
 // An allocation that fails is the user's to know, not a crash.
@@ -172,7 +74,7 @@ template<class Body> auto within_memory(const std::filesystem::path& path, const
 VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid) {
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
-    info.key = key_of(directory, grid);
+    info.key = key_of(directory, grid), info.role = role_of(grid);
     info.why_not = obstacle(grid), info.usable = info.why_not.empty(), info.is_fog = fog_of(directory) == &grid;
     info.index_to_world = grid.index_to_world;
     for (int axis = 0; axis < 3; ++axis)
@@ -181,11 +83,15 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     if (!is_walkable(grid)) return info;
 
     VdbTreeCounts counts;
-    if (is_scalar_float(grid)) {
-        const DecodedTree tree = load_tree(file, directory, grid, counts);
-        const ActiveBox box = active_box(tree);
-        info.active_low = box.low, info.active_high = box.high;
-        add_statistics(tree, info);
+    const bool numbers = is_scalar_float(grid), vectors = is_vector_float(grid);
+    if (numbers || vectors) {
+        for (int component = vectors ? 2 : 0; component >= 0; --component) {
+            const DecodedTree tree = load_tree(file, directory, grid, counts, component);
+            const ActiveBox box = active_box(tree);
+            info.active_low = box.low, info.active_high = box.high;
+            add_statistics(tree, info);
+            if (vectors) info.ranges.insert(info.ranges.begin(), {info.minimum, info.maximum});
+        }
     } else {
         const std::string where = std::exchange(file.where, label(file, grid));
         file.seek(grid.tree_begin, "the grid");
@@ -197,20 +103,64 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     return info;
 }
 
-SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {
+// One more volume of the file, cleaned; adds what was mended to the report.
+SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const ByteCursor& file, VdbReadReport& report) {
+    SparseVolume volume;
+    VdbReadReport own;
+    volume.name = grid.name, volume.index_to_world = grid.index_to_world;
+    make_fog(std::move(tree), volume, own, label(file, grid));
+    report.non_finite += own.non_finite, report.negative += own.negative;
+    report.background = own.background, report.empty = own.empty;
+    return volume;
+}
+
+// Distances are known up to the narrow band only, which the background is as far as.
+void check_width(const ValueMap& map, const DecodedTree& tree, const std::string& where) {
+    if (!(map.width > tree.background) || !(tree.background > 0)) return;
+    refuse(where, formatted("its narrow band is %g wide, in the file's units: a \"width\" of %g passes it",
+                            static_cast<double>(tree.background), static_cast<double>(map.width)));
+}
+
+SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
+                      VdbReadReport* report) {
     ByteCursor file(path);
     VdbDirectory directory = read_directory(file);
-    const VdbGridEntry& grid = choose_grid(directory, wanted, file);
-
-    SparseVolume volume;
+    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file);
     VdbReadReport mended;
     VdbTreeCounts counts;
-    volume.name = mended.grid = grid.name;
-    volume.index_to_world = grid.index_to_world;
-    make_fog(load_tree(file, directory, grid, counts), volume, mended, label(file, grid));
+    mended.grid = grid.name;
+    DecodedTree tree = load_tree(file, directory, grid, counts);
+    if (map.width > 0) check_width(map, tree, label(file, grid));
+    apply(map, tree);
+    if (most < infinity) limit(tree, most, mended);
+    SparseVolume volume = cleaned_volume(std::move(tree), grid, file, mended);
     volume.metadata = std::move(directory.metadata);
     if (report) *report = mended;
     return volume;
+}
+
+ColorVolume read_color(const std::filesystem::path& path, std::span<const std::string> names, const ValueMap& map,
+                       float most, VdbReadReport* report) {
+    ByteCursor file(path);
+    const VdbDirectory directory = read_directory(file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const int channels = is_vector_float(*grids[0]) ? 3 : static_cast<int>(grids.size());
+    ColorVolume color;
+    VdbReadReport mended;
+    mended.grid = names.size() == 1 ? names[0] : grids[0]->name;
+    for (int c = 0; c < channels; ++c) {
+        const VdbGridEntry& grid = *grids[grids.size() == 1 ? 0 : static_cast<size_t>(c)];
+        VdbTreeCounts counts;
+        DecodedTree tree = load_tree(file, directory, grid, counts, is_vector_float(grid) ? c : 0);
+        apply(map, tree);
+        keep_active(tree);
+        if (most < infinity) limit(tree, most, mended);
+        VdbReadReport nothing;
+        if (c == 0) color.there = cleaned_volume(active_share(tree), grid, file, nothing);
+        color.channels.push_back(cleaned_volume(std::move(tree), grid, file, mended));
+    }
+    if (report) *report = mended;
+    return color;
 }
 
 VdbInfo file_info(const std::filesystem::path& path) {
@@ -227,7 +177,17 @@ VdbInfo file_info(const std::filesystem::path& path) {
 }
 
 SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {
-    return within_memory(path, [&] { return read_fog(path, wanted, report); });
+    return read_vdb(path, wanted, ValueMap(), infinity, report);
+}
+
+SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
+                      VdbReadReport* report) {
+    return within_memory(path, [&] { return read_fog(path, wanted, map, most, report); });
+}
+
+ColorVolume read_color_vdb(const std::filesystem::path& path, std::span<const std::string> grids, const ValueMap& map,
+                           float most, VdbReadReport* report) {
+    return within_memory(path, [&] { return read_color(path, grids, map, most, report); });
 }
 
 VdbInfo vdb_info(const std::filesystem::path& path) {
@@ -264,6 +224,8 @@ std::string VdbReadReport::summary() const {
     if (empty) parts.push_back("is empty");
     if (non_finite) parts.push_back(std::to_string(non_finite) + " voxels that are not finite set to 0");
     if (negative) parts.push_back(std::to_string(negative) + " negative voxels set to 0");
+    if (above)
+        parts.push_back(std::to_string(above) + formatted(" voxels above %g set to it", static_cast<double>(most)));
     if (background != 0)
         parts.push_back(formatted("background %g dropped outside the active voxels", static_cast<double>(background)));
     return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");

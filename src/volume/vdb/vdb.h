@@ -1,11 +1,14 @@
 // OpenVDB files in and out, guarded against cut, hostile and half-written ones. The only user of OpenVDB.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
+#include "volume/value_map.h"
+#include "volume/vdb/roles.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +52,7 @@ private:
 struct VdbGridInfo {
     std::string name, type, grid_class; // "density", "float", "fog volume"
     std::string key;                    // what to ask read_vdb for: "density[1]" where several have the name
+    GridRole role = GridRole::other;    // what it looks like
     bool usable = false;                // can be rendered as fog
     bool is_fog = false;                // is, where no grid is named
     std::string why_not;                // when it cannot
@@ -56,7 +60,8 @@ struct VdbGridInfo {
     vec3 voxel_size{0};
     ivec3 active_low{0}, active_high{-1};
     uint64_t active_voxels = 0, leaves = 0, tiles = 0;
-    float minimum = 0, maximum = 0, mean = 0, background = 0;
+    float minimum = 0, maximum = 0, mean = 0, background = 0; // of vectors of the first component
+    std::vector<Interval<float>> ranges;                      // of vectors: of each component
     uint64_t non_finite = 0, negative = 0;
     uint64_t memory_bytes = 0;
     std::vector<std::pair<std::string, std::string>> metadata;
@@ -75,6 +80,8 @@ VdbInfo vdb_info(const std::filesystem::path& file);
 // What was mended while reading; say it to the user once per file.
 struct VdbReadReport {
     uint64_t non_finite = 0, negative = 0; // voxels set to 0
+    uint64_t above = 0;                    // voxels above the most that is wanted, which they are set to
+    float most = infinity;                 // that
     float background = 0;                  // non-zero: fog outside the active box was dropped
     std::string grid;                      // the one that was read
     bool empty = false;                    // it holds no active voxels
@@ -85,6 +92,21 @@ struct VdbReadReport {
 // the only one that can be fog and is not called as another quantity is. Throws Error: an unknown name lists what is
 // there, a level set says what to do.
 SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid = {}, VdbReadReport* report = nullptr);
+
+// The same with every value mapped before it is cleaned. Where the grid has no voxels it stays 0. Level sets are taken
+// with a map that has a width, which may not pass their narrow band. Values above `most` are set to it and counted.
+SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid, const ValueMap& map, float most,
+                      VdbReadReport* report);
+
+// A colour from a grid of vectors, three grids of numbers, or one of them for all channels.
+struct ColorVolume {
+    std::vector<SparseVolume> channels; // three, or one for all; 0 where `there` is
+    SparseVolume there;                 // 1 at active voxels
+};
+// `grids`: a name, or three. A name that is not there stands for name.x, name.y and name.z where these are. Values
+// above `most` are set to it and counted. Throws Error as read_vdb().
+ColorVolume read_color_vdb(const std::filesystem::path& file, std::span<const std::string> grids, const ValueMap& map,
+                           float most, VdbReadReport* report);
 
 // Metadata of the file without its voxels (optics and frame written by a bake).
 std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);

@@ -32,6 +32,12 @@ template<class Grid> void fill(openvdb::GridBase& base, const AuthoredGrid& spec
     if constexpr (!std::is_same_v<Grid, openvdb::MaskGrid>) {
         if (spec.background != 0) tree.root().setBackground(as_value<Value>(spec.background), true);
         for (const auto& [at, value] : spec.voxels) tree.setValueOn(coord(at), as_value<Value>(value));
+        if constexpr (openvdb::VecTraits<Value>::IsVec)
+            for (const auto& [at, value] : spec.colors) {
+                using Number = typename openvdb::VecTraits<Value>::ElementType;
+                tree.setValueOn(coord(at), Value(static_cast<Number>(value.x), static_cast<Number>(value.y),
+                                                 static_cast<Number>(value.z)));
+            }
     } else {
         for (const auto& voxel : spec.voxels) tree.setValueOn(coord(voxel.first));
     }

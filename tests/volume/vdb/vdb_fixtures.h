@@ -31,6 +31,7 @@ struct AuthoredGrid {
     int instance_of = -1;            // shares the tree of an earlier grid
     std::vector<AuthoredTile> tiles; // of float and double grids
     std::vector<std::pair<ivec3, float>> voxels;
+    std::vector<std::pair<ivec3, vec3>> colors; // of grids of vectors
     std::vector<std::pair<ivec3, float>> inactive_voxels;
 };
 

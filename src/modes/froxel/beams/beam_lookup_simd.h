@@ -142,7 +142,7 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
         const Floats change = here.extinction * length * (walk.picture.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);
-        Vec3s towards = scattering(walk.picture.scene->snapshot.media, -u / max(distance, 1e-20f),
+        Vec3s towards = scattering(walk.picture.scene->snapshot.media, point, -u / max(distance, 1e-20f),
                                    [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, slice, point); });
         if (walk.light.filter) towards = walk.filtered(towards, point, distance);
         sum = fused(towards, zero_unless(here_too, amount), sum);

@@ -44,7 +44,7 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               angles.length(weight, slope) * exp(-dimmed) *
                               style_fade(scene.style, walk.picture.grid.camera, point);
-        Vec3s towards = scattering(scene.snapshot.media, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
+        Vec3s towards = scattering(scene.snapshot.media, point, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
             const Medium& medium = scene.snapshot.media[m];
             return density16(medium, point) * grey_extinction(medium.optics);
         });

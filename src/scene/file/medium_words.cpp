@@ -1,0 +1,81 @@
+#include "scene/file/medium_words.h"
+
+#include "base/error.h"
+#include "base/io/json.h"
+#include "base/text.h"
+#include "scene/file/scene_words.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tyndall {
+namespace {
+constexpr float hottest = 2000;  // kelvin, of a temperature that is not in kelvin: the yellow of a wood fire
+constexpr float in_kelvin = 500; // values beyond are taken for it
+
+// The first grid that looks like something and holds more than 0.
+const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
+    const auto found = std::ranges::find_if(info.grids, [&](const VdbGridInfo& grid) {
+        return grid.role == role && grid.active_voxels > 0 && grid.maximum > 0;
+    });
+    return found == info.grids.end() ? nullptr : &*found;
+}
+
+// A number to three digits, without an exponent where people write none.
+std::string digits(float value) {
+    return json_number(parsed<float>(formatted("%.3g", static_cast<double>(value))).value_or(0));
+}
+
+std::string member(const std::string& name, const std::string& value) { return quote_json(name) + ": " + value; }
+
+// A color of three grids goes by what their names have in common.
+std::string color_name(const VdbGridInfo& grid) {
+    const size_t dot = grid.name.rfind('.');
+    return quote_json(grid.ranges.empty() && dot != std::string::npos ? grid.name.substr(0, dot) : grid.key);
+}
+
+std::string temperature_text(const VdbGridInfo& grid) {
+    if (grid.maximum > in_kelvin) return quote_json(grid.key);
+    return "{" + member("grid", quote_json(grid.key)) + ", " + member("scale", digits(hottest / grid.maximum)) + "}";
+}
+
+// The grid of the density, or a level set, and what is said of it.
+std::string density_text(const VdbGridInfo& grid) {
+    if (grid.role != GridRole::level_set) return quote_json(grid.key);
+    return "{" + member("grid", quote_json(grid.key)) + ", " + member("width", digits(0.5f * grid.background)) + "}";
+}
+
+const VdbGridInfo* density_of(const VdbInfo& info) {
+    for (const VdbGridInfo& grid : info.grids)
+        if (grid.is_fog) return &grid;
+    const VdbGridInfo* level_set = grid_like(info, GridRole::level_set);
+    return level_set && level_set->background > 0 ? level_set : nullptr;
+}
+}
+
+float usual_extinction(const VdbGridInfo& fog) {
+    const Box voxels{vec3(fog.active_low) - 0.5f, vec3(fog.active_high) + 0.5f};
+    const float diagonal = std::max(glm::length(transform(mat4(fog.index_to_world), voxels).size()), 1e-3f);
+    return 4 / (diagonal * (fog.role == GridRole::level_set ? 1.0f : fog.maximum));
+}
+
+std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
+    const VdbGridInfo *density = density_of(info), *color = grid_like(info, GridRole::color),
+                      *temperature = grid_like(info, GridRole::temperature), *flame = grid_like(info, GridRole::flame);
+    if (!temperature) temperature = std::exchange(flame, nullptr); // hot where it is bright
+    const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
+    if (!density && !temperature && !emission) return {};
+    const bool dims = density && density->maximum > 0;
+    std::vector<std::string> grids;
+    if (dims) grids.push_back(member("density", density_text(*density)));
+    if (dims && color) grids.push_back(member("albedo", color_name(*color)));
+    if (temperature) grids.push_back(member("temperature", temperature_text(*temperature)));
+    if (flame) grids.push_back(member("flame", quote_json(flame->key)));
+    if (emission) grids.push_back(member("emission", color_name(*emission)));
+    std::string text = "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
+                       ", " + member("extinction", dims ? digits(usual_extinction(*density)) : "0");
+    if (!grids.empty()) text += ", " + member("grids", "{" + joined(grids, ", ") + "}");
+    if (temperature) text += ", " + member("blackbody", "{\"convention\": \"kelvin\", \"emission_scale\": 1}");
+    return text + "}";
+}
+}

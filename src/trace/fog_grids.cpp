@@ -1,0 +1,261 @@
+#include "trace/fog_grids.h"
+
+#include "base/error.h"
+#include "base/io/cache_folder.h"
+#include "base/io/file.h"
+#include "base/text.h"
+#include "scene/scene.h"
+#include "trace/fog.h"
+#include "volume/bricks/bricks.h"
+#include "volume/bricks/half.h"
+#include "volume/medium.h"
+#include "volume/vdb/vdb.h"
+
+#include <map>
+
+namespace tyndall {
+namespace {
+// A property as cache files keep it.
+struct StoredProperty {
+    std::vector<BrickPool> pools; // of the channels, then where there is a color
+    std::vector<dmat4> places;    // of each
+    std::string note;             // what was mended in its file
+};
+
+template<class Visit> void fields(StoredProperty& property, Visit& visit) {
+    size_t count = property.pools.size();
+    visit(count), visit(property.places), visit(property.note);
+    property.pools.resize(count);
+    for (BrickPool& pool : property.pools) fields(pool, visit);
+}
+
+// What a property is: numbers, of which there is a most; or colors, which may be shares.
+enum class Quantity { number, color, share };
+
+void add_pool(const SparseVolume& volume, StoredProperty& property) {
+    property.pools.push_back(*make_bricks(volume)), property.places.push_back(volume.index_to_world);
+}
+
+StoredProperty read_property(const std::filesystem::path& file, const GridSource& source, Quantity quantity) {
+    StoredProperty property;
+    VdbReadReport report;
+    if (quantity == Quantity::number) {
+        add_pool(read_vdb(file, source.grids[0], source.map, largest_half, &report), property);
+    } else {
+        const float most = quantity == Quantity::share ? 1 : largest_half;
+        const ColorVolume color = read_color_vdb(file, source.grids, source.map, most, &report);
+        for (const SparseVolume& channel : color.channels) add_pool(channel, property);
+        add_pool(color.there, property);
+    }
+    property.note = report.summary();
+    return property;
+}
+
+std::string grids_text(const GridSource& source) {
+    std::string text = joined(source.grids, "\n");
+    return text + source.map.text();
+}
+
+// What reading needs beside the property.
+struct Reading {
+    Moment moment;
+    MissingFrame missing;
+    Snapshot& snapshot;
+};
+
+GridProperty read(const std::optional<GridSource>& source, Quantity quantity, const Reading& reading,
+                  const GridProperty* before) {
+    if (!source) return {};
+    const auto file = sequence_file(source->sequence, reading.moment.frame, reading.missing);
+    if (!file) return {};
+    const uint64_t size = check_readable(*file);
+    const auto changed = std::filesystem::last_write_time(*file).time_since_epoch().count();
+    GridProperty property;
+    property.key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) + " " +
+                   grids_text(*source);
+    if (before && before->key == property.key) return *before;
+    CacheFolder* files = reading.snapshot.files.get();
+    const std::string content =
+        files ? "property " + file_hash(*file, *files->inputs) + " " + grids_text(*source) : std::string();
+    StoredProperty stored = found_or_made<StoredProperty>(files, "bricks", content,
+                                                          [&] { return read_property(*file, *source, quantity); });
+    if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
+    std::vector<PlacedBricks> pools;
+    for (size_t i = 0; i < stored.pools.size(); ++i)
+        pools.push_back({std::make_shared<const BrickPool>(std::move(stored.pools[i])), stored.places[i]});
+    if (quantity != Quantity::number) property.there = pools.back(), pools.pop_back();
+    for (size_t c = 0; c < 3; ++c) property.channels[c] = pools[pools.size() == 3 ? c : 0];
+    return property;
+}
+
+std::array<std::shared_ptr<const BrickPool>, 3> bricks_of(const GridProperty& property) {
+    return {property.channels[0].bricks, property.channels[1].bricks, property.channels[2].bricks};
+}
+
+// What follows from the properties in the place their files give them.
+std::string key_of(const MediumSource& source, double seconds, const MediumGrids& grids, const FogSource& fog) {
+    std::string key;
+    for (const GridProperty* property : {&grids.albedo, &grids.emission, &grids.temperature, &grids.flame})
+        key += property->key + "\n";
+    key += fog.key;
+    if (!source.blackbody) return key;
+    key += formatted("\n%d %d %a", static_cast<int>(source.blackbody->kind), source.blackbody->by_absorption,
+                     static_cast<double>(source.blackbody->intensity));
+    const vec3 albedo = source.albedo.at(seconds);
+    if (source.blackbody->by_absorption)
+        for (int c = 0; c < 3; ++c) key += formatted(" %a", static_cast<double>(albedo[c]));
+    return key;
+}
+
+EmissionPart part_of(EmissionField field, const dmat4& place, const std::string& name) {
+    const LuminanceBricks light = luminance_bricks(field, place, name);
+    if (!light.bricks) return {};
+    field.spread = light.spread, field.out_of_gamut = light.out_of_gamut;
+    return {std::make_shared<const EmissionField>(std::move(field)), {light.bricks, place}, light.radiance};
+}
+
+EmissionPart blackbody_part(const MediumSource& source, double seconds, const MediumGrids& grids,
+                            const FogSource& fog) {
+    const BlackbodySource& blackbody = *source.blackbody;
+    if (!grids.temperature || (blackbody.by_absorption && !fog.bricks)) return {};
+    if (source.flame && !grids.flame) return {};
+    EmissionField field;
+    field.table = blackbody_table(blackbody.kind, blackbody.intensity);
+    field.source = bricks_of(grids.temperature);
+    field.strength = grids.flame.channels[0].bricks;
+    if (blackbody.by_absorption) {
+        field.absorber = fog.bricks;
+        if (grids.color) field.albedo = grids.color, field.base_albedo = source.albedo.at(seconds);
+    }
+    return part_of(std::move(field), grids.temperature.channels[0].index_to_world, source.name);
+}
+
+EmissionPart colored_part(const MediumSource& source, const MediumGrids& grids) {
+    if (!grids.emission) return {};
+    for (const PlacedBricks& channel : grids.emission.channels)
+        if (channel.index_to_world != grids.emission.channels[0].index_to_world)
+            refuse("medium " + source.name, "the three grids of its emission have different transforms");
+    EmissionField field;
+    field.source = bricks_of(grids.emission);
+    return part_of(std::move(field), grids.emission.channels[0].index_to_world, source.name);
+}
+
+// Pools where the medium's transform puts them; each is moved once.
+class Placement {
+public:
+    explicit Placement(const mat4& matrix) : matrix_(matrix) {}
+    void add(const PlacedBricks& pool) {
+        if (pool.bricks) places_.emplace(pool.bricks.get(), pool.index_to_world);
+    }
+    void add(const std::shared_ptr<const BrickPool>& pool, const std::shared_ptr<const BrickPool>& placed) {
+        moved_[pool.get()] = placed;
+    }
+    std::shared_ptr<const BrickPool> operator()(const std::shared_ptr<const BrickPool>& pool) {
+        if (!pool || matrix_ == mat4(1)) return pool;
+        std::shared_ptr<const BrickPool>& moved = moved_[pool.get()];
+        if (moved) return moved;
+        auto copy = std::make_shared<BrickPool>(*pool);
+        place(*copy, dmat4(matrix_) * places_.at(pool.get()));
+        return moved = copy;
+    }
+    std::shared_ptr<const AlbedoField> operator()(const std::shared_ptr<const AlbedoField>& field) {
+        if (!field || matrix_ == mat4(1)) return field;
+        if (color_) return color_;
+        auto copy = std::make_shared<AlbedoField>(*field);
+        for (auto& pool : copy->color) pool = (*this)(pool);
+        copy->there = (*this)(copy->there);
+        return color_ = copy;
+    }
+    EmissionPart operator()(const EmissionPart& part) {
+        if (!part.field || matrix_ == mat4(1)) return part;
+        auto copy = std::make_shared<EmissionField>(*part.field);
+        for (auto& pool : copy->source) pool = (*this)(pool);
+        copy->strength = (*this)(copy->strength), copy->absorber = (*this)(copy->absorber);
+        copy->albedo = (*this)(copy->albedo);
+        add(part.luminance);
+        return {copy, {(*this)(part.luminance.bricks), part.luminance.index_to_world}, part.radiance};
+    }
+
+private:
+    mat4 matrix_;
+    std::map<const BrickPool*, dmat4> places_;
+    std::map<const BrickPool*, std::shared_ptr<const BrickPool>> moved_;
+    std::shared_ptr<const AlbedoField> color_;
+};
+
+void place_grids(const mat4& matrix, const FogSource& fog, MediumGrids& grids) {
+    Placement placement(matrix);
+    for (const GridProperty* property : {&grids.albedo, &grids.emission, &grids.temperature, &grids.flame}) {
+        for (const PlacedBricks& channel : property->channels) placement.add(channel);
+        placement.add(property->there);
+    }
+    if (fog.bricks) placement.add(fog.bricks, fog.placed);
+    grids.placed_color = placement(grids.color);
+    grids.placed_blackbody = placement(grids.blackbody), grids.placed_colored = placement(grids.colored);
+    grids.matrix = matrix, grids.is_placed = true;
+}
+
+void append_part(const EmissionPart& part, const std::string& name, vec3 scale, Snapshot& snapshot) {
+    if (!part.field || !(max_component(scale) > 0)) return;
+    Medium medium;
+    medium.name = name;
+    medium.optics.extinction = vec3(min_extinction), medium.optics.albedo = vec3(0);
+    medium.optics.emission = {part.radiance * scale, part.field, scale};
+    medium.density.kind = DensityKind::bricks, medium.density.bricks = part.luminance.bricks;
+    medium.world_bounds = part.luminance.bricks->bounds;
+    snapshot.media.push_back(std::move(medium));
+}
+}
+
+bool has_grids(const MediumSource& source) {
+    return source.albedo_grid || source.emission_grid || (source.blackbody && source.temperature);
+}
+
+std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, MissingFrame missing,
+                                                const mat4& matrix, const FogSource& fog, const MediumGrids* before,
+                                                Snapshot& snapshot) {
+    const Reading reading{moment, missing, snapshot};
+    auto grids = std::make_shared<MediumGrids>();
+    grids->albedo = read(source.albedo_grid, Quantity::share, reading, before ? &before->albedo : nullptr);
+    grids->emission = read(source.emission_grid, Quantity::color, reading, before ? &before->emission : nullptr);
+    grids->temperature = read(source.temperature, Quantity::number, reading, before ? &before->temperature : nullptr);
+    grids->flame = read(source.flame, Quantity::number, reading, before ? &before->flame : nullptr);
+    grids->key = key_of(source, moment.seconds, *grids, fog);
+    if (before && before->key == grids->key) {
+        *grids = *before;
+        if (grids->is_placed && grids->matrix == matrix) return grids;
+    } else {
+        if (grids->albedo) {
+            AlbedoField color{bricks_of(grids->albedo), grids->albedo.there.bricks};
+            const MeanFactor mean = mean_factor(color, {fog.bricks, fog.index_to_world});
+            color.spread = mean.spread, grids->mean_factor = mean.mean;
+            grids->color = std::make_shared<const AlbedoField>(std::move(color));
+        }
+        if (source.blackbody) grids->blackbody = blackbody_part(source, moment.seconds, *grids, fog);
+        grids->colored = colored_part(source, *grids);
+    }
+    place_grids(matrix, fog, *grids);
+    return grids;
+}
+
+void color_medium(const MediumSource& source, double seconds, const MediumGrids& grids, Medium& medium) {
+    if (!grids.placed_color) return;
+    medium.optics.base_albedo = source.albedo.at(seconds);
+    medium.optics.albedo = medium.optics.base_albedo * grids.mean_factor;
+    medium.optics.albedo_field = grids.placed_color;
+}
+
+void append_light(const MediumSource& source, double seconds, const MediumGrids& grids, Snapshot& snapshot) {
+    if (source.blackbody) {
+        const BlackbodySource& blackbody = *source.blackbody;
+        vec3 scale = blackbody.scale.at(seconds) * blackbody.tint.at(seconds);
+        if (blackbody.by_absorption) {
+            scale *= source.extinction.at(seconds);
+            const EmissionField* field = grids.placed_blackbody.field.get();
+            if (field && !field->albedo) scale *= 1.0f - source.albedo.at(seconds);
+        }
+        append_part(grids.placed_blackbody, source.name + " (blackbody)", scale, snapshot);
+    }
+    append_part(grids.placed_colored, source.name + " (emission)", source.emission.at(seconds), snapshot);
+}
+}

@@ -1,0 +1,53 @@
+#include "volume/vdb/roles.h"
+
+#include "volume/vdb/prewalk.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+namespace tyndall {
+namespace {
+struct NamedRole {
+    std::string_view name;
+    GridRole role;
+};
+// Houdini, Mantaflow, EmberGen, Bifrost and the attributes that renderers know.
+constexpr NamedRole named_roles[] = {
+    {"temperature", GridRole::temperature},
+    {"temp", GridRole::temperature},
+    {"heat", GridRole::flame},
+    {"flame", GridRole::flame},
+    {"flames", GridRole::flame},
+    {"fire", GridRole::flame},
+    {"burn", GridRole::flame},
+    {"fuel", GridRole::other},
+    {"color", GridRole::color},
+    {"cd", GridRole::color},
+    {"emission", GridRole::emission},
+    {"shadow", GridRole::other},
+    {"vel", GridRole::velocity},
+    {"velocity", GridRole::velocity},
+    {"v", GridRole::velocity},
+    {"pressure", GridRole::other},
+    {"rest", GridRole::other},
+    {"uvw", GridRole::other},
+    {"surface", GridRole::level_set},
+    {"sdf", GridRole::level_set},
+};
+}
+
+GridRole role_of_name(std::string_view name) {
+    std::string lower(name.substr(0, name.find('.')));
+    for (char& letter : lower) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    const auto found = std::ranges::find(named_roles, std::string_view(lower), &NamedRole::name);
+    return found == std::end(named_roles) ? GridRole::density : found->role;
+}
+
+GridRole role_of(const VdbGridEntry& grid) {
+    const GridRole named = role_of_name(grid.name);
+    if (is_vector_float(grid)) return named == GridRole::density ? GridRole::other : named;
+    if (!is_scalar_float(grid)) return GridRole::other;
+    return grid.grid_class == "level set" ? GridRole::level_set : named;
+}
+}

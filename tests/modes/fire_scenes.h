@@ -1,0 +1,25 @@
+// Fog whose light and colors come from grids, written to files of a test's own folder.
+#pragma once
+#include "scene/scene.h"
+#include "support/scratch.h"
+#include "trace/snapshot.h"
+#include "volume/bricks/sparse_volume.h"
+
+#include <functional>
+
+namespace tyndall::test {
+// Voxels of .1 m, their centres at 0, .1, .2 ... m.
+SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value);
+
+// A file of one grid in the folder.
+VdbSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume);
+
+// Fog of that name with nothing but a density, or without one (`extinction` 0).
+MediumSource grid_source(const Scratch& scratch, const std::string& name, const SparseVolume& density, float extinction,
+                         vec3 albedo = vec3(0));
+
+// A property in a file of its own.
+GridSource property(const Scratch& scratch, const std::string& name, const SparseVolume& volume);
+
+Snapshot snapshot_with(Scene& scene, const MediumSource& medium);
+}

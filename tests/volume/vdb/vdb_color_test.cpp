@@ -1,0 +1,157 @@
+// Colors, mapped values and level sets: what a scene takes from grids beside plain densities.
+#include "volume/vdb/vdb.h"
+#include "volume/vdb/vdb_fixtures.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace tyndall {
+namespace {
+using namespace testing;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+AuthoredGrid grid_of(const std::string& name, const std::string& type,
+                     std::vector<std::pair<ivec3, float>> voxels = {}) {
+    AuthoredGrid grid;
+    grid.name = name, grid.type = type, grid.voxels = std::move(voxels);
+    return grid;
+}
+
+ColorVolume color_of(const std::string& bytes, const std::vector<std::string>& names, VdbReadReport* report = nullptr,
+                     float most = infinity) {
+    const Scratch scratch;
+    return read_color_vdb(scratch.put("in.vdb", bytes), names, ValueMap(), most, report);
+}
+
+std::string refused(const std::string& bytes, const std::vector<std::string>& names) {
+    return error_text(ExitCode::refused, [&] { color_of(bytes, names); });
+}
+
+class ReadVectors : public ::testing::TestWithParam<std::tuple<const char*, bool, uint32_t>> {};
+
+TEST_P(ReadVectors, EveryComponent) {
+    const auto [type, half, packing] = GetParam();
+    AuthoredGrid grid = grid_of("Cd", type);
+    grid.half = half;
+    for (int i = 0; i < 300; ++i) grid.colors.emplace_back(ivec3(i % 7, i % 11, i), vec3(i, 2 * i, 3 * i) / 1024.0f);
+    VdbReadReport report;
+    const ColorVolume color = color_of(authored({grid}, packing), {"Cd"}, &report);
+    EXPECT_EQ(report.summary(), "");
+    ASSERT_EQ(color.channels.size(), 3u);
+    for (const auto& [at, value] : grid.colors) {
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(value_at(color.channels[static_cast<size_t>(c)], at), value[c], value[c] / 2000);
+        ASSERT_EQ(value_at(color.there, at), 1);
+    }
+    EXPECT_EQ(value_at(color.there, {6, 0, 1}), 0);
+}
+INSTANTIATE_TEST_SUITE_P(All, ReadVectors,
+                         ::testing::Combine(::testing::Values("vec3s", "vec3d"), ::testing::Bool(),
+                                            ::testing::Values(pack_none, pack_mask, pack_zip | pack_mask,
+                                                              pack_blosc | pack_mask)));
+
+// A background of white, as Houdini writes it, is a colour of no voxel; values a share cannot have are mended.
+TEST(VdbColor, BackgroundIsNoColorAndValuesAreMended) {
+    AuthoredGrid grid = grid_of("Cd", "vec3s");
+    grid.background = 1;
+    grid.colors = {{{1, 2, 3}, {-0.5f, 0.25f, 2}}, {{1, 2, 4}, {0.5f, 0.5f, 0.5f}}};
+    VdbReadReport report;
+    const ColorVolume color = color_of(authored({grid}), {"Cd"}, &report, 1);
+    EXPECT_EQ(value_at(color.channels[0], {1, 2, 3}), 0);
+    EXPECT_EQ(value_at(color.channels[1], {1, 2, 3}), 0.25f);
+    EXPECT_EQ(value_at(color.channels[2], {1, 2, 3}), 1);
+    EXPECT_EQ(value_at(color.channels[0], {1, 2, 5}), 0);
+    EXPECT_EQ(value_at(color.there, {1, 2, 5}), 0);
+    EXPECT_THAT(report.summary(), HasSubstr("1 negative voxels set to 0"));
+    EXPECT_THAT(report.summary(), HasSubstr("1 voxels above 1 set to it"));
+}
+
+TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
+    const std::string bytes =
+        authored({grid_of("color.x", "float", {{{0, 0, 0}, 0.25f}}), grid_of("color.y", "double", {{{0, 0, 0}, 0.5f}}),
+                  grid_of("color.z", "float", {{{0, 0, 0}, 0.75f}})});
+    for (const std::vector<std::string>& names :
+         {std::vector<std::string>{"color"}, {"color.x", "color.y", "color.z"}}) {
+        const ColorVolume color = color_of(bytes, names);
+        ASSERT_EQ(color.channels.size(), 3u);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_EQ(value_at(color.channels[static_cast<size_t>(c)], {0, 0, 0}), 0.25f * (c + 1));
+    }
+    EXPECT_EQ(color_of(bytes, {"color.y"}).channels.size(), 1u);
+    EXPECT_THAT(refused(bytes, {"Cd"}), HasSubstr("has no grid \"Cd\", it holds color.x (float)"));
+    EXPECT_THAT(refused(authored({grid_of("flags", "int32", {{{0, 0, 0}, 1}})}), {"flags"}),
+                HasSubstr("holds int32 values, not a color per voxel"));
+}
+
+TEST(VdbMap, ValuesAreMappedBeforeTheyAreCleaned) {
+    const Scratch scratch;
+    AuthoredGrid grid = grid_of("temperature", "float",
+                                {{{0, 0, 0}, -1.0f}, {{0, 0, 1}, 2.0f}, {{0, 0, 2}, std::nanf("")}, {{0, 0, 3}, 1e9f}});
+    ValueMap map;
+    map.scale = 100, map.offset = 300;
+    VdbReadReport report;
+    const SparseVolume volume = read_vdb(scratch.put("in.vdb", authored({grid})), "temperature", map, 65504, &report);
+    EXPECT_EQ(value_at(volume, {0, 0, 0}), 200);
+    EXPECT_EQ(value_at(volume, {0, 0, 1}), 500);
+    EXPECT_EQ(value_at(volume, {0, 0, 2}), 0);
+    EXPECT_EQ(value_at(volume, {0, 0, 3}), 65504);
+    EXPECT_EQ(value_at(volume, {0, 0, 5}), 0) << "no voxel of the grid";
+    EXPECT_THAT(report.summary(), HasSubstr("1 voxels that are not finite set to 0, 1 voxels above 65504 set to it"));
+}
+
+// A ball of radius 6 with a narrow band of 3 voxels, and its inside as inactive voxels.
+AuthoredGrid level_set() {
+    AuthoredGrid grid = grid_of("surface", "float");
+    grid.grid_class = "level set", grid.background = 3;
+    for (int x = -12; x <= 12; ++x)
+        for (int y = -12; y <= 12; ++y)
+            for (int z = -12; z <= 12; ++z) {
+                const float distance = glm::length(vec3(x, y, z)) - 6;
+                if (std::abs(distance) < 3) grid.voxels.emplace_back(ivec3(x, y, z), distance);
+                if (distance <= -3) grid.inactive_voxels.emplace_back(ivec3(x, y, z), -3.0f);
+            }
+    return grid;
+}
+
+TEST(VdbLevelSet, BecomesFogOfAWidthWithinItsNarrowBand) {
+    const Scratch scratch;
+    const auto file = scratch.put("in.vdb", authored({level_set()}));
+    ValueMap map;
+    map.width = 2;
+    VdbReadReport report;
+    const SparseVolume fog = read_vdb(file, "", map, infinity, &report);
+    EXPECT_EQ(report.summary(), "");
+    EXPECT_EQ(value_at(fog, {0, 0, 0}), 1);
+    EXPECT_EQ(value_at(fog, {4, 0, 0}), 1);
+    EXPECT_EQ(value_at(fog, {5, 0, 0}), 0.5f);
+    EXPECT_EQ(value_at(fog, {6, 0, 0}), 0);
+    EXPECT_EQ(value_at(fog, {8, 0, 0}), 0);
+    EXPECT_EQ(value_at(fog, {8, 8, 8}), 0);
+
+    map.width = 3.5f;
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface", map, infinity, nullptr); }),
+                HasSubstr("its narrow band is 3 wide, in the file's units: a \"width\" of 3.5 passes it"));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface"); }), HasSubstr("\"width\""));
+    AuthoredGrid fog_volume = grid_of("density", "float", {{{0, 0, 0}, 1.0f}});
+    fog_volume.grid_class = "fog volume";
+    const auto other = scratch.put("fog.vdb", authored({fog_volume}));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(other, "density", map, infinity, nullptr); }),
+                HasSubstr("a \"width\" is for level sets"));
+}
+
+TEST(VdbRoles, GridsLookLikeWhatTheyAreCalled) {
+    const Scratch scratch;
+    AuthoredGrid surface = level_set();
+    const auto file = scratch.put(
+        "in.vdb", authored({grid_of("density", "float"), grid_of("Temperature", "float"), grid_of("flame", "float"),
+                            grid_of("Cd", "vec3s"), grid_of("vel", "vec3s"), grid_of("vel.x", "float"), surface,
+                            grid_of("flags", "int32"), grid_of("normal", "vec3s"), grid_of("voxel_fog", "float")}));
+    std::vector<GridRole> roles;
+    for (const VdbGridInfo& grid : vdb_info(file).grids) roles.push_back(grid.role);
+    EXPECT_THAT(roles, ElementsAre(GridRole::density, GridRole::temperature, GridRole::flame, GridRole::color,
+                                   GridRole::velocity, GridRole::velocity, GridRole::level_set, GridRole::other,
+                                   GridRole::other, GridRole::density));
+}
+}
+}
