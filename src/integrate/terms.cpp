@@ -8,7 +8,7 @@ namespace tyndall {
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
     if (!terms.heterogeneity) snapshot.media = homogeneous_media(snapshot.media);
     for (Medium& medium : snapshot.media) {
-        if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
+        if (!terms.phase) medium.optics.phase = {PhaseKind::isotropic};
         if (!terms.emission) medium.optics.emission.radiance = vec3(0);
     }
     if (!terms.ambient) snapshot.ambient = vec3(0);

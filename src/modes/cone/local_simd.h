@@ -107,6 +107,7 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
         const Interval<Floats> even = inside_wedge(seen, light.edges.even_cosine, light.edges.even_sine);
         add_break(packet, even.low), add_break(packet, even.high);
     }
+    for (int i = 0; i < packet.cone.lobe.count; ++i) add_break(packet, seen.distance * packet.cone.lobe.slopes[i]);
     add_decay_breaks(packet, seen, stretch);
 }
 

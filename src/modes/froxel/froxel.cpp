@@ -2,6 +2,7 @@
 // again for every camera ray.
 #include "base/simd/simd.h"
 #include "integrate/style.h"
+#include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/history/froxel_history.h"
 #include "modes/froxel/limitations.h"
@@ -40,6 +41,7 @@ void set_scene(const View& view, const Snapshot& snapshot, const Settings& setti
     const TermSettings& terms = settings.terms;
     scene.snapshot = with_terms(stylised(snapshot, settings.style), terms);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
+    scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.density.kind == DensityKind::bricks) bricks.push_back(&medium);

@@ -22,6 +22,7 @@ struct ShadowMapMarch {
     std::vector<ConeFalloff> cones; // one per light
     ShadowMaps maps;                // one per light
     float detail = infinity;        // metres: the finest detail of the fog
+    bool narrow_lobe = false;       // of the fog: steps in the light of lamps crowd where light goes straight on
 };
 
 // Smallest detail of the brick media, metres: that of a noise's last octave is some voxels wide.

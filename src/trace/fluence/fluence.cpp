@@ -154,6 +154,13 @@ void add_links(const Light& light, const Snapshot& snapshot, CacheKey& key) {
     for (const bool instance : snapshot.lit[static_cast<size_t>(light.lit)]) key.add(instance);
 }
 
+void add_phase(const Phase& phase, CacheKey& key) {
+    key.add(phase.kind).add(phase.g);
+    if (!phase.shape) return;
+    for (const PhaseLobe& lobe : phase.shape->lobes) key.add(lobe.weight).add(lobe.g).add(lobe.alpha);
+    for (const float value : phase.shape->table.values) key.add(value);
+}
+
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     CacheKey key;
     key.add(seed);
@@ -164,11 +171,8 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
                   key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale));
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
-        key.add(medium.density.kind)
-            .add(grey_extinction(optics))
-            .add(optics.albedo)
-            .add(optics.phase.kind)
-            .add(optics.phase.g);
+        key.add(medium.density.kind).add(grey_extinction(optics)).add(optics.albedo);
+        add_phase(optics.phase, key);
         key.add(medium.density.bounds)
             .add(medium.world_bounds)
             .add(medium.density.height_base)
