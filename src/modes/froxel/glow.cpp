@@ -8,7 +8,7 @@ namespace tyndall {
 float glow_angle(const Phase& phase) { return 0.77f * (1 - narrowest_lobe(phase)); }
 
 float tile_angle(const View& view, int tile) {
-    if (view.camera.ortho_height > 0) return 0;
+    if (view.camera.ortho_height > 0 || tile == 1) return 0;
     const float pixel = 2 * std::tan(0.5f * view.camera.vertical_fov) / static_cast<float>(view.size.y);
     return pixel * static_cast<float>(tile);
 }
@@ -24,7 +24,7 @@ std::vector<Medium> media_in_sunlight(const View& view, const Snapshot& snapshot
     constexpr float widest = 0.15f; // radians: beyond, froxels are no picture of anything
     const float across = std::min(tile_angle(view, tile), widest);
     const auto narrow = [&](const Medium& medium) {
-        return medium.optics.phase.shape && glow_angle(medium.optics.phase) < across;
+        return medium.optics.phase.shape && is_narrow(medium.optics.phase, across);
     };
     const bool suns = std::ranges::any_of(snapshot.lights, [](const Light& light) { return is_distant(light); });
     if (!suns || std::ranges::none_of(snapshot.media, narrow)) return {};

@@ -12,7 +12,12 @@ struct View;
 // near 1.
 float glow_angle(const Phase& phase);
 
-// Angle across a froxel in the middle of the image; 0 where rays are parallel.
+// Whether froxels of an angle across are too coarse for it. Narrow lobes of several stand on a wide rest, and are told
+// by their peak: they need three froxels.
+inline bool is_narrow(const Phase& phase, float across) { return glow_angle(phase) < (phase.shape ? 3 : 1) * across; }
+
+// Angle across a froxel in the middle of the image; 0 where rays are parallel, and where froxels are as small as
+// pixels.
 float tile_angle(const View& view, int tile);
 
 // Whether a light is a sun that stands in the image.

@@ -66,10 +66,11 @@ Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSett
 // A sun whose glow is narrower than the froxels that hold it.
 void add_glow(const View& view, const Snapshot& snapshot, const Light& light, int tile, Limitations& limitations) {
     if (!shows_sun(view, snapshot, light)) return;
-    float glow = pi;
-    for (const Medium& medium : snapshot.media) glow = std::min(glow, glow_angle(medium.optics.phase));
     const float across = tile_angle(view, tile);
-    if (across > glow)
+    float glow = pi;
+    for (const Medium& medium : snapshot.media)
+        if (is_narrow(medium.optics.phase, across)) glow = std::min(glow, glow_angle(medium.optics.phase));
+    if (glow < pi)
         limitations.push_back({Severity::degraded,
                                &limitation::coarse_glow,
                                Subject::light,
