@@ -188,7 +188,7 @@ def section_of(member):
     return next((name for name in names if name in SECTIONS), None)
 
 
-SECTIONS = {"camera": "Camera", "object": "Object", "light": "Light", "medium": "Medium", "background": "Background", "billboard": "Billboard",
+SECTIONS = {"camera": "Camera", "object": "Object", "light": "Light", "medium": "Medium", "phase": "Phase", "background": "Background", "billboard": "Billboard",
             "property": "Property", "density": "Density"}
 
 

@@ -35,6 +35,7 @@ bool has_grid(const Snapshot& snapshot) {
 void add_lights(const View& view, LightTransmittance method, int light_resolution,
                 const std::function<ShadowsBy(const Light&)>& by, SingleScattering& frame) {
     frame.camera = view.camera;
+    frame.lobe = lobe_cuts(frame.snapshot.media);
     frame.margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
     for (const Light& light : frame.snapshot.lights) {
         frame.depths.push_back(make_light_depth(frame.snapshot, light, method, light_resolution, &view));

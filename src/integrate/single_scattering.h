@@ -3,6 +3,7 @@
 #pragma once
 #include "base/gauss_legendre.h"
 #include "integrate/light_along.h"
+#include "integrate/lobe_cuts.h"
 #include "integrate/march_steps.h"
 #include "integrate/ray_batch.h"
 #include "integrate/style.h"
@@ -57,6 +58,7 @@ struct SingleScattering {
     std::optional<MarchSteps> rule; // ... or as this asks for
     float opaque = 16;              // optical depth behind which sampled fog is not asked for
     int light_points = 1;           // of a soft light, asked for shadows at once
+    LobeCuts lobe;                  // of the fog in the light of lamps
     std::optional<Shells> shells;
     std::vector<Box> heterogeneous; // fog that is not what it is taken for
     std::vector<Medium> fields;     // media that only emit, for the exact march; others add them by themselves

@@ -15,7 +15,8 @@ namespace {
 // How far the angle seen from a local light may change on one set of nodes: less where the phase function has a lobe.
 double widest_angle(const SingleScattering& frame) {
     float g = 0;
-    for (const Medium& medium : frame.snapshot.media) g = std::max(g, std::abs(mean_cosine(medium.optics.phase)));
+    for (const Medium& medium : frame.snapshot.media)
+        if (!medium.optics.phase.shape) g = std::max(g, std::abs(mean_cosine(medium.optics.phase)));
     return std::min(0.8, 4 * (1 - double(g)));
 }
 
@@ -25,6 +26,13 @@ double next_bound(double x) {
     while (bound <= std::abs(x)) bound *= 3;
     if (x >= -1) return bound;
     return -bound / (bound / 3 < -x ? 3 : 9);
+}
+
+// The cut of a narrow lobe that follows.
+double next_cut(const LobeCuts& cuts, double x) {
+    for (int i = 0; i < cuts.count; ++i)
+        if (double(cuts.slopes[i]) > x) return double(cuts.slopes[i]);
+    return infinity;
 }
 
 // A piece of a ray in which nothing has a kink.
@@ -69,7 +77,8 @@ void push_equi_angular(Packet& packet, const Piece& piece) {
     const double nearest = packet.scratch.along[piece.ray].nearest, away = packet.away[piece.ray];
     const double end = (piece.high - nearest) / away, widest = widest_angle(packet, piece);
     for (double x = (piece.low - nearest) / away; x < end;) {
-        const double next = std::min(next_bound(x), end), parts = angular_parts(x, next, widest);
+        const double next = std::min({next_bound(x), next_cut(packet.frame.lobe, x), end}),
+                     parts = angular_parts(x, next, widest);
         for (double i = 0; i < parts; ++i)
             for (const QuadratureNode& node : rule)
                 push_node(packet, piece.light, piece.ray, piece.cut, x * away, next * away, (i + node.at) / parts,

@@ -9,7 +9,7 @@ Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
     if (!terms.heterogeneity) snapshot.media = homogeneous_media(snapshot.media);
     if (!terms.emission) std::erase_if(snapshot.media, [](const Medium& medium) { return only_emits(medium.optics); });
     for (Medium& medium : snapshot.media) {
-        if (!terms.phase) medium.optics.phase.kind = PhaseKind::isotropic;
+        if (!terms.phase) medium.optics.phase = {PhaseKind::isotropic};
         if (!terms.emission) medium.optics.emission.radiance = vec3(0);
     }
     if (!terms.ambient) snapshot.ambient = vec3(0);

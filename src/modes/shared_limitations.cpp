@@ -40,6 +40,20 @@ void add_float_precision(const View& view, const Snapshot& snapshot, Limitations
     limitations.push_back({Severity::degraded, &limitation::float_precision, Subject::scene, "", {offset}});
 }
 
+// A tabulated phase function as one lobe, which is what the grid of fluence has of it.
+void add_table(const Medium& medium, Limitations& limitations) {
+    const Phase& phase = medium.optics.phase;
+    if (!phase.shape || !phase.shape->lobes.empty()) return;
+    const float lobe = phase_value({PhaseKind::henyey_greenstein, mean_cosine(phase)}, 0);
+    const float ratio = lobe / std::max(phase_value(phase, 0), 1e-6f);
+    if (ratio > 0.9f && ratio < 1.1f) return;
+    limitations.push_back({ratio > 0.67f && ratio < 1.5f ? Severity::info : Severity::degraded,
+                           &limitation::table_by_mean_cosine,
+                           Subject::medium,
+                           medium.name,
+                           {ratio}});
+}
+
 void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) {
     if (max_component(snapshot.ambient) > 0)
         limitations.push_back({Severity::info, &limitation::unshadowed_ambient, Subject::scene});
@@ -137,6 +151,7 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
         limitations.push_back({severity, &kind, Subject::setting, row, {amount}});
     };
     add(limitation::cached_fluence, "fluence.resolution", cell);
+    for (const Medium& medium : snapshot.media) add_table(medium, limitations);
     const bool surfaces = snapshot.occluders && snapshot.occluders->triangle_count() > 0;
     add(limitation::fog_scatters_alone, "fluence.orders", 0, surfaces ? Severity::degraded : Severity::info);
     if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");

@@ -28,6 +28,9 @@ inline constexpr LimitationKind deep_steps{"deep_steps",
 inline constexpr LimitationKind cached_fluence{"cached_fluence",
                                                "multiple scattering is cached in cells of {} m: it has no finer "
                                                "detail, and may leak around corners within a cell"};
+inline constexpr LimitationKind table_by_mean_cosine{
+    "table_by_mean_cosine", "multiple scattering knows the mean cosine of its phase function only: at right angles it "
+                            "scatters {} times as much as the table says"};
 inline constexpr LimitationKind fog_scatters_alone{
     "fog_scatters_alone", "multiple scattering is computed for the fog and its lights only: surfaces get direct light "
                           "alone, and ambient light and emission are not scattered further"};

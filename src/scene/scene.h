@@ -6,8 +6,8 @@
 #include "scene/light_kind.h"
 #include "scene/load_options.h"
 #include "scene/mesh.h"
+#include "scene/phase_source.h"
 #include "volume/emission/blackbody.h"
-#include "volume/phase.h"
 #include "volume/recipe/recipe.h"
 #include "volume/value_map.h"
 #include "volume/vdb/sequence.h"
@@ -110,9 +110,9 @@ struct BlackbodySource {
 struct MediumSource {
     std::string name;
     MediumKind kind = MediumKind::homogeneous;
-    Keyed<float> extinction{0.1f}, g{0.0f};
+    Keyed<float> extinction{0.1f}, g{0.0f}; // g: where the phase function takes that of the medium
     Keyed<vec3> albedo{vec3(0.95f)}, emission{vec3(0)};
-    PhaseKind phase = PhaseKind::henyey_greenstein;
+    PhaseSource phase;
     Box bounds = everywhere(); // homogeneous, height: in the medium's own space
     Keyed<vec3> translation{vec3(0)}, scale{vec3(1)};
     Keyed<vec3> rotate{vec3(0)}; // degrees about X, then Y, then Z: what `rotation` is made from

@@ -21,8 +21,8 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
 }
 
 Optics optics_at(const MediumSource& source, double seconds) {
-    return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds), Phase{source.phase, source.g.at(seconds)},
-            source.emission.at(seconds)};
+    return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds),
+            phase_at(source.phase, source.g.at(seconds), seconds), source.emission.at(seconds)};
 }
 
 // Fog that stands still is grown once.

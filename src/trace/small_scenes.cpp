@@ -14,7 +14,7 @@
 namespace tyndall {
 Phase forward_phase(float g) { return {PhaseKind::henyey_greenstein, g}; }
 
-Medium homogeneous_medium(float extinction, Box box, Phase phase, vec3 albedo) {
+Medium homogeneous_medium(float extinction, Box box, const Phase& phase, vec3 albedo) {
     Medium medium;
     medium.name = "even";
     medium.optics = {vec3(extinction), albedo, phase, vec3(0)};

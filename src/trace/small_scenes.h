@@ -14,7 +14,7 @@ struct IesProfile;
 
 Phase forward_phase(float g);
 
-Medium homogeneous_medium(float extinction, Box box = everywhere(), Phase phase = {}, vec3 albedo = vec3(1));
+Medium homogeneous_medium(float extinction, Box box = everywhere(), const Phase& phase = {}, vec3 albedo = vec3(1));
 
 // A grid of voxels³ that fills the box 0..1; density at voxel centres.
 SparseVolume unit_volume(int voxels, const std::function<float(vec3)>& density);

@@ -2,16 +2,20 @@
 // cosine = dot(light travel, travel towards the eye): +1 looking straight into the light.
 #pragma once
 #include "base/math.h"
+#include "volume/phase/shape.h"
 
+#include <memory>
 #include <numbers>
+#include <span>
 #include <string_view>
 
 namespace tyndall {
-enum class PhaseKind { isotropic, henyey_greenstein, schlick, rayleigh };
+enum class PhaseKind { isotropic, henyey_greenstein, schlick, rayleigh, draine, mie, mix, table, legendre };
 
 struct Phase {
     PhaseKind kind = PhaseKind::henyey_greenstein;
-    float g = 0; // mean cosine, -1..1; above 0 scatters forward
+    float g = 0;                               // mean cosine, -1..1; above 0 scatters forward
+    std::shared_ptr<const PhaseShape> shape{}; // of the kinds from Draine's on; they have no g
 };
 
 inline constexpr float largest_g = 0.99f; // beyond it the lobe is narrower than a pixel
@@ -28,14 +32,40 @@ inline constexpr PhaseTraits phase_kinds[] = {
      .max_g = 0.5f,
      .beyond = "Schlick's form departs from Henyey-Greenstein's beyond |g| = 0.5; use \"henyey_greenstein\""},
     {.name = "rayleigh"},
+    {.name = "draine"},
+    {.name = "mie"},
+    {.name = "mix"},
+    {.name = "table"},
+    {.name = "legendre"},
 };
 constexpr const PhaseTraits& traits_of(PhaseKind kind) { return phase_kinds[static_cast<int>(kind)]; }
 constexpr bool takes_g(PhaseKind kind) { return traits_of(kind).max_g > 0; }
 
-inline float mean_cosine(Phase phase) { return takes_g(phase.kind) ? std::clamp(phase.g, -largest_g, largest_g) : 0; }
+// Droplets have a diameter in micrometres, above 0 to largest_droplet (volume/phase/mie.h). A mix holds a share of the
+// first, 0..1, and the rest of the second; neither is Schlick's or a table. Tables keep their kind.
+Phase draine_phase(double g, double alpha);
+Phase mie_phase(double droplet_diameter);
+Phase mixed_phase(double share, const Phase& first, const Phase& second);
+Phase table_phase(PhaseKind kind, PhaseTable table);
+
+// Its mean over discs of an angular radius below 0.15 radians, as a table; of the kinds from Draine's on.
+Phase widened(const Phase& phase, double radius);
+
+inline float mean_cosine(const Phase& phase) {
+    if (phase.shape) return phase.shape->mean_cosine;
+    return takes_g(phase.kind) ? std::clamp(phase.g, -largest_g, largest_g) : 0;
+}
+
+// |g| of the narrowest lobe: how finely directions have to be looked at.
+inline float narrowest_lobe(const Phase& phase) {
+    return phase.shape ? phase.shape->narrowest : std::abs(mean_cosine(phase));
+}
+
+// A number that no value falls below, 1/sr: the least one, but for the last digits; 0 where values may be 0.
+double min_phase_value(const Phase& phase);
 
 // Value in 1/sr, to the rounding of T.
-template<class T> T phase_value_of(Phase phase, T cosine) {
+template<class T> T phase_value_of(const Phase& phase, T cosine) {
     constexpr T circle = std::numbers::pi_v<T>;
     const T mean = phase.g;
     switch (phase.kind) {
@@ -54,12 +84,13 @@ template<class T> T phase_value_of(Phase phase, T cosine) {
         const T q = 1 - k * cosine;
         return (1 - k * k) / (4 * circle * q * q);
     }
+    default:
+        return shape_value<T>(*phase.shape, cosine);
     }
-    return 0;
 }
 
-inline float phase_value(Phase phase, float cosine) { return phase_value_of<float>(phase, cosine); }
+inline float phase_value(const Phase& phase, float cosine) { return phase_value_of<float>(phase, cosine); }
 
 // A direction picked with density phase_value(phase, dot(direction, result)), by two numbers in [0,1).
-vec3 sample_phase(Phase phase, vec3 direction, vec2 u);
+vec3 sample_phase(const Phase& phase, vec3 direction, vec2 u);
 }

@@ -11,8 +11,36 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
+// As lobe_value().
+HWY_INLINE Floats lobe_value(const PhaseLobe& lobe, const Floats& cosine) {
+    const Floats beside = max(1.0f - (lobe.g < 0 ? -cosine : cosine), 0.0f);
+    const Floats q = fused(beside, lobe.slope, lobe.gap);
+    return fused(cosine * cosine, lobe.scale_of_square, lobe.scale) / (q * sqrt(q));
+}
+
+// As table_value().
+HWY_INLINE Floats table_value(const PhaseTable& table, const Floats& cosine) {
+    const float half = static_cast<float>(table.half);
+    const Floats square = max(1.0f - abs(cosine), 0.0f) * (half * half);
+    const Floats first = max(min(floor(sqrt(square)), half - 1), 0.0f);
+    const Floats share = (square - first * first) / fused(first, 2.0f, 1.0f);
+    const Mask16 back = cosine < 0.0f;
+    const Ints a = truncate(select(back, 2 * half - first, first)),
+               b = truncate(select(back, 2 * half - 1 - first, first + 1.0f));
+    const Floats from = gather(table.values.data(), a), to = gather(table.values.data(), b);
+    return fused(share, to - from, from);
+}
+
+// As shape_value(). Out of line: it is no part of the loops that know nothing of shapes.
+HWY_NOINLINE inline Floats shape_value(const PhaseShape& shape, const Floats& cosine) {
+    if (shape.lobes.empty()) return table_value(shape.table, cosine);
+    Floats sum = 0.0f;
+    for (const PhaseLobe& lobe : shape.lobes) sum = sum + lobe_value(lobe, cosine);
+    return sum;
+}
+
 // As phase_value() of volume/phase.h, to float rounding.
-HWY_INLINE Floats phase_value(Phase phase, const Floats& cosine) {
+HWY_INLINE Floats phase_value(const Phase& phase, const Floats& cosine) {
     switch (phase.kind) {
     case PhaseKind::isotropic:
         break;
@@ -29,6 +57,8 @@ HWY_INLINE Floats phase_value(Phase phase, const Floats& cosine) {
         const Floats q = 1.0f - cosine * k;
         return Floats((1 - k * k) / (4 * pi)) / (q * q);
     }
+    default:
+        return shape_value(*phase.shape, cosine);
     }
     return 1 / (4 * pi);
 }

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "volume/phase_test.cpp"
 #include <hwy/foreach_target.h>
 
+#include "volume/phase/phase_samples.h"
 #include "volume/phase_simd.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-void phase_values(Phase phase, const float* cosine, float* value) { store(phase_value(phase, load(cosine)), value); }
+void phase_values(const Phase& phase, const float* cosine, float* value) {
+    store(phase_value(phase, load(cosine)), value);
+}
 }
 }
 HWY_AFTER_NAMESPACE();
@@ -89,6 +92,26 @@ TEST(Phase, VectorsEqualScalars) {
                 }
             }
         }
+}
+
+TEST(Phase, VectorsEqualScalarsOfShapes) {
+    std::vector<test::NamedPhase> phases = test::shaped_phases();
+    for (const test::NamedPhase& one : phases)
+        for (int i = 0; i <= 64; ++i) {
+            alignas(64) float cosine[16], value[16];
+            for (int lane = 0; lane < 16; ++lane) { // fine towards both ends, and a little beyond
+                const float u = (i * 16 + lane) / 512.0f - 1;
+                cosine[lane] = std::copysign(1 - std::pow(1 - std::min(std::abs(u), 1.0f), 4.0f), u) * 1.000001f;
+            }
+            HWY_DYNAMIC_DISPATCH(phase_values)(one.phase, cosine, value);
+            for (int lane = 0; lane < 16; ++lane) {
+                const float expected = phase_value(one.phase, cosine[lane]);
+                ASSERT_NEAR(value[lane], expected, 2e-6 * expected) << one.name << ' ' << cosine[lane];
+            }
+        }
+    alignas(64) float none[16], value[16];
+    std::fill_n(none, 16, std::nanf(""));
+    HWY_DYNAMIC_DISPATCH(phase_values)(phases.back().phase, none, value); // reads within its table
 }
 }
 }

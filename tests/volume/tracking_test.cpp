@@ -131,7 +131,7 @@ TEST(Phase, SampledDirectionsFollowTheValues) {
                             {PhaseKind::henyey_greenstein, 0.95f},
                             {PhaseKind::henyey_greenstein, 1.0f}};
     constexpr int samples = 200000, bins = 40, pieces = 200000;
-    for (const Phase phase : phases) {
+    for (const Phase& phase : phases) {
         std::vector<double> below{0}; // share of light with cosines below -1 + 2 i / pieces
         for (int i = 0; i < pieces; ++i) {
             // Pieces even in angle, so that narrow lobes are resolved.

@@ -61,13 +61,17 @@ Json lights_json(const Scene& scene) {
     });
 }
 
+// What most programs call g: of tables and mixtures too.
+float mean_cosine_of(const MediumSource& medium) { return mean_cosine(phase_at(medium.phase, medium.g.at(0), 0)); }
+
 Json media_json(const Scene& scene) {
     return json_list(scene.media, [](const MediumSource& medium) {
         return json_object({{"name", medium.name},
                             {"kind", medium_names[static_cast<int>(medium.kind)]},
                             {"extinction", medium.extinction.at(0)},
                             {"albedo", medium.albedo.at(0)},
-                            {"g", medium.g.at(0)},
+                            {"phase", traits_of(medium.phase.kind).name},
+                            {"g", mean_cosine_of(medium)},
                             {"file", medium.sequence.pattern},
                             {"up_axis", medium.z_up ? "Z" : "Y"}});
     });
@@ -125,11 +129,13 @@ std::string content_text(const Scene& scene) {
     const std::string hint = light_units_hint(scene);
     if (!hint.empty()) text += "  light units   " + hint + "\n";
     for (const MediumSource& medium : scene.media)
-        text += formatted("  fog           %s, %s, extinction %g /m, albedo %s, g %g%s%s%s\n",
-                          printable(medium.name.empty() ? "(no name)" : medium.name, 80).c_str(),
-                          medium_names[static_cast<int>(medium.kind)], double{medium.extinction.at(0)},
-                          vector_text(medium.albedo.at(0)).c_str(), double{medium.g.at(0)}, medium.z_up ? ", Z up" : "",
-                          medium.sequence.pattern.empty() ? "" : ", ", printable(medium.sequence.pattern).c_str());
+        text +=
+            formatted("  fog           %s, %s, extinction %g /m, albedo %s, %s, g %.4g%s%s%s\n",
+                      printable(medium.name.empty() ? "(no name)" : medium.name, 80).c_str(),
+                      medium_names[static_cast<int>(medium.kind)], double{medium.extinction.at(0)},
+                      vector_text(medium.albedo.at(0)).c_str(), std::string(traits_of(medium.phase.kind).name).c_str(),
+                      double{mean_cosine_of(medium)}, medium.z_up ? ", Z up" : "",
+                      medium.sequence.pattern.empty() ? "" : ", ", printable(medium.sequence.pattern).c_str());
     for (const std::string& warning : scene.warnings) text += "  warning       " + printable(warning, 400) + "\n";
     return text;
 }

@@ -152,12 +152,8 @@ void add_dimming(Terms& terms, double thickest) {
 // Isotropic light against the least that fog scatters into any direction.
 double phase_bound(const Snapshot& snapshot) {
     double most = 0;
-    for (const Medium& medium : snapshot.media) {
-        double least = infinity;
-        for (const double cosine : {-1.0, 0.0, 1.0})
-            least = std::min(least, phase_value_of<double>(medium.optics.phase, cosine));
-        most = std::max(most, 1 / (4 * std::numbers::pi * least) - 1);
-    }
+    for (const Medium& medium : snapshot.media)
+        most = std::max(most, 1 / (4 * std::numbers::pi * min_phase_value(medium.optics.phase)) - 1);
     return most > 1e-6 ? most : 0;
 }
 

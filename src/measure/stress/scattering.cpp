@@ -25,6 +25,11 @@ StressScene narrow(double g, float z) {
     scene.view.size = {8, 8};
     return scene;
 }
+StressScene towards_sun_in_droplets(double diameter) {
+    const Medium fog = homogeneous_medium(0.4f, unit, mie_phase(diameter));
+    return stress_scene({fog}, {sun_light({0.05f, 0, 1}, 10)}, camera_from({0, 0, 4}, vec3(0)));
+}
+
 StressScene into_sun(double g) { return narrow(g, 4); }
 
 // Looking at the sun is ((1 + g) / (1 - g))^3 times as bright as looking away from it.
@@ -35,11 +40,18 @@ double ratio_off(Trial& trial) {
 }
 
 StressScene kinds(double kind) {
-    constexpr Phase phases[] = {{PhaseKind::isotropic, 0},
-                                {PhaseKind::rayleigh, 0},
-                                {PhaseKind::schlick, 0.5f},
-                                {PhaseKind::schlick, -0.5f},
-                                {PhaseKind::henyey_greenstein, 1e-4f}};
+    PhaseTableNotes notes;
+    const std::vector<PhaseEntry> bow{{0, 9}, {20, 2}, {90, 0.3}, {135, 0.2}, {138, 0.6}, {143, 0.3}, {180, 0.4}};
+    const Phase phases[] = {
+        {PhaseKind::isotropic, 0},
+        {PhaseKind::rayleigh, 0},
+        {PhaseKind::schlick, 0.5f},
+        {PhaseKind::schlick, -0.5f},
+        {PhaseKind::henyey_greenstein, 1e-4f},
+        draine_phase(0.6, 3),
+        mie_phase(20),
+        mixed_phase(0.6, {PhaseKind::henyey_greenstein, 0.8f}, {PhaseKind::henyey_greenstein, -0.7f}),
+        table_phase(PhaseKind::table, make_table(std::span(bow), notes))};
     return stress_scene({homogeneous_medium(0.4f, unit, phases[static_cast<int>(kind)])}, {noon},
                         camera_from({0, 0, 4}, vec3(0)));
 }
@@ -100,8 +112,11 @@ std::vector<StressCase> stress_scattering() {
                    Claim::physical, {}, towards_sun),
         StressCase("phase-sign", group, "fog of positive g is bright around the sun", "g", "", {0.2, 0.5, 0.8},
                    Claim::physical, {}, into_sun, {0.01, "error of bright to dark side, ((1+g)/(1-g))^3", ratio_off}),
-        StressCase("phase-kinds", group, "isotropic, Rayleigh, Schlick, hardly Henyey-Greenstein", "kind", "",
-                   {0, 1, 2, 3, 4}, Claim::physical, {}, kinds),
+        StressCase("phase-kinds", group, "phase functions of every kind", "kind", "", {0, 1, 2, 3, 4, 5, 6, 7, 8},
+                   Claim::physical, {}, kinds),
+        StressCase("droplets", group, "looking past the sun through droplets of growing size", "diameter",
+                   "micrometres", {5, 10, 20, 50}, Claim::physical, {}, towards_sun_in_droplets,
+                   {0.05, "error of the mean", error_of_mean}),
         StressCase("even-light", group, "fog in even light from all around", "optical depth", "", {0.1, 1, 8},
                    Claim::noise_free, {}, in_even_light,
                    {0.005, "error of the mean against the closed form", even_light_off}),

@@ -1,4 +1,5 @@
 // Checks against closed forms and published single-scattering values.
+#include "base/text.h"
 #include "measure/verify/rays.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
@@ -34,6 +35,34 @@ void check_phase(Checks& checks) {
         checks.add("Henyey-Greenstein g " + std::to_string(row.g).substr(0, 4) + " at cosine " +
                        std::to_string(static_cast<int>(row.cosine)),
                    phase_value(forward_phase(row.g), row.cosine), row.value, 2e-5 * row.value, "rounding");
+}
+
+// Lobes and tables: their sums over the sphere and their mean cosines.
+void check_phase_shapes(Checks& checks) {
+    const auto moment = [](const Phase& phase, int power) { // cosine = 1 - 2 u⁴ resolves narrow lobes
+        return integral(
+            [&](double u) {
+                const double cosine = 1 - 2 * u * u * u * u;
+                return 16 * M_PI * u * u * u * std::pow(cosine, power) * phase_value_of<double>(phase, cosine);
+            },
+            0, 1);
+    };
+    for (const double diameter : {0.05, 1.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {
+        const std::string name = "droplets of " + shortest_text(diameter) + " micrometres";
+        checks.add(name + " integrate to 1", moment(mie_phase(diameter), 0), 1, 1e-6, "1e-6");
+        checks.add(name + ", mean cosine", moment(mie_phase(diameter), 1), mean_cosine(mie_phase(diameter)), 1e-6,
+                   "1e-6");
+    }
+    const Phase dust = draine_phase(0.7, 1); // Cornette & Shanks 1992: 3 g (4 + g²) / (5 (2 + g²))
+    checks.add("Draine g 0.7, alpha 1 integrates to 1", moment(dust, 0), 1, 1e-6, "1e-6");
+    checks.add("Draine g 0.7, alpha 1, mean cosine", moment(dust, 1), 2.1 * 4.49 / (5 * 2.49), 1e-6, "1e-6");
+    std::vector<double> series;
+    for (int l = 0; l < 100; ++l) series.push_back((2 * l + 1) * std::pow(0.6, l));
+    PhaseTableNotes notes;
+    const Phase table = table_phase(PhaseKind::legendre, make_table(std::span(std::as_const(series)), notes));
+    checks.add("a Legendre series of g 0.6 integrates to 1", moment(table, 0), 1, 1e-5, "its kinks");
+    checks.add("a Legendre series of g 0.6 at cosine 0.5", phase_value(table, 0.5f),
+               phase_value(forward_phase(0.6f), 0.5f), 2e-4, "its steps");
 }
 
 void check_transmittance(Checks& checks) {
@@ -120,10 +149,8 @@ void check_airlight(Checks& checks) {
 }
 
 std::vector<CheckGroup> closed_form_checks() {
-    return {{"phase functions", 1, check_phase},
-            {"transmittance", 1, check_transmittance},
-            {"emission", 1, check_emission},
-            {"single scattering, sun", 2, check_slab},
-            {"single scattering, point light", 2, check_airlight}};
+    return {{"phase functions", 1, check_phase},       {"lobes and tables", 1, check_phase_shapes},
+            {"transmittance", 1, check_transmittance}, {"emission", 1, check_emission},
+            {"single scattering, sun", 2, check_slab}, {"single scattering, point light", 2, check_airlight}};
 }
 }

@@ -127,6 +127,7 @@ Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& setti
     for (const Medium& medium : seen.media)
         if (medium.density.kind == DensityKind::bricks) cone.grids.push_back(medium.density.bricks->bounds);
     seen.media = homogeneous_media(seen.media);
+    cone.lobe = lobe_cuts(seen.media);
     cone.fog = anchored(seen.media, dvec3(cone.eye), nullptr);
     for (const Medium& medium : seen.media) {
         cone.ambient.push_back(medium.optics.albedo * seen.ambient);

@@ -1,5 +1,6 @@
 // What the analytic light cones need, made once per frame.
 #pragma once
+#include "integrate/lobe_cuts.h"
 #include "integrate/ray_batch.h"
 #include "modes/cone/settings.h"
 #include "modes/settings.h"
@@ -49,6 +50,7 @@ struct Cone {
     std::vector<vec3> ambient, emission; // per medium: ambient light scattered, and light given off, per optical depth
     std::vector<Box> grids;              // bounds of media that are drawn evener than they are
     std::vector<ConeLight> lights;
+    LobeCuts lobe;        // of the fog in the light of lamps
     float noise_rise = 0; // metres so far
     bool casts = false;   // there are surfaces to cast the shadows that are not drawn
 };

@@ -117,6 +117,7 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
         add_break(packet, even.low), add_break(packet, even.high);
     }
     if (light.light.filter) add_filter_breaks(packet, seen, stretch);
+    for (int i = 0; i < packet.cone.lobe.count; ++i) add_break(packet, seen.distance * packet.cone.lobe.slopes[i]);
     add_decay_breaks(packet, seen, stretch);
 }
 

@@ -133,7 +133,7 @@ HWY_INLINE Floats fade(const Packet& packet, const Floats& t) {
 HWY_INLINE void add_node(const Packet& packet, const Floats& t, const Floats& amount, const Floats& cosine,
                          bool has_light) {
     for (size_t m = 0; m < packet.media(); ++m) {
-        const Phase phase = packet.fog.media[m].optics.phase;
+        const Phase& phase = packet.fog.media[m].optics.phase;
         Floats value = amount * extinction(packet, m, t);
         if (has_light) value = value * phase_value(phase, cosine);
         float* sum = packet.scratch.sums[m].data();
@@ -183,7 +183,8 @@ int node_count(const Packet& packet, float share, const Floats& change, const Fl
     for (const Medium& medium : packet.fog.media) {
         if (medium.density.kind == DensityKind::height)
             amount = amount + min(abs(packet.direction.y) * length * (1 / medium.density.height_falloff), 30.0f);
-        narrowest = std::min(narrowest, 1 - std::abs(mean_cosine(medium.optics.phase)));
+        const Phase& phase = medium.optics.phase; // of several lobes: cut for the narrow ones
+        narrowest = std::min(narrowest, phase.shape ? wide_lobe : 1 - std::abs(mean_cosine(phase)));
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);
     const float change_at_most = std::min(most(amount), 60.0f);

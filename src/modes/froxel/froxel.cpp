@@ -3,6 +3,7 @@
 #include "base/simd/simd.h"
 #include "integrate/field_light.h"
 #include "integrate/style.h"
+#include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/history/froxel_history.h"
 #include "modes/froxel/limitations.h"
@@ -42,6 +43,7 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
     scene.snapshot = with_terms(stylised(snapshot, settings.style), terms);
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
+    scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.density.kind == DensityKind::bricks) bricks.push_back(&medium);

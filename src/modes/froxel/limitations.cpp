@@ -1,6 +1,7 @@
 #include "modes/froxel/limitations.h"
 
 #include "modes/froxel/beams/beams.h"
+#include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/settings.h"
 #include "modes/light_filters.h"
@@ -64,6 +65,21 @@ Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSett
     return {by_ray && (has_cone(light) || exact || !shadows), exact};
 }
 
+// A sun whose glow is narrower than the froxels that hold it.
+void add_glow(const View& view, const Snapshot& snapshot, const Light& light, int tile, Limitations& limitations) {
+    if (!shows_sun(view, snapshot, light)) return;
+    const float across = tile_angle(view, tile);
+    float glow = pi;
+    for (const Medium& medium : snapshot.media)
+        if (is_narrow(medium.optics.phase, across)) glow = std::min(glow, glow_angle(medium.optics.phase));
+    if (glow < pi)
+        limitations.push_back({Severity::degraded,
+                               &limitation::coarse_glow,
+                               Subject::light,
+                               light.name,
+                               {glm::degrees(glow), glm::degrees(across)}});
+}
+
 // Of each light: its shadows, its movement and what is next to it.
 void add_light(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, FroxelSize size,
                Limitations& limitations) {
@@ -116,7 +132,10 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     const FroxelSize size = middle_froxel(view, snapshot, froxel);
     if (is_moving(snapshot, view.camera))
         limitations.push_back({Severity::degraded, &limitation::moving_camera, Subject::camera, view.camera.name});
-    for (const Light& light : snapshot.lights) add_light(light, snapshot, froxel, size, limitations);
+    for (const Light& light : snapshot.lights) {
+        add_light(light, snapshot, froxel, size, limitations);
+        add_glow(view, snapshot, light, froxel.tile, limitations);
+    }
     for (const Medium& medium : snapshot.media) add_medium(medium, size, limitations);
     const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
     if (std::ranges::any_of(snapshot.media, unbounded))

@@ -23,6 +23,8 @@ inline constexpr LimitationKind thin_medium{"thin_medium",
 inline constexpr LimitationKind lost_detail{"lost_detail",
                                             "detail finer than a froxel is lost: froxels are {} m wide, voxels {} m"};
 inline constexpr LimitationKind few_far_slices{"few_far_slices", "fog behind the scene gets only a few long slices"};
+inline constexpr LimitationKind coarse_glow{
+    "coarse_glow", "fog glows within {} degrees of it, and froxels are {} degrees across: the glow is blurred"};
 inline constexpr LimitationKind rays_for_alpha{"rays_for_alpha",
                                                "shadow rays are used, because there are MASK or BLEND surfaces"};
 }

@@ -17,12 +17,19 @@ float smooth(float x) {
     return t * t * (3 - 2 * t);
 }
 
-// What homogeneous fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth).
-vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards) {
+// Mean over a disc around the sun, whose edge is so far off by its cosine. A single lobe is taken by its middle.
+float glow_of(const Phase& phase, double cosine) {
+    if (!phase.shape) return phase_value(phase, 1);
+    return static_cast<float>((1 - share_below(*phase.shape, cosine)) / (2 * std::numbers::pi * (1 - cosine)));
+}
+
+// What homogeneous fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth). `angle`: of
+// the disc it shows as, from its middle.
+vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, double angle) {
     vec3 sum(0);
     for (const Medium& medium : homogeneous_media(snapshot.media)) {
         const float depth = static_cast<float>(optical_depth(medium, towards));
-        sum += medium.optics.albedo * (phase_value(medium.optics.phase, 1) * -std::expm1(-depth));
+        sum += medium.optics.albedo * (glow_of(medium.optics.phase, std::cos(angle)) * -std::expm1(-depth));
     }
     return sum * light.intensity * light.volume_scale;
 }
@@ -73,8 +80,9 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
         blur.radius = settings.size * static_cast<float>(view.size.y);
         if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
         const Ray ray{view.camera.position, towards / distance, sun ? far : distance};
-        blur.color =
-            sun ? sun_brightness(snapshot, light, ray) : lamp_brightness(snapshot, light, ray, settings.lamp_size);
+        const double disc = std::atan(2.0 * std::min(settings.size, 0.5f) * std::tan(0.5 * view.camera.vertical_fov));
+        blur.color = sun ? sun_brightness(snapshot, light, ray, std::clamp(disc, 1e-3, 3.1))
+                         : lamp_brightness(snapshot, light, ray, settings.lamp_size);
         blur.share = luminance(blur.color);
         total += blur.share;
         lights.push_back(blur);

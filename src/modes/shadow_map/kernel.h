@@ -23,6 +23,7 @@ struct ShadowMapMarch {
     ShadowMaps maps;                // one per light
     float detail = infinity;        // metres: the finest detail of the fog
     bool colored = false;           // a light has a coloured gobo
+    bool narrow_lobe = false;       // of the fog: steps in the light of lamps crowd where light goes straight on
 };
 
 // Smallest detail of the brick media, metres: that of a noise's last octave is some voxels wide.

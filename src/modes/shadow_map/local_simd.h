@@ -66,14 +66,27 @@ Passing pass_light(const Packet& packet, const Light& light) {
     return {load(v[0]), load(v[1]), load(v[2]), load(v[3])};
 }
 
+Floats asinh(const Floats& value) {
+    alignas(64) float v[16];
+    store(value, v);
+    for (float& one : v) one = std::asinh(one);
+    return load(v);
+}
+
 // Borders of the steps on a passage, counted from the point next to the light: x = scale·tan θ with even θ, or even x.
+// In fog with a narrow lobe x = scale·sinh y with even y: towards both ends each step halves the angle off the axis.
 struct Spaced {
     Floats low, high, scale, first, angle;
-    bool even;
+    bool even, narrow;
 
-    Spaced(const Passing& passing, Spacing spacing, int steps) {
+    Spaced(const Passing& passing, Spacing spacing, bool narrow_lobe, int steps) {
         low = passing.low - passing.nearest, high = passing.high - passing.nearest;
-        even = spacing == Spacing::distance;
+        even = spacing == Spacing::distance, narrow = narrow_lobe && !even;
+        if (narrow) {
+            scale = max(max(passing.away, max(abs(low), abs(high)) * 1e-4f), 1e-12f);
+            first = asinh(low / scale), angle = (asinh(high / scale) - first) * (1 / static_cast<float>(steps));
+            return;
+        }
         // Next to the light steps need not get shorter than what is far from it is long.
         scale = max(max(passing.away, max(abs(low), abs(high)) * 0.03f), 1e-12f);
         first = even ? low : atan(low / scale);
@@ -82,6 +95,7 @@ struct Spaced {
     Floats at(int k, int steps) const {
         if (k == 0 || k == steps) return k ? high : low;
         const Floats place = fused(angle, static_cast<float>(k), first);
+        if (narrow) return max(min(scale * 0.5f * (exp(place) - exp(-place)), high), low);
         return max(min(even ? place : scale * tan(place), high), low);
     }
 };
@@ -119,7 +133,7 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
     const Mask16 reached = passing.high > passing.low;
     if (!any(reached)) return;
     const RaysInMap rays(packet, index);
-    const Spaced spaced(passing, march.settings.spacing, packet.steps);
+    const Spaced spaced(passing, march.settings.spacing, march.narrow_lobe, packet.steps);
     const Floats scale = max(passing.away, capped_radius(light));
     DepthAlong along(packet);
     Sixteen* extinctions = packet.scratch.extinction.data() + packet.media() * static_cast<size_t>(packet.steps);

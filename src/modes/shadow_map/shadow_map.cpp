@@ -1,5 +1,6 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "integrate/field_light.h"
+#include "integrate/lobe_cuts.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
@@ -35,6 +36,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
+    march->narrow_lobe = lobe_cuts(march->snapshot.media).count > 0;
     march->maps = make_shadow_maps(view, march->snapshot, settings);
     for (const Light& light : march->snapshot.lights) {
         march->depths.push_back(make_light_depth(march->snapshot, light, without_froxels(settings.terms.light),

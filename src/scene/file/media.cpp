@@ -15,10 +15,6 @@ MediumKind kind_named(std::string_view name) {
     return name == "vdb" ? MediumKind::vdb : MediumKind::homogeneous;
 }
 
-PhaseKind phase_named(std::string_view name) {
-    return static_cast<PhaseKind>(std::ranges::find(phase_kinds, name, &PhaseTraits::name) - phase_kinds);
-}
-
 void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
     const Field translate = field.member("translate");
     medium.translation = translate ? keyed_place(translate, origin) : Keyed<vec3>(vec3(dvec3(0) - origin));
@@ -41,24 +37,13 @@ void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
             refuse(bounds.member("high").item(axis), "must be greater than low");
 }
 
-void check_phase(const Field& field, const MediumSource& medium) {
-    const Field phase = field.member("phase"), g = field.member("g");
-    const PhaseTraits& traits = traits_of(medium.phase);
-    if (g && !takes_g(medium.phase)) refuse(g, "has no meaning for the phase function \"" + phase.json->string + "\"");
-    for (const float value : medium.g.values)
-        if (takes_g(medium.phase) && std::abs(value) > traits.max_g)
-            refuse(g ? g : phase, std::string(traits.beyond) + (g ? "" : " (g comes from the fog's file)"));
-}
-
 // What the file does not say stays what it was: the defaults of the recipe or the volume.
-void read_optics(const Field& field, MediumSource& medium) {
+void read_optics(const Field& field, MediumSource& medium, Scene& scene) {
     if (const Field extinction = field.member("extinction")) medium.extinction = keyed_number(extinction);
     if (const Field albedo = field.member("albedo")) medium.albedo = keyed_color(albedo);
     if (const Field g = field.member("g")) medium.g = keyed_number(g);
     if (const Field emission = field.member("emission")) medium.emission = keyed_color(emission);
-    if (const Field phase = field.member("phase")) medium.phase = phase_named(phase.json->string);
-    check_phase(field, medium);
-    if (!takes_g(medium.phase)) medium.g = 0.0f;
+    read_phase(field, medium, scene);
 }
 
 void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
@@ -129,7 +114,7 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     if (medium.kind == MediumKind::noise) read_noise(field, medium, scene);
     if (medium.kind == MediumKind::vdb) read_vdb_source(field, medium, scene);
     medium.z_up = field.json->string_or("up_axis", "Y") == "Z";
-    read_optics(field, medium);
+    read_optics(field, medium, scene);
     read_grids(field, medium, scene);
     const bool moved = field.member("translate") || field.member("rotate") || field.member("scale");
     const bool analytic = medium.kind == MediumKind::homogeneous || medium.kind == MediumKind::height;

@@ -10,6 +10,9 @@ namespace tyndall {
 void read_cameras(const Field& root, Scene& scene);
 void read_objects(const Field& root, Scene& scene); // after the glTF
 void read_lights(const Field& root, Scene& scene);  // after the glTF: entries may change its lights
+// How a medium spreads light. Checks what goes with the medium's g, too.
+void read_phase(const Field& medium_field, MediumSource& medium, Scene& scene);
+
 void read_media(const Field& root, Scene& scene);
 void read_background(const Field& root, Scene& scene);
 void read_billboards(const Field& root, Scene& scene); // after the lights: each names one

@@ -62,9 +62,10 @@ FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
     return at;
 }
 
-vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase) {
+namespace {
+// By a Henyey-Greenstein lobe of the fog.
+vec3 scattered_by_lobe(const FluenceAt& at, vec3 direction, float g) {
     vec3 result;
-    const float g = mean_cosine(phase);
     for (int c = 0; c < 3; ++c) {
         const vec3 lobe = at.flux[c] * (g / std::max(at.fluence[c], 1e-30f));
         const float squared = std::min(glm::dot(lobe, lobe), largest_g * largest_g);
@@ -72,5 +73,33 @@ vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase) {
         result[c] = at.fluence[c] * (1 - squared) / (4 * pi * q * std::sqrt(q));
     }
     return result;
+}
+
+// By one of Draine's: the lobe's α is lowered, and its g such that the mean cosine is that of fog and light together.
+vec3 scattered_by_lobe(const FluenceAt& at, vec3 direction, const PhaseLobe& lobe) {
+    vec3 result;
+    const float mean = static_cast<float>(mean_cosine(lobe)), given = static_cast<float>(lobe.alpha);
+    for (int c = 0; c < 3; ++c) {
+        const float flux = glm::length(at.flux[c]), m = std::min(flux / std::max(at.fluence[c], 1e-30f), 1.0f);
+        const float alpha = 3 * m * m * given / (3 + given * (1 - m * m));
+        float g = m * static_cast<float>(lobe.g);
+        for (int i = 0; i < draine_steps; ++i)
+            g = m * mean * (1 + alpha * (1 + 2 * g * g) / 3) / (1 + alpha * (3 + 2 * g * g) / 5);
+        const float cosine = -glm::dot(at.flux[c], direction) / std::max(flux, 1e-30f);
+        const float q = std::max(1 + g * g - 2 * g * cosine, 1e-4f), whole = 4 * pi * (1 + alpha * (1 + 2 * g * g) / 3);
+        result[c] = at.fluence[c] * (1 - g * g) * (1 + alpha * cosine * cosine) / (whole * q * std::sqrt(q));
+    }
+    return result;
+}
+}
+
+vec3 scattered_fluence(const FluenceAt& at, vec3 direction, const Phase& phase) {
+    if (!phase.shape || phase.shape->lobes.empty()) return scattered_by_lobe(at, direction, mean_cosine(phase));
+    vec3 sum(0);
+    for (const PhaseLobe& lobe : phase.shape->lobes)
+        sum += static_cast<float>(lobe.weight) * (lobe.alpha == 0
+                                                      ? scattered_by_lobe(at, direction, static_cast<float>(lobe.g))
+                                                      : scattered_by_lobe(at, direction, lobe));
+    return sum;
 }
 }

@@ -168,6 +168,13 @@ void add_filter(const Light& light, CacheKey& key) {
     key.add(filter.gobo_half);
 }
 
+void add_phase(const Phase& phase, CacheKey& key) {
+    key.add(phase.kind).add(phase.g);
+    if (!phase.shape) return;
+    for (const PhaseLobe& lobe : phase.shape->lobes) key.add(lobe.weight).add(lobe.g).add(lobe.alpha);
+    for (const float value : phase.shape->table.values) key.add(value);
+}
+
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     CacheKey key;
     key.add(seed);
@@ -180,11 +187,8 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
     }
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
-        key.add(medium.density.kind)
-            .add(grey_extinction(optics))
-            .add(optics.albedo)
-            .add(optics.phase.kind)
-            .add(optics.phase.g);
+        key.add(medium.density.kind).add(grey_extinction(optics)).add(optics.albedo);
+        add_phase(optics.phase, key);
         key.add(medium.density.bounds)
             .add(medium.world_bounds)
             .add(medium.density.height_base)

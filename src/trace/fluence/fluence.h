@@ -4,7 +4,9 @@
 //
 // Around each point the light is taken for a Henyey–Greenstein lobe about the flux F with the mean cosine |F|/φ. Fog of
 // mean cosine g turns it into a lobe of mean cosine g|F|/φ: exact for a beam scattered twice in thin fog and for light
-// from all around, and right to the first moment always.
+// from all around, and right to the first moment always. Phase functions of several lobes do so lobe by lobe;
+// Draine's lobe becomes one of 3 m² α / (3 + α (1 - m²)) instead of α, m the mean cosine of the light: right to the
+// second moment where g is 0, and for a beam.
 #pragma once
 #include "base/math.h"
 #include "volume/phase.h"
@@ -49,8 +51,10 @@ struct FluenceAt {
 };
 FluenceAt fluence_at(const FluenceGrid& grid, vec3 point);
 
+inline constexpr int draine_steps = 4; // towards the g of such a lobe: the mean cosine is right to 3e-3
+
 // What a particle of scattering cross section 1 sends towards the eye, whose ray has this direction.
-vec3 scattered_fluence(const FluenceAt& at, vec3 direction, Phase phase);
+vec3 scattered_fluence(const FluenceAt& at, vec3 direction, const Phase& phase);
 
 // The same bits at any thread count.
 FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed = 0);

@@ -131,6 +131,38 @@ HWY_INLINE Vec3s scattered_fluence(const FluenceAt16& at, const Vec3s& direction
             channel(at.fluence.z, at.flux[0].z, at.flux[1].z, at.flux[2].z)};
 }
 
+HWY_INLINE Vec3s scattered_by_draine(const FluenceAt16& at, const Vec3s& direction, const PhaseLobe& lobe) {
+    const float mean = static_cast<float>(mean_cosine(lobe)), given = static_cast<float>(lobe.alpha);
+    const auto channel = [&](const Floats& fluence, const Floats& x, const Floats& y, const Floats& z) HWY_ATTR {
+        const Vec3s along{x, y, z};
+        const Floats flux = sqrt(dot(along, along)), m = min(flux / max(fluence, 1e-30f), 1.0f), square = m * m;
+        const Floats alpha = 3.0f * square * given / (3.0f + given * (1.0f - square));
+        Floats g = m * static_cast<float>(lobe.g);
+        for (int i = 0; i < draine_steps; ++i) {
+            const Floats twice = 2.0f * g * g;
+            g = m * mean * (1.0f + alpha * (1.0f + twice) * (1.0f / 3)) / (1.0f + alpha * (3.0f + twice) * 0.2f);
+        }
+        const Floats cosine = -dot(along, direction) / max(flux, 1e-30f), g2 = g * g;
+        const Floats q = max(1.0f + g2 - 2.0f * g * cosine, 1e-4f);
+        const Floats whole = 4 * pi * (1.0f + alpha * (1.0f + 2.0f * g2) * (1.0f / 3));
+        return fluence * (1.0f - g2) * (1.0f + alpha * cosine * cosine) / (whole * q * sqrt(q));
+    };
+    return {channel(at.fluence.x, at.flux[0].x, at.flux[1].x, at.flux[2].x),
+            channel(at.fluence.y, at.flux[0].y, at.flux[1].y, at.flux[2].y),
+            channel(at.fluence.z, at.flux[0].z, at.flux[1].z, at.flux[2].z)};
+}
+
+// By lobes, one after the other. Out of line, as shape_value() is.
+HWY_NOINLINE inline Vec3s scattered_by_lobes(const FluenceAt16& at, const Vec3s& direction, const PhaseShape& shape) {
+    if (shape.lobes.empty()) return scattered_fluence(at, direction, shape.mean_cosine);
+    Vec3s sum = splat(vec3(0));
+    for (const PhaseLobe& lobe : shape.lobes)
+        sum = fused(lobe.alpha == 0 ? scattered_fluence(at, direction, static_cast<float>(lobe.g))
+                                    : scattered_by_draine(at, direction, lobe),
+                    static_cast<float>(lobe.weight), sum);
+    return sum;
+}
+
 // What fog scatters of it towards the eye per metre; `extinction(m)` of each medium.
 template<class Extinction>
 HWY_INLINE Vec3s scattered_fluence(const FluenceGrid& grid, const std::vector<Medium>& media, const Vec3s& point,
@@ -139,8 +171,9 @@ HWY_INLINE Vec3s scattered_fluence(const FluenceGrid& grid, const std::vector<Me
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < media.size(); ++m) {
         const Optics& optics = media[m].optics;
-        sum = fused(scattered_fluence(at, direction, mean_cosine(optics.phase)) * albedo16(optics, point),
-                    extinction(m), sum);
+        const Vec3s scattered = optics.phase.shape ? scattered_by_lobes(at, direction, *optics.phase.shape)
+                                                   : scattered_fluence(at, direction, mean_cosine(optics.phase));
+        sum = fused(scattered * albedo16(optics, point), extinction(m), sum);
     }
     return sum;
 }

@@ -3,6 +3,9 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/scene.h"
+#include "volume/phase/mie.h"
+
+#include <algorithm>
 
 namespace tyndall {
 namespace {
@@ -20,7 +23,17 @@ template<LightUnit unit> bool is_sun_in(const Scene& scene, size_t i) {
 bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
 bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
 bool has_direction(const Scene& scene, size_t i) { return is_aimed(scene.lights[i]) && !has_target(scene, i); }
-bool has_mean_cosine(const Scene& scene, size_t i) { return takes_g(scene.media[i].phase); }
+bool has_mean_cosine(const Scene& scene, size_t i) { return scene.media[i].phase.takes_medium_g(); }
+bool has_phase(const Scene& scene, size_t i, std::initializer_list<PhaseKind> kinds) {
+    const PhaseSource& phase = scene.media[i].phase;
+    return phase.own_numbers && std::ranges::find(kinds, phase.kind) != kinds.end();
+}
+bool has_lobe(const Scene& scene, size_t i) {
+    return has_phase(scene, i, {PhaseKind::henyey_greenstein, PhaseKind::draine});
+}
+bool is_draine(const Scene& scene, size_t i) { return has_phase(scene, i, {PhaseKind::draine}); }
+bool is_mie(const Scene& scene, size_t i) { return has_phase(scene, i, {PhaseKind::mie}); }
+bool is_mix(const Scene& scene, size_t i) { return has_phase(scene, i, {PhaseKind::mix}); }
 bool is_height(const Scene& scene, size_t i) { return scene.media[i].kind == MediumKind::height; }
 bool is_noise(const Scene& scene, size_t i) { return scene.media[i].recipe.has_value(); }
 bool has_bounds(const Scene& scene, size_t i) {
@@ -37,6 +50,7 @@ bool always(const Scene&, size_t) { return true; }
 
 template<auto member> Slot of_light(Scene& scene, size_t i) { return &(scene.lights[i].*member); }
 template<auto member> Slot of_medium(Scene& scene, size_t i) { return &(scene.media[i].*member); }
+template<auto member> Slot of_phase(Scene& scene, size_t i) { return &(scene.media[i].phase.*member); }
 template<auto member> Slot of_camera(Scene& scene, size_t i) { return &(scene.cameras[i].*member); }
 
 constexpr float far = 1e9f, bright = 1e18f, tiny = 1e-6f;
@@ -87,6 +101,14 @@ const Property table[] = {
      of_medium<&MediumSource::albedo>, always},
     {Part::medium, "g", number, "", -largest_g, largest_g, -0.9f, 0.9f,
      "Mean cosine of the scattering angle: above 0 forward", of_medium<&MediumSource::g>, has_mean_cosine},
+    {Part::medium, "phase/g", number, "", -largest_g, largest_g, -0.9f, 0.9f,
+     "Direction of the scattered light: above 0 forward", of_phase<&PhaseSource::g>, has_lobe},
+    {Part::medium, "phase/alpha", number, "", 0, bright, 0, 10, "How much light goes both forward and backward",
+     of_phase<&PhaseSource::alpha>, is_draine},
+    {Part::medium, "phase/droplet_diameter", number, "micrometres", tiny, static_cast<float>(largest_droplet), 5, 50,
+     "Diameter of the fog's droplets", of_phase<&PhaseSource::droplet_diameter>, is_mie},
+    {Part::medium, "phase/weight", number, "", 0, 1, 0, 1, "Share of the light that the first lobe scatters",
+     of_phase<&PhaseSource::weight>, is_mix},
     {Part::medium, "emission", color, "nits/m", 0, bright, 0, 1, "Radiance added per metre at density 1",
      of_medium<&MediumSource::emission>, always},
     {Part::medium, "base", number, "m", -far, far, -10, 10, "World height below which the density is 1",

@@ -71,8 +71,8 @@ void check(const MediumSource& medium, const std::string& place) {
     if (!glm::all(glm::lessThan(medium.bounds.low, medium.bounds.high)))
         refuse(place, "the lower corner of the bounds must be less than the upper one");
     for (const float g : medium.g.values)
-        if (takes_g(medium.phase) && std::abs(g) > traits_of(medium.phase).max_g)
-            refuse(place, std::string(traits_of(medium.phase).beyond));
+        if (medium.phase.takes_medium_g() && std::abs(g) > traits_of(medium.phase.kind).max_g)
+            refuse(place, std::string(traits_of(medium.phase.kind).beyond));
 }
 
 void check(const CameraSource& camera, const std::string& place) {

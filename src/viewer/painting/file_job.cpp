@@ -111,7 +111,8 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
     files.recipe.frame_rate = scene.frame_rate;
     const double seconds = moment_of(scene, files.frames.front()).seconds;
     files.recipe.extinction = found->extinction.at(seconds), files.recipe.albedo = found->albedo.at(seconds);
-    files.recipe.g = found->g.at(seconds);
+    files.recipe.g =
+        std::clamp(mean_cosine(phase_at(found->phase, found->g.at(seconds), seconds)), -largest_g, largest_g);
     return files;
 }
 

@@ -176,7 +176,7 @@ TEST(SceneFile, Media) {
     EXPECT_EQ(box.emission.at(0), vec3(0, 1, 0));
     EXPECT_LE(glm::length(box.rotation.at(0) * vec3(0, 0, 1) - vec3(1, 0, 0)), 1e-6f);
     EXPECT_EQ(box.bounds.low, vec3(-1));
-    EXPECT_EQ(scene.media[1].phase, PhaseKind::rayleigh);
+    EXPECT_EQ(scene.media[1].phase.kind, PhaseKind::rayleigh);
     EXPECT_EQ(scene.media[1].height_falloff.at(0), 4);
     EXPECT_FALSE(is_finite(scene.media[1].bounds.low)) << "everywhere";
     EXPECT_EQ(scene.media[2].extinction.at(0), 3) << "from the recipe";

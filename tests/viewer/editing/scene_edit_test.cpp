@@ -65,6 +65,26 @@ TEST(KeyPlace, FindsTheKeyAtAMomentOrTheGapForANewOne) {
     EXPECT_TRUE(key_place(late, false, 999999.95, 1000).there);
 }
 
+TEST(SceneEdit, ReachesTheNumbersOfPhaseFunctions) {
+    const Studio studio(R"({"tyndall": 1, "media": [
+        {"name": "cloud", "type": "homogeneous", "extinction": 1, "phase": {"type": "mie", "droplet_diameter": 10}},
+        {"name": "dust", "type": "homogeneous", "extinction": 1, "phase": {"type": "draine", "g": 0.5, "alpha": 1}},
+        {"name": "both", "type": "homogeneous", "extinction": 1, "phase": {"type": "mix", "weight": 0.5,
+            "lobes": [{"type": "rayleigh"}, {"type": "isotropic"}]}}]})");
+    Scene scene = load_scene(studio.file);
+    set(scene, "media/cloud/phase/droplet_diameter", "20");
+    set(scene, "media/dust/phase/alpha", "2");
+    set(scene, "media/dust/phase/g", "-0.25");
+    set(scene, "media/both/phase/weight", "0.75");
+    EXPECT_EQ(now(scene, "media/cloud/phase/droplet_diameter").x, 20);
+    EXPECT_EQ(scene.media[1].phase.alpha.at(0), 2);
+    EXPECT_EQ(scene.media[1].phase.g.at(0), -0.25f);
+    EXPECT_EQ(scene.media[2].phase.weight.at(0), 0.75f);
+    EXPECT_NE(refusal(scene, "media/cloud/phase/droplet_diameter", "51"), "");
+    EXPECT_NE(refusal(scene, "media/cloud/g", "0.5"), "") << "it has none";
+    EXPECT_NE(refusal(scene, "media/both/phase/alpha", "1"), "");
+}
+
 TEST(SceneEdit, ListsWhatEachThingHas) {
     const Studio studio;
     const Scene scene = load_scene(studio.file);

@@ -154,7 +154,9 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
 Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
                           const Mask16& wanted) {
     return between_kinks(walk, part, wanted, [&](const Interval<Floats>& one, const Mask16& some) HWY_ATTR {
-        return light_within(walk, EquiAngular16(one, walk.by_lamp.away), slice, here, some);
+        return between_cuts(walk, one, some, [&](const Interval<Floats>& piece, const Mask16& left) HWY_ATTR {
+            return light_within(walk, EquiAngular16(piece, walk.by_lamp.away), slice, here, left);
+        });
     });
 }
 

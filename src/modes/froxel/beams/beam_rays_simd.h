@@ -160,6 +160,24 @@ HWY_INLINE Vec3s between_kinks(const BeamWalk& walk, const Interval<Floats>& par
     });
 }
 
+// Calls add(part, wanted) for what lies between the cuts of narrow lobes, and sums it.
+template<class Add>
+HWY_INLINE Vec3s between_cuts(const BeamWalk& walk, const Interval<Floats>& part, const Mask16& wanted,
+                              const Add& add) {
+    const LobeCuts& cuts = walk.picture.beams.lobe;
+    if (cuts.count == 0) return add(part, wanted);
+    Vec3s sum = splat(vec3(0));
+    Floats low = part.low;
+    for (int i = 0; i <= cuts.count; ++i) {
+        const Floats cut = i < cuts.count ? walk.by_lamp.away * cuts.slopes[i] : part.high;
+        const Floats high = max(min(cut, part.high), low);
+        const Mask16 some = wanted & (high > low);
+        if (any(some)) sum = sum + add(Interval<Floats>{zero_unless(some, low), zero_unless(some, high)}, some);
+        low = high;
+    }
+    return sum;
+}
+
 // Optical depth of fog of closed form, from points to the lamp.
 HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point, const Floats& distance) {
     Floats sum = 0.0f;

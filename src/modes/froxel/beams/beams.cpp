@@ -112,6 +112,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     FroxelBeams beams;
     beams.lights = scene.beams;
     if (beams.lights.empty()) return beams;
+    beams.lobe = lobe_cuts(scene.snapshot.media);
     for (const size_t index : beams.lights) {
         beams.fog.push_back(fog_at_lamp(scene, grid, index));
         beams.grids.push_back(scene.depths[index]), beams.grids.back().analytic.clear();

@@ -3,6 +3,7 @@
 // They keep what changes slowly: how much of the light gets there at all.
 #pragma once
 #include "base/recycled.h"
+#include "integrate/lobe_cuts.h"
 #include "modes/froxel/grid.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
@@ -51,6 +52,7 @@ struct FroxelBeams {
     std::vector<LightDepth> grids;   // of each, without fog of closed form: rays know by themselves how that dims it
     std::vector<bool> exact_shadows; // whether rays find them, or there are none
     std::vector<bool> by_rays_alone; // whether rays know all of it: fog of closed form and exact shadows
+    LobeCuts lobe;                   // of the scene's fog
     std::vector<Reach> reaches;      // [tile · lights + light]
     RecycledFloats shares; // of the light that would arrive without surfaces, and through LampFog alone: what does
     size_t media = 0;      // of the scene; 0 where there is only one, or all are closed

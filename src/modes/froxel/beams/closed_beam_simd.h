@@ -24,12 +24,13 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
     const size_t index = walk.picture.beams.lights[walk.beam];
     const EquiAngular16 angles(stretch, walk.by_lamp.away);
     const Floats across = closed_depth_before(walk, stretch.high) - closed_depth_before(walk, stretch.low);
-    // A soft edge may be narrow.
-    float wide = has_cone(walk.light) ? 0.2f : 0.3f;
-    const float least = has_cone(walk.light) ? 2 : 1;
+    // A soft edge may be narrow, and a lobe.
+    const bool sharp = has_cone(walk.light) || walk.picture.beams.lobe.count > 0;
+    float wide = sharp ? 0.2f : 0.3f;
+    const float least = sharp ? 2 : 1;
     if (walk.light.filter) wide = std::min(wide, whole_angle(walk.light) / filter_pieces);
     const Floats pieces = min(floor(max(angles.angle * (1 / wide), across)) + least, most);
-    const Mask16 single = (angles.angle < (has_cone(walk.light) ? 0.0f : 0.05f)) & (across < 0.1f);
+    const Mask16 single = (angles.angle < (sharp ? 0.0f : 0.05f)) & (across < 0.1f);
     const Floats points = select(single, 1.0f, pieces * 2.0f), weight = 1.0f / points;
     Vec3s sum = splat(vec3(0));
     for (int i = 0; i < 2 * static_cast<int>(most); ++i) {
@@ -73,7 +74,9 @@ Vec3s closed_beam_light(const BeamWalk& walk, const LitIntervals* lit, const Int
                         const Mask16& met) {
     const auto add = [&](const Interval<Floats>& stretch, const Mask16& some) HWY_ATTR {
         return between_kinks(walk, stretch, some, [&](const Interval<Floats>& part, const Mask16& left) HWY_ATTR {
-            return closed_light_in_media(walk, part, left);
+            return between_cuts(walk, part, left, [&](const Interval<Floats>& piece, const Mask16& here) HWY_ATTR {
+                return closed_light_in_media(walk, piece, here);
+            });
         });
     };
     if (!lit) return add(chord, met);

@@ -20,7 +20,8 @@ struct FroxelScene {
     Snapshot snapshot; // media as the settings see them
     FroxelSettings settings;
     StyleSettings style;
-    std::vector<LightDepth> depths;                          // one per light
+    std::vector<Medium> sun_media;  // in the light of suns: glows are no narrower than froxels. Empty = the snapshot's
+    std::vector<LightDepth> depths; // one per light
     std::vector<std::unique_ptr<const GridColumns>> columns; // of their grids; null where there is none
     std::vector<ConeFalloff> cones;                          // one per light
     std::vector<NearLight> nears;                            // likewise; empty = none

@@ -171,8 +171,10 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
         cosine = dot(offset, lanes.toward) / max(sqrt(dot(offset, offset)), 1e-12f);
     }
     if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], arrived.point, reached);
-    const Vec3s towards = scattering(fill.scene.snapshot.media, arrived.point, cosine,
-                                     [&](size_t m) HWY_ATTR { return load(job.extinction[m]); });
+    const std::vector<Medium>& media =
+        is_distant(light) && !fill.scene.sun_media.empty() ? fill.scene.sun_media : fill.scene.snapshot.media;
+    const Vec3s towards =
+        scattering(media, arrived.point, cosine, [&](size_t m) HWY_ATTR { return load(job.extinction[m]); });
     return scattered_light(light, fill.scene.depths[index], arrived.point, arrived.amount, towards);
 }
 
