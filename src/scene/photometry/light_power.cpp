@@ -1,8 +1,8 @@
 #include "scene/photometry/light_power.h"
 
-#include "base/blackbody.h"
 #include "scene/photometry/ies_profile.h"
 #include "scene/scene.h"
+#include "volume/emission/blackbody.h"
 
 namespace tyndall {
 namespace {
@@ -37,7 +37,7 @@ float candela_of(const LightSource& light, double seconds) {
 
 vec3 intensity_of(const LightSource& light, double seconds) {
     vec3 color = light.color.at(seconds);
-    if (const float kelvin = light.temperature.at(seconds); kelvin > 0) color *= blackbody_color(kelvin);
+    if (const float kelvin = light.temperature.at(seconds); kelvin > 0) color *= vec3(blackbody_tint(kelvin));
     return color * candela_of(light, seconds);
 }
 }

@@ -1,5 +1,7 @@
 #include "volume/emission/blackbody.h"
 
+#include "volume/emission/cie_1931.h"
+
 #include <bit>
 #include <map>
 #include <mutex>
@@ -12,32 +14,21 @@ constexpr double planck_constant = 6.62607015e-34, light_speed = 299792458, bolt
 constexpr double lumens_per_watt = 683;
 constexpr double wien = 2.897771955e-3; // m K: wavelength of the maximum × temperature
 
-// Gaussian whose width is another on each side of its middle.
-double lobe(double x, double middle, double inverse_below, double inverse_above) {
-    const double t = (x - middle) * (x < middle ? inverse_below : inverse_above);
-    return std::exp(-0.5 * t * t);
-}
-
-// The observer at a wavelength in nanometres (Wyman, Sloan, Shirley 2013, listing 1).
-dvec3 matching(double nm) {
-    return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
-                0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
-            0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
-            1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
-}
-
-// ∫ of a spectrum times the observer over wavelengths in nanometres, by midpoints: narrow beside the observer's lobes.
-constexpr int first_nm = 360, last_nm = 830, step_nm = 5;
+// ∫ of a spectrum times the observer over wavelengths in nanometres.
 template<class Spectrum> dvec3 observed(const Spectrum& spectrum) {
-    static const std::vector<dvec3> observer = [] {
-        std::vector<dvec3> values;
-        for (int nm = first_nm; nm < last_nm; nm += step_nm) values.push_back(matching(nm + 0.5 * step_nm));
-        return values;
-    }();
     dvec3 sum(0);
-    for (size_t i = 0; i < observer.size(); ++i)
-        sum += spectrum((first_nm + (static_cast<double>(i) + 0.5) * step_nm) * 1e-9) * observer[i];
-    return sum * double{step_nm};
+    for (size_t i = 0; i < std::size(cie_1931); ++i)
+        sum += spectrum((first_nm + static_cast<double>(i) * step_nm) * 1e-9) *
+               dvec3(cie_1931[i][0], cie_1931[i][1], cie_1931[i][2]);
+    return sum * step_nm;
+}
+
+double luminance_of(dvec3 rgb) { return dot(rgb, dvec3(0.2126, 0.7152, 0.0722)); }
+
+// Planck's law over its maximum: numbers of ordinary size at any temperature.
+dvec3 relative_xyz(double kelvin) {
+    const double highest = planck_radiance(wien / kelvin, kelvin);
+    return observed([&](double wavelength) { return planck_radiance(wavelength, kelvin) / highest; });
 }
 }
 
@@ -58,7 +49,7 @@ dvec3 rec709_from_xyz(dvec3 xyz) {
 }
 
 dvec3 in_gamut(dvec3 rgb) {
-    const double grey = 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z;
+    const double grey = luminance_of(rgb);
     const double least = std::min({rgb.x, rgb.y, rgb.z});
     if (least >= 0 || !(grey > 0)) return glm::max(rgb, dvec3(0));
     return glm::max(grey + (rgb - grey) * (grey / (grey - least)), dvec3(0));
@@ -67,16 +58,20 @@ dvec3 in_gamut(dvec3 rgb) {
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity) {
     if (!(kelvin > 0) || (kind == BlackbodyKind::pbrt && kelvin <= 100)) return dvec3(0);
     if (kind == BlackbodyKind::kelvin) return in_gamut(rec709_from_xyz(blackbody_xyz(kelvin)));
-    const double highest = planck_radiance(wien / kelvin, kelvin);
-    const dvec3 xyz = observed([&](double wavelength) { return planck_radiance(wavelength, kelvin) / highest; });
     if (kind == BlackbodyKind::pbrt) {
         static const double even = observed([](double) { return 1.0; }).y;
-        return in_gamut(rec709_from_xyz(xyz / even));
+        return in_gamut(rec709_from_xyz(relative_xyz(kelvin) / even));
     }
     constexpr double stefan_boltzmann = 5.670373e-8 * 1e-6 * std::numbers::inv_pi;
     const double power = 1 + (kelvin * kelvin * kelvin * kelvin - 1) * intensity;
+    return blackbody_tint(kelvin) * (stefan_boltzmann * power);
+}
+
+dvec3 blackbody_tint(double kelvin) {
+    const dvec3 xyz = relative_xyz(kelvin);
     if (!(xyz.y > 0)) return dvec3(0);
-    return in_gamut(rec709_from_xyz(xyz / xyz.y)) * (stefan_boltzmann * power);
+    const dvec3 rgb = in_gamut(rec709_from_xyz(xyz / xyz.y));
+    return rgb / luminance_of(rgb);
 }
 
 double lowest_in_gamut() {

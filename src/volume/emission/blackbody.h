@@ -15,8 +15,7 @@ inline constexpr std::string_view blackbody_names[] = {"kelvin", "cycles", "pbrt
 // Spectral radiance, W/(m² sr m), of a wavelength in metres.
 double planck_radiance(double wavelength, double kelvin);
 
-// XYZ of a blackbody's radiance: Y is its luminance in nits (683 lm/W). Matching functions: the multi-lobe fits of
-// Wyman, Sloan and Shirley 2013, from 360 to 830 nm.
+// XYZ of a blackbody's radiance: Y is its luminance in nits (683 lm/W).
 dvec3 blackbody_xyz(double kelvin);
 
 // Linear Rec.709 (D65) of XYZ, channels below 0 included.
@@ -25,13 +24,15 @@ dvec3 rec709_from_xyz(dvec3 xyz);
 // The nearest color without negative channels on the line to grey of the same luminance.
 dvec3 in_gamut(dvec3 rgb);
 
+// Linear Rec.709 of luminance 1, in gamut; black where so little is visible that no number holds it.
+dvec3 blackbody_tint(double kelvin);
+
 // What stands for a temperature before any scale, linear Rec.709 in gamut:
 //   kelvin: radiance, nits.
 //   cycles: 5.670373e-8 · 1e-6 / π · (1 - intensity + intensity T⁴) × the colour at luminance 1 (Blender's Principled
 //           Volume, kernel/svm/closure.h).
 //   pbrt: Planck's law over its own maximum, by the observer's sum of an even spectrum of 1; 0 at or below 100 K
-//   (pbrt-v4
-//         media.h, util/spectrum.h).
+//         (pbrt-v4 media.h, util/spectrum.h).
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity = 1);
 
 // Below this some channel was negative: redder than Rec.709 can be, kelvin.

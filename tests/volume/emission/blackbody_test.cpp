@@ -27,10 +27,21 @@ TEST(Blackbody, FreezingPlatinumHasSixtyCandelaPerSquareCentimetre) {
 TEST(Blackbody, ChromaticitiesArePublishedOnes) {
     const auto expect = [](double kelvin, Chromaticity published) {
         const Chromaticity found = chromaticity(kelvin);
-        EXPECT_NEAR(found.x, published.x, 0.003) << kelvin;
-        EXPECT_NEAR(found.y, published.y, 0.003) << kelvin;
+        EXPECT_NEAR(found.x, published.x, 2e-4) << kelvin;
+        EXPECT_NEAR(found.y, published.y, 2e-4) << kelvin;
     };
-    expect(2856, {0.4476, 0.4075}), expect(6500, {0.3135, 0.3237}), expect(10000, {0.2807, 0.2884});
+    expect(2856, {0.44757, 0.40745}), expect(4000, {0.3805, 0.3768}), expect(6500, {0.3135, 0.3237});
+    expect(10000, {0.2807, 0.2884});
+}
+
+TEST(Blackbody, TintsHaveLuminanceOneAndStayInGamut) {
+    for (const double kelvin : {500.0, 1000.0, 1900.0, 3200.0, 6500.0, 40000.0, 100000.0}) {
+        const dvec3 tint = blackbody_tint(kelvin);
+        EXPECT_NEAR(luminance_of(tint), 1, 1e-12) << kelvin;
+        EXPECT_GE(std::min({tint.x, tint.y, tint.z}), 0) << kelvin;
+    }
+    EXPECT_GT(blackbody_tint(2000).x, blackbody_tint(3000).x);
+    EXPECT_GT(blackbody_tint(9000).z, blackbody_tint(6000).z);
 }
 
 // Wien's law puts the maximum of Planck's law, Stefan and Boltzmann's its integral.
