@@ -1,0 +1,216 @@
+// What the options of tyndall render ask for.
+#include "automatic.h"
+#include "base/error.h"
+#include "base/io/frames.h"
+#include "base/io/output.h"
+#include "modes/mode.h"
+#include "render/adaptive/to_target.h"
+#include "render/parts/plan_file.h"
+#include "render_options.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tyndall {
+namespace {
+void read_crop(const std::string& text, RenderRequest& request) {
+    const std::vector<std::string> edges = comma_list(text);
+    if (edges.size() != 4)
+        fail(ExitCode::usage, "--crop", "expected X0,Y0,X1,Y1 in pixels; got '" + printable(text, 40) + "'");
+    int values[4];
+    for (int i = 0; i < 4; ++i) values[i] = static_cast<int>(integer_option("--crop", edges[i], 0, largest_side));
+    request.crop_low = {values[0], values[1]}, request.crop_high = {values[2], values[3]};
+    if (request.crop_low.x >= request.crop_high.x || request.crop_low.y >= request.crop_high.y)
+        fail(ExitCode::usage, "--crop",
+             "X1,Y1 have to lie right of and below X0,Y0; got '" + printable(text, 40) + "'");
+}
+
+// Layers beside RGBA, from --aov.
+std::vector<std::string> parsed_layers(const std::string& text) {
+    if (text == "none") return {};
+    const std::vector<std::string>& known = layer_names();
+    std::vector<std::string> layers;
+    for (const std::string& name : comma_list(text)) layers.push_back(known[choice_among("--aov", name, known)]);
+    return layers;
+}
+
+// A mode whose only error is noise gets so many times the quality's samples.
+constexpr int noisy_factor = 16;
+
+// --orders, for modes that follow light further than once.
+void read_orders(const std::string& text, RenderRequest& request) {
+    const int orders = text == "all" ? all_orders : static_cast<int>(integer_option("--orders", text, 1, all_orders));
+    if (find_mode(request.mode).accuracy == Accuracy::multiple_scattering)
+        request.settings.path.orders = orders;
+    else if (find_mode(request.mode).adds_fluence)
+        request.settings.fluence.orders = orders;
+    else if (orders > 1)
+        fail(ExitCode::usage, "--orders",
+             request.mode + " scatters light once only; --mode march, froxel and path take more");
+}
+
+// A goal decides how many samples there are, but that path begins with as many as asked for when time is no matter.
+void check_samples(const RenderRequest& request, const Mode& mode) {
+    if (!has_goal(request) || (error_is_noise(mode) && request.time_budget == 0)) return;
+    if (request.settings.pixel.samples != settings_for(request.quality).pixel.samples)
+        fail(ExitCode::usage, "--samples",
+             std::string(request.time_budget > 0 ? "--time-budget" : "--target-error") +
+                 " decides how many rays a pixel takes");
+}
+}
+
+void check_crop(const RenderRequest& request, ivec2 picture) {
+    if (request.crop_high.x > picture.x || request.crop_high.y > picture.y)
+        fail(ExitCode::usage, "--crop", formatted("reaches beyond the image of %dx%d pixels", picture.x, picture.y));
+}
+
+std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text) {
+    std::vector<const Mode*> result;
+    if (text == "all") {
+        for (const Mode& mode : modes()) result.push_back(&mode);
+        return result;
+    }
+    for (const std::string& name : comma_list(text)) {
+        if (name == automatic) fail(ExitCode::usage, option, "auto is one mode of its choice: name it alone");
+        const Mode& mode = find_mode(name, option);
+        if (std::ranges::count(result, &mode)) fail(ExitCode::usage, option, name + " is named twice");
+        result.push_back(&mode);
+    }
+    return result;
+}
+
+namespace {
+void read_look(const RenderOptions& texts, RenderRequest& request) {
+    for (const auto& [name, text] :
+         {std::pair{"--exposure", &texts.exposure}, {"--view-transform", &texts.view_transform}})
+        if (!text->empty() && !texts.png)
+            fail(ExitCode::usage, name, "is for PNGs only, EXR files hold light as it is: add --png");
+    request.automatic_exposure = texts.exposure == automatic;
+    if (!texts.exposure.empty() && !request.automatic_exposure)
+        request.exposure = number_option("--exposure", texts.exposure, -100, 100);
+    if (!texts.view_transform.empty())
+        request.view_transform =
+            static_cast<ViewTransform>(choice_among("--view-transform", texts.view_transform, view_transform_names()));
+}
+}
+
+RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
+    RenderRequest request;
+    request.scene_file = texts.scene;
+    request.output = texts.output;
+    if (!texts.frames.empty()) request.frames = parse_frames(texts.frames);
+    check_pattern(texts.output, ".exr", request.frames.size() > 1);
+    request.mode = mode.name;
+    request.quality = quality_named(texts.quality);
+    request.settings = settings_for(request.quality);
+    const bool goal = !texts.target_error.empty() || !texts.time_budget.empty();
+    if (error_is_noise(mode) && !goal) request.settings.pixel.samples *= noisy_factor;
+    if (!texts.samples.empty())
+        request.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
+    if (!texts.orders.empty()) read_orders(texts.orders, request);
+    for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
+    if (!texts.target_error.empty()) {
+        request.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
+        check_target(mode);
+    }
+    if (!texts.time_budget.empty()) {
+        request.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
+        check_target(mode, "--time-budget");
+    }
+    if (texts.mode == automatic && !goal) request.target_error = usual_error(request.quality);
+    check_samples(request, mode);
+    if (!texts.history.empty() && has_goal(request))
+        fail(ExitCode::usage, "--history",
+             "does not go with --target-error and --time-budget: they measure single frames");
+    if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
+    request.camera = texts.camera;
+    if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
+    if (!texts.crop.empty()) read_crop(texts.crop, request);
+    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(request, request.resolution);
+    if (!texts.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
+    request.missing = static_cast<MissingFrame>(choice_among("--missing", texts.missing, missing_frame_names));
+    read_look(texts, request);
+    if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
+    request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
+    if (!request.background && wants_layer(request, "background"))
+        fail(ExitCode::usage, "--aov", "there is no layer background with --background off");
+    request.exr.full_float = texts.full_float;
+    request.png = texts.png, request.resume = texts.resume;
+    request.isa = chosen_isa(texts.isa);
+    return request;
+}
+
+namespace {
+// i/N, both from 1.
+void read_part_option(const std::string& text, Grouping& grouping) {
+    const size_t slash = text.find('/');
+    if (slash == text.npos)
+        fail(ExitCode::usage, "--part", "expected i/N, 3/8 for instance; got '" + printable(text, 40) + "'");
+    grouping.parts = static_cast<int>(integer_option("--part", text.substr(slash + 1), 1, 1 << 16));
+    grouping.part = static_cast<int>(integer_option("--part", text.substr(0, slash), 1, grouping.parts));
+}
+
+// The options that a plan has decided.
+void check_planned(const RenderOptions& texts) {
+    const RenderOptions usual;
+    const std::tuple<const char*, bool> decided[] = {{"SCENE", !texts.scene.empty()},
+                                                     {"--mode", texts.mode != usual.mode},
+                                                     {"--quality", texts.quality != usual.quality},
+                                                     {"--camera", !texts.camera.empty()},
+                                                     {"--res", !texts.resolution.empty()},
+                                                     {"--crop", !texts.crop.empty()},
+                                                     {"--samples", !texts.samples.empty()},
+                                                     {"--light-units", texts.light_units != usual.light_units},
+                                                     {"--missing", texts.missing != usual.missing},
+                                                     {"--aov", !texts.aov.empty()},
+                                                     {"--seed", !texts.seed.empty()},
+                                                     {"--isa", texts.isa != usual.isa},
+                                                     {"--orders", !texts.orders.empty()},
+                                                     {"--target-error", !texts.target_error.empty()},
+                                                     {"--time-budget", !texts.time_budget.empty()},
+                                                     {"--history", !texts.history.empty()},
+                                                     {"--background", texts.background != usual.background},
+                                                     {"--set", !texts.settings.empty()},
+                                                     {"--float", texts.full_float}};
+    for (const auto& [name, given] : decided)
+        if (given) fail(ExitCode::usage, name, "the plan has decided it: plan again to change it");
+}
+}
+
+RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
+    check_planned(texts);
+    plan = load_plan(texts.plan);
+    RenderRequest request = plan.request;
+    use_planned_isa(request.isa);
+    request.output = texts.output;
+    Grouping& grouping = request.grouping;
+    if (!texts.part.empty()) read_part_option(texts.part, grouping);
+    if (!texts.more.empty()) {
+        const size_t at = texts.more.find('@');
+        grouping.more = static_cast<int>(integer_option("--more", texts.more.substr(0, at), 1, 1 << 16));
+        grouping.after = grouping.groups;
+        if (at != texts.more.npos)
+            grouping.after =
+                static_cast<int>(integer_option("--more", texts.more.substr(at + 1), grouping.groups, 1 << 20));
+        if (texts.part.empty()) grouping.part = grouping.parts = 1;
+    }
+    if (!texts.checkpoint.empty() && !is_part(grouping)) fail(ExitCode::usage, "--checkpoint", "is for --part");
+    if (!texts.checkpoint.empty())
+        request.checkpoint_seconds = 60 * number_option("--checkpoint", texts.checkpoint, 0.01, 10000);
+    if (is_part(grouping) && texts.png) fail(ExitCode::usage, "--png", "a part is no image: merge shows it");
+    if (!texts.frames.empty()) {
+        request.frames = parse_frames(texts.frames);
+        for (const int frame : request.frames)
+            if (!std::ranges::count(plan.request.frames, frame))
+                fail(ExitCode::usage, "--frames", formatted("frame %d is not in the plan", frame));
+    }
+    check_pattern(texts.output, ".exr", request.frames.size() > 1);
+    read_look(texts, request);
+    request.png = texts.png, request.resume = texts.resume;
+    return request;
+}
+
+LoadOptions load_options(const RenderOptions& texts) {
+    return {static_cast<LightUnits>(choice_among("--light-units", texts.light_units, light_unit_names))};
+}
+}
