@@ -18,40 +18,31 @@ from run import numbers
 from scene_files import write_scene
 
 SOURCE = pathlib.Path(__file__).parents[2]
-TILE = 8  # pixels
 LEAST = 0.01  # differences below this count as this
 PICTURES = 6  # of path tracing, at least
 
 
-def tile_means(picture):
-    """Means of tiles of 8x8 pixels, those at the edges too, and how many pixels each has."""
-    rows, columns = (np.arange(0, n, TILE) for n in picture.shape[:2])
-    sums = np.add.reduceat(np.add.reduceat(picture, rows, 0), columns, 1)
-    counts = np.outer(np.diff(np.append(rows, picture.shape[0])), np.diff(np.append(columns, picture.shape[1])))
-    return sums / counts[..., None], counts
-
-
 def differences(own, truths, layer):
-    """Of two images of a mode and many of path tracing: mean and rms over tiles, each with its standard error, as shares of
+    """Of two images of a mode and many of path tracing: mean and rms over pixels, each with its standard error, as shares of
     path tracing's mean. Products of independent differences hold no noise."""
     mean = np.mean([truth[layer].mean() for truth in truths])
-    a, b = (tile_means(picture[layer])[0] for picture in own)
-    counts = tile_means(own[0][layer])[1][..., None] / own[0][layer].shape[0] / own[0][layer].shape[1]
-    tiles = np.array([tile_means(truth[layer])[0] for truth in truths])
+    a, b = (picture[layer].astype(float) for picture in own)
+    own_noise = np.mean((a - b) ** 2) / 4  # is in all differences: taken out by the mode's two images
+    some = [0.5 * (a + b) - truth[layer] for truth in truths]
+    total, squares = np.sum(some, 0), np.sum(np.square(some), 0)
 
-    def squared(some):
-        n, d = len(some), 0.5 * (a + b) - some
-        # the mode's own noise is in both differences: taken out by its two images
-        own_noise = ((a - b) ** 2 / 4 * counts).sum() / 3
-        return ((d.sum(0) ** 2 - (d ** 2).sum(0)) / (n * (n - 1)) * counts).sum() / 3 - own_noise
+    def squared(total, squares, n):
+        return np.mean(total ** 2 - squares) / (n * (n - 1)) - own_noise
 
-    left_out = [squared(np.delete(tiles, i, 0)) for i in range(len(tiles))]
-    error = np.sqrt((len(tiles) - 1) * np.var(left_out))
-    offsets = [0.5 * (own[0][layer].mean() + own[1][layer].mean()) - truth[layer].mean() for truth in truths]
-    return {"mean": np.mean(offsets) / mean, "mean_error": np.std(offsets, ddof=1) / np.sqrt(len(offsets)) / mean,
-            "tiles": np.sqrt(max(squared(tiles), 0)) / mean,
-            "tiles_high": np.sqrt(max(squared(tiles) + 2 * error, 0)) / mean,
-            "tiles_low": np.sqrt(max(squared(tiles) - 2 * error, 0)) / mean}
+    n = len(some)
+    value = squared(total, squares, n)
+    left_out = [squared(total - one, squares - one ** 2, n - 1) for one in some]
+    error = np.sqrt((n - 1) * np.var(left_out))
+    offsets = [one.mean() for one in some]
+    return {"mean": np.mean(offsets) / mean, "mean_error": np.std(offsets, ddof=1) / np.sqrt(n) / mean,
+            "pixels": np.sqrt(max(value, 0)) / mean,
+            "pixels_high": np.sqrt(max(value + 2 * error, 0)) / mean,
+            "pixels_low": np.sqrt(max(value - 2 * error, 0)) / mean}
 
 
 def stated(run):
@@ -87,10 +78,10 @@ def prove(seed, options):
         if row["stated"] is None:
             return row | {"refused": own[0].said}
         row["layers"] = {layer: differences([run.layers for run in own], truths, layer) for layer in LAYERS}
-        worst = max(row["layers"].values(), key=lambda layer: layer["tiles"])
-        low = max(max(layer["tiles_low"], abs(layer["mean"]) - 2 * layer["mean_error"]) for layer in row["layers"].values())
+        worst = max(row["layers"].values(), key=lambda layer: layer["pixels"])
+        low = max(max(layer["pixels_low"], abs(layer["mean"]) - 2 * layer["mean_error"]) for layer in row["layers"].values())
         # a stated amount is too small where the measurement says so beyond its own error
-        return row | {"measured": worst["tiles"], "low": low, "high": worst["tiles_high"]}
+        return row | {"measured": worst["pixels"], "low": low, "high": worst["pixels_high"]}
 
 
 def main():
@@ -110,7 +101,7 @@ def main():
         if "refused" in row:
             print(f"{seed:6d} {row['family']:12s} {row['refused'][:90]}", flush=True)
             continue
-        layers = " ".join(f"{layer} {100 * d['mean']:+.1f}±{100 * d['mean_error']:.1f} % tiles {100 * d['tiles']:.1f} %"
+        layers = " ".join(f"{layer} {100 * d['mean']:+.1f}±{100 * d['mean_error']:.1f} % pixels {100 * d['pixels']:.1f} %"
                           for layer, d in row["layers"].items())
         mark = "" if row["stated"] >= row["low"] else "  TOO SMALL"
         print(f"{seed:6d} {row['family']:12s} stated {100 * row['stated']:6.1f} % measured {100 * row['measured']:6.1f} % "

@@ -113,7 +113,7 @@ Contest contest_of_orders(std::span<const Mode> modes, const View& view, const S
     if (goal.error == 0) {
         contest.contenders.push_back(path());
         // What is not known of the grid speaks against it.
-        const double grid = std::max(plan.orders->tiles.error, 0.5 * plan.orders->tiles.bound);
+        const double grid = std::max(plan.orders->pixels.error, 0.5 * plan.orders->pixels.bound);
         if (contest.contenders.back().error < std::hypot(contest.best().error, grid))
             contest.winner = contest.contenders.size() - 1;
     }
@@ -154,7 +154,7 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
 }
 
 double Plan::expected_error() const {
-    return orders && takes_fluence(*chosen.mode, settings) ? std::hypot(chosen.error, orders->tiles.error)
+    return orders && takes_fluence(*chosen.mode, settings) ? std::hypot(chosen.error, orders->pixels.error)
                                                            : chosen.error;
 }
 
@@ -171,8 +171,8 @@ std::string Plan::certificate() const {
                         " (" + term.simpler + ": at most " + percent_text(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
     if (orders)
-        text += "; multiple scattering from a grid is " + percent_text(orders->tiles.error) + " (at most " +
-                percent_text(orders->tiles.bound) + ") off path tracing";
+        text += "; multiple scattering from a grid is " + percent_text(orders->pixels.error) + " (at most " +
+                percent_text(orders->pixels.bound) + ") off path tracing";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
 }
 

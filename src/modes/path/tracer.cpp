@@ -175,7 +175,8 @@ void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float d
 
 void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
     const float share = line.through * surface.alpha;
-    if (walk.tracer.surfaces_emit && max_component(surface.emission) > 0) {
+    // A glowing surface is seen even where it lights nothing.
+    if ((walk.tracer.surfaces_emit || walk.order == 0) && max_component(surface.emission) > 0) {
         const float aimed =
             line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
         const float weight = aimed > 0 ? line.walker.density / (line.walker.density + aimed) : 1;

@@ -17,7 +17,7 @@ namespace tyndall {
 struct PathTracer {
     Snapshot snapshot;
     PathSettings settings;
-    bool surfaces_emit = true;
+    bool surfaces_emit = true; // light on fog and other surfaces
     Camera camera;
     ivec2 size{0};
     EmissiveTriangles glow;

@@ -3,16 +3,17 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "integrate/terms.h"
 #include "modes/mode.h"
-#include "render/adaptive/tile_chances.h"
 #include "render/frame/samples.h"
+#include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <tuple>
 
 namespace tyndall {
 namespace {
@@ -23,18 +24,39 @@ constexpr uint32_t use_orders = 0x0d3e5u;
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
 
-// Of a tile in one pass.
-struct TileMeans {
-    std::array<vec3, layer_count> difference{}, truth{}; // the mode's less path tracing's; path tracing's
+// A tile of the image and those of its pixels that are looked at.
+struct SweptTile {
+    double weight = 0; // share of the pixels of all tiles looked at
+    double share = 1;  // of its own pixels that are looked at
+    size_t first = 0, count = 0;
 };
 
-// Tiles of the image, or as many as are looked at, spread evenly; and what each pass over them gave.
-struct Sweep {
-    std::vector<ivec2> corners;
-    std::vector<double> weights; // how many pixels each has: fewer at the image's edges
-    double share = 1;            // of all tiles
-    std::vector<std::vector<TileMeans>> passes{};
+// What one pass over the pixels gave: per pixel and layer the mode's light less path tracing's, and path tracing's
+// mean.
+struct SweepPass {
+    std::vector<std::array<vec3, layer_count>> differences;
+    std::array<double, layer_count> truth{};
 };
+
+// Tiles of the image, or as many as are looked at, spread evenly; every pass follows rays through the same pixels.
+struct Sweep {
+    std::vector<SweptTile> tiles;
+    std::vector<ivec2> pixels;
+    double share = 1; // of all tiles
+    std::vector<SweepPass> passes{};
+};
+
+// One pixel of each 2×2 of a tile, the same one in all of them, as far as they lie between `begin` and `end`.
+SweptTile sweep_tile(ivec2 corner, ivec2 begin, ivec2 end, uint32_t place, std::vector<ivec2>& pixels) {
+    const ivec2 offset(static_cast<int>(place & 1), static_cast<int>(place >> 1 & 1));
+    const ivec2 low = glm::max(corner, begin), high = glm::min(corner + tile_side, end);
+    SweptTile tile{static_cast<double>((high - low).x * (high - low).y), 1, pixels.size(), 0};
+    for (int y = corner.y; y < high.y; y += 2)
+        for (int x = corner.x; x < high.x; x += 2)
+            if (x + 1 >= low.x && y + 1 >= low.y) pixels.push_back(glm::clamp(ivec2(x, y) + offset, low, high - 1));
+    tile.count = pixels.size() - tile.first, tile.share = static_cast<double>(tile.count) / tile.weight;
+    return tile;
+}
 
 Sweep make_sweep(const View& view, size_t most) {
     const bool cropped = view.crop_low != view.crop_high;
@@ -42,105 +64,130 @@ Sweep make_sweep(const View& view, size_t most) {
     const ivec2 low = begin / tile_side, size = (end - 1) / tile_side + 1 - low;
     const size_t all = static_cast<size_t>(size.x) * static_cast<size_t>(size.y), count = std::min(all, most);
     Sweep sweep{{}, {}, static_cast<double>(count) / static_cast<double>(all)};
+    double pixels = 0;
     for (size_t i = 0; i < count; ++i) {
         // One at random of each of `count` runs of tiles.
-        const double at = (static_cast<double>(i) + to_unit(hash(view.seed, use_orders, static_cast<uint32_t>(i))));
+        const uint32_t random = hash(view.seed, use_orders, static_cast<uint32_t>(i));
+        const double at = static_cast<double>(i) + to_unit(random);
         const int tile = static_cast<int>(std::min(at / sweep.share * (1 - 1e-12), static_cast<double>(all - 1)));
         const ivec2 corner = (low + ivec2(tile % size.x, tile / size.x)) * tile_side;
-        const ivec2 pixels = glm::min(corner + tile_side, end) - glm::max(corner, begin);
-        sweep.corners.push_back(corner), sweep.weights.push_back(pixels.x * pixels.y);
+        sweep.tiles.push_back(sweep_tile(corner, begin, end, hash(random), sweep.pixels));
+        pixels += sweep.tiles.back().weight;
     }
+    for (SweptTile& tile : sweep.tiles) tile.weight /= pixels;
     return sweep;
 }
 
-// One pixel of each 2×2 of a tile that begins in the image: the same place in all of them, as far as they lie in the
-// image, another in each pass.
-size_t pixels_of(ivec2 corner, ivec2 size, uint32_t seed, std::span<ivec2> pixels) {
-    const uint32_t place = hash(static_cast<uint32_t>(corner.x), static_cast<uint32_t>(corner.y), seed);
-    const ivec2 offset(static_cast<int>(place & 1), static_cast<int>(place >> 1 & 1));
-    size_t count = 0;
-    for (int y = 0; y < tile_side; y += 2)
-        for (int x = 0; x < tile_side; x += 2) {
-            const ivec2 low = corner + ivec2(x, y);
-            if (low.x < size.x && low.y < size.y) pixels[count++] = glm::min(low + offset, size - 1);
-        }
-    return count;
-}
-
-// A mode and path tracing, of as many orders as the mode's grid.
-struct Compared {
+// A way to render, ready to be followed.
+struct Traced {
     const Mode& mode;
-    const Mode& truth;
-    Settings settings, truth_settings;
-    Prepared prepared, truth_prepared;
+    Snapshot snapshot;
+    Settings settings;
+    Prepared prepared;
+
+    FrameTracer tracer(const View& view) const {
+        return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
+    }
 };
 
-FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                      const Prepared& prepared) {
-    return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
+// A mode and path tracing, of as many orders as the mode's grid; and of both the light of lamps that scatters once.
+// With the same random numbers that is part of the former: what both find is taken out of their difference, and nearly
+// all of its noise in thin fog with it.
+struct Compared {
+    Traced mode, truth, mode_once, truth_once;
+};
+
+struct Light {
+    std::array<vec3, layer_count> values{};
+    bool finite = true;
+};
+
+using TileLight = std::array<Light, tile_side * tile_side / 4>;
+
+TileLight light_of(const Traced& traced, const View& view, std::span<const ivec2> pixels) {
+    PixelSample samples[std::tuple_size_v<TileLight>];
+    trace_samples(traced.tracer(view), pixels, 0, {samples, pixels.size()}, {});
+    TileLight light{};
+    for (size_t k = 0; k < pixels.size(); ++k)
+        light[k] = {{samples[k].color(), samples[k].inscatter}, samples[k].finite()};
+    return light;
 }
 
-void add_pass(const Compared& compared, const View& given, const Snapshot& snapshot, const FrameOptions& options,
-              Sweep& sweep) {
+void add_pass(const Compared& compared, const View& given, const FrameOptions& options, Sweep& sweep) {
     View view = given;
     view.seed = hash(given.seed, use_orders, static_cast<uint32_t>(sweep.passes.size()));
-    const FrameTracer own = tracer_of(compared.mode, view, snapshot, compared.settings, compared.prepared);
-    const FrameTracer truth =
-        tracer_of(compared.truth, view, snapshot, compared.truth_settings, compared.truth_prepared);
-    std::vector<TileMeans> means(sweep.corners.size());
-    parallel_for(static_cast<int64_t>(means.size()), [&](int64_t i) {
+    SweepPass pass;
+    pass.differences.resize(sweep.pixels.size());
+    std::vector<std::array<dvec3, layer_count>> truths(sweep.tiles.size());
+    parallel_for(static_cast<int64_t>(sweep.tiles.size()), [&](int64_t i) {
         if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
-        ivec2 pixels[16];
-        const size_t count = pixels_of(sweep.corners[static_cast<size_t>(i)], view.size, view.seed, pixels);
-        PixelSample own_samples[16], truth_samples[16];
-        trace_samples(own, {pixels, count}, 0, {own_samples, count}, {});
-        trace_samples(truth, {pixels, count}, 0, {truth_samples, count}, {});
-        TileMeans& mean = means[static_cast<size_t>(i)];
-        float finite = 0;
-        for (size_t k = 0; k < count; ++k) {
-            const PixelSample &a = own_samples[k], &b = truth_samples[k];
-            if (!a.finite() || !b.finite()) continue;
-            mean.difference[0] += a.color() - b.color(), mean.difference[1] += a.inscatter - b.inscatter;
-            mean.truth[0] += b.color(), mean.truth[1] += b.inscatter, ++finite;
+        const SweptTile& tile = sweep.tiles[static_cast<size_t>(i)];
+        const std::span<const ivec2> pixels{sweep.pixels.data() + tile.first, tile.count};
+        const TileLight own = light_of(compared.mode, view, pixels),
+                        own_once = light_of(compared.mode_once, view, pixels);
+        const TileLight all = light_of(compared.truth, view, pixels),
+                        once = light_of(compared.truth_once, view, pixels);
+        for (size_t k = 0; k < tile.count; ++k) {
+            if (!own[k].finite || !own_once[k].finite || !all[k].finite || !once[k].finite) continue; // as if black
+            for (size_t layer = 0; layer < layer_count; ++layer) {
+                pass.differences[tile.first + k][layer] =
+                    (own[k].values[layer] - own_once[k].values[layer]) - (all[k].values[layer] - once[k].values[layer]);
+                truths[static_cast<size_t>(i)][layer] += dvec3(all[k].values[layer]);
+            }
         }
-        for (size_t layer = 0; finite > 0 && layer < layer_count; ++layer)
-            mean.difference[layer] /= finite, mean.truth[layer] /= finite;
     });
-    sweep.passes.push_back(std::move(means));
+    for (size_t t = 0; t < truths.size(); ++t)
+        for (size_t layer = 0; layer < layer_count; ++layer)
+            pass.truth[layer] +=
+                sweep.tiles[t].weight / static_cast<double>(sweep.tiles[t].count) * channel_mean(truths[t][layer]);
+    sweep.passes.push_back(std::move(pass));
 }
 
-// Of a layer, from all passes but one.
-struct Estimate {
-    double squared = 0, mean = 0; // of differences, as shares of the truth's mean squared, and of its mean
-    double tile_variance = 0;     // of the former between tiles
+// Of a layer, over passes.
+struct DifferenceSums {
+    std::vector<dvec3> sums, squares; // per pixel
+    double truth = 0, passes = 0;
+
+    void add(const SweepPass& pass, size_t layer, double sign) {
+        for (size_t i = 0; i < sums.size(); ++i) {
+            const dvec3 difference(pass.differences[i][layer]);
+            sums[i] += sign * difference, squares[i] += sign * difference * difference;
+        }
+        truth += sign * pass.truth[layer], passes += sign;
+    }
 };
 
-// Products of differences in two passes have the square of the tile's difference for their mean: the average over all
-// pairs of passes, by their sum.
-Estimate estimate(const Sweep& sweep, size_t layer, size_t left_out) {
-    double passes = 0, truth = 0;
-    for (size_t p = 0; p < sweep.passes.size(); ++p) passes += p != left_out;
-    const double pixels = std::accumulate(sweep.weights.begin(), sweep.weights.end(), 0.0);
-    double squares = 0, sums = 0;
-    std::vector<double> products;
-    for (size_t t = 0; t < sweep.corners.size(); ++t) {
-        const double share = sweep.weights[t] / pixels;
-        dvec3 sum(0), own(0);
-        for (size_t p = 0; p < sweep.passes.size(); ++p) {
-            if (p == left_out) continue;
-            const dvec3 difference(sweep.passes[p][t].difference[layer]);
-            sum += difference, own += difference * difference;
-            truth += share * channel_mean(dvec3(sweep.passes[p][t].truth[layer])) / passes;
+struct Estimate {
+    double squared = 0, mean = 0; // of differences, as shares of the truth's mean squared, and of its mean
+    double variance = 0;          // of the former, by the pixels that were not looked at
+};
+
+// Products of a pixel's differences in two passes have the square of the mode's error in it for their mean: averaged
+// over all pairs of passes, by their sum. The variance is that of sampling in two stages, tiles and pixels in them
+// (Cochran 1977, 10.3).
+Estimate estimate(const Sweep& sweep, const DifferenceSums& of) {
+    const double truth = of.truth / of.passes;
+    std::vector<double> squared; // per tile
+    double squares = 0, sums = 0, within = 0;
+    for (const SweptTile& tile : sweep.tiles) {
+        const double count = static_cast<double>(tile.count);
+        double sum = 0, sum_squared = 0;
+        for (size_t i = tile.first; i < tile.first + tile.count; ++i) {
+            const double product =
+                channel_mean(of.sums[i] * of.sums[i] - of.squares[i]) / (of.passes * (of.passes - 1));
+            sum += product, sum_squared += product * product;
+            sums += tile.weight / count * channel_mean(of.sums[i]) / of.passes;
         }
-        products.push_back(channel_mean(sum * sum - own) / (passes * (passes - 1)));
-        squares += share * products.back(), sums += share * channel_mean(sum) / passes;
+        squared.push_back(sum / count), squares += tile.weight * squared.back();
+        if (tile.count > 1)
+            within += tile.weight * tile.weight * (1 - tile.share) * std::max(sum_squared - sum * squared.back(), 0.0) /
+                      (count * (count - 1));
     }
     if (!(truth > 0)) return {squares > 0 ? infinity : 0, 0, 0};
-    double variance = 0;
-    for (size_t t = 0; t < products.size(); ++t)
-        variance += std::pow(sweep.weights[t] / pixels * (products[t] - squares), 2);
+    double between = 0;
+    for (size_t t = 0; t < squared.size(); ++t) between += std::pow(sweep.tiles[t].weight * (squared[t] - squares), 2);
     const double scale = 1 / (truth * truth);
-    return {squares * scale, sums / truth, variance * scale * scale};
+    return {squares * scale, sums / truth, ((1 - sweep.share) * between + sweep.share * within) * scale * scale};
 }
 
 // Of Student's (1908) distribution with so many degrees of freedom, below which 97.5 % lie; as of Fisher & Cornish
@@ -153,35 +200,41 @@ double student(double freedom) {
 
 // The bound by what the estimate changes with each pass, were it left out (Tukey's jackknife).
 OrdersError error_of(const Sweep& sweep, size_t layer) {
-    const size_t passes = sweep.passes.size();
-    const Estimate all = estimate(sweep, layer, passes);
+    DifferenceSums sums{std::vector<dvec3>(sweep.pixels.size()), std::vector<dvec3>(sweep.pixels.size())};
+    for (const SweepPass& pass : sweep.passes) sums.add(pass, layer, 1);
+    const Estimate all = estimate(sweep, sums);
     if (all.squared == infinity) return {0, {infinity, infinity}};
     double mean = 0, squares = 0;
-    for (size_t p = 0; p < passes; ++p) {
-        const double one = estimate(sweep, layer, p).squared;
-        mean += one / static_cast<double>(passes), squares += one * one;
+    const double count = static_cast<double>(sweep.passes.size());
+    for (const SweepPass& pass : sweep.passes) {
+        sums.add(pass, layer, -1);
+        const double one = estimate(sweep, sums).squared;
+        mean += one / count, squares += one * one;
+        sums.add(pass, layer, 1);
     }
-    const double count = static_cast<double>(passes);
     const double by_passes = (count - 1) / count * std::max(squares - count * mean * mean, 0.0);
-    const double variance = by_passes + (1 - sweep.share) * all.tile_variance, value = std::max(all.squared, 0.0);
-    return {all.mean, {std::sqrt(value), std::sqrt(value + student(count - 1) * std::sqrt(variance))}};
+    const double value = std::max(all.squared, 0.0);
+    return {all.mean, {std::sqrt(value), std::sqrt(value + student(count - 1) * std::sqrt(by_passes + all.variance))}};
 }
 
 OrdersError worse_of(const Sweep& sweep) {
     const OrdersError color = error_of(sweep, 0), fog = error_of(sweep, 1);
-    return color.tiles.bound >= fog.tiles.bound ? color : fog;
+    return color.pixels.bound >= fog.pixels.bound ? color : fog;
+}
+
+Traced trace_by(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings) {
+    return {mode, snapshot, settings, prepare_frame(mode, view, snapshot, settings, nullptr)};
 }
 
 Compared compare_with_path(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings) {
     Settings exact = settings;
     exact.path.orders = settings.fluence.orders;
+    Settings once = settings;
+    once.path.orders = once.fluence.orders = 1, once.terms.ambient = once.terms.emission = false;
     const Mode& truth = mode_of_all_orders();
-    return {mode,
-            truth,
-            settings,
-            exact,
-            prepare_frame(mode, view, snapshot, settings, nullptr),
-            prepare_frame(truth, view, snapshot, exact, nullptr)};
+    const Snapshot lamps = with_terms(snapshot, once.terms);
+    return {trace_by(mode, view, snapshot, settings), trace_by(truth, view, snapshot, exact),
+            trace_by(mode, view, lamps, once), trace_by(truth, view, lamps, once)};
 }
 }
 
@@ -202,24 +255,24 @@ OrdersError orders_error(const Mode& mode, const View& given, const Snapshot& sn
     for (size_t wanted = first_passes; wanted <= last_passes; wanted *= 2) {
         while (sweep.passes.size() < wanted) {
             if (wanted > first_passes && stop && stop()) return result;
-            add_pass(compared, view, snapshot, options, sweep);
+            add_pass(compared, view, options, sweep);
         }
         result = worse_of(sweep);
-        if (result.tiles.bound <= 1.5 * std::max(result.tiles.error, enough)) break;
+        if (result.pixels.bound <= 1.5 * std::max(result.pixels.error, enough)) break;
     }
     return result;
 }
 
 std::optional<double> error_beside(const OrdersError& orders, double error) {
     constexpr double least = 0.3; // of the error: less takes more than ten times as many samples
-    const double left = error * error - orders.tiles.bound * orders.tiles.bound;
+    const double left = error * error - orders.pixels.bound * orders.pixels.bound;
     if (left >= least * least * error * error) return std::sqrt(left);
     return {};
 }
 
 Limitation limitation_of(const OrdersError& orders) {
     constexpr double small = 0.02, wrong = 0.3;
-    const double bound = orders.tiles.bound;
+    const double bound = orders.pixels.bound;
     const Severity severity = bound < small ? Severity::info : bound < wrong ? Severity::degraded : Severity::wrong;
     return {severity,
             &limitation::approximate_orders,

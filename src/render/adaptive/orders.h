@@ -1,4 +1,4 @@
-// How far multiple scattering from a grid (trace/fluence) is from path tracing: measured on tiles of the image before
+// How far multiple scattering from a grid (trace/fluence) is from path tracing: measured on pixels of the image before
 // it is rendered.
 #pragma once
 #include "modes/limitation.h"
@@ -19,8 +19,8 @@ std::optional<double> error_beside(const OrdersError& orders, double error);
 
 namespace limitation {
 inline constexpr LimitationKind approximate_orders{
-    "approximate_orders", "multiple scattering is approximated on a grid: against path tracing, averages of 8x8 pixels "
-                          "are up to {} % off (RMS), that of the whole image {} %"};
+    "approximate_orders", "multiple scattering is approximated on a grid: against path tracing, pixels are up to {} % "
+                          "off (RMS), the whole image {} %"};
 }
 Limitation limitation_of(const OrdersError& orders);
 }

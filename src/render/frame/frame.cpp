@@ -74,7 +74,7 @@ void FrameStats::add(const FrameStats& other) {
 
 std::optional<Noise> FrameStats::error() const {
     if (!noise) return noise;
-    const Noise none, &systematic = integrator ? integrator->error : none, &grid = orders ? orders->tiles : none;
+    const Noise none, &systematic = integrator ? integrator->error : none, &grid = orders ? orders->pixels : none;
     return Noise{std::hypot(noise->error, systematic.error, grid.error),
                  std::hypot(noise->bound, systematic.bound, grid.bound)};
 }

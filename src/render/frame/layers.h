@@ -62,7 +62,7 @@ struct Integrator {
 // light, whichever is further off.
 struct OrdersError {
     double mean = 0; // of the image's mean: below 0 where it is darker than path tracing's
-    Noise tiles;     // root mean square over the means of tiles of 8×8 pixels
+    Noise pixels;    // root mean square over pixels
 };
 
 struct FrameStats {

@@ -37,15 +37,10 @@ Json error_json(const Noise& error) { return std::vector{error.error, error.boun
 Json target_json(const std::filesystem::path& file, const Grouping& grouping) {
     const std::filesystem::path counts = std::filesystem::path(file).replace_extension(".counts");
     const PlannedError& planned = grouping.error;
-    JsonMembers members{{"error", planned.target},
+    return json_object({{"error", planned.target},
                         {"counts", counts.filename().string()},
                         {"counts_hash", save_counts(counts, *grouping.counts)},
-                        {"truth", planned.is_truth}};
-    if (planned.integrator) {
-        members.emplace_back("candidate", planned.integrator->candidate);
-        members.emplace_back("integrator", error_json(planned.integrator->error));
-    }
-    return json_object(std::move(members));
+                        {"truth", planned.is_truth}});
 }
 
 JsonMembers plan_json(const std::filesystem::path& file, const Scene& scene, const SavedPlan& saved) {
@@ -88,8 +83,6 @@ void read_target(const Json& target, const std::filesystem::path& file, RenderRe
     PlannedError& planned = request.grouping.error;
     planned.target = request.target_error = target.number_or("error", 0),
     planned.is_truth = target.boolean_or("truth", false);
-    if (const Json* integrator = target.find("integrator"))
-        planned.integrator = {error_of(*integrator), target.string_or("candidate", ""), request.settings};
     request.grouping.counts =
         load_counts(file.parent_path() / target.string_or("counts", ""), target.string_or("counts_hash", ""));
 }
@@ -120,6 +113,8 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     request.grouping.sections = static_cast<int>(json.number_or("sections", 1));
     request.grouping.leaves = static_cast<int>(json.number_or("leaves", 1));
     request.grouping.plan_file = file;
+    if (const Json* integrator = json.find("integrator"))
+        request.grouping.error.integrator = {error_of(*integrator), json.string_or("candidate", ""), request.settings};
     if (const Json* orders = json.find("orders"))
         request.grouping.error.orders = OrdersError{json.number_or("orders_mean", 0), error_of(*orders)};
     return request;
@@ -164,8 +159,13 @@ std::string build_name() {
 
 void save_plan(const std::filesystem::path& file, const Scene& scene, const SavedPlan& plan) {
     JsonMembers members = plan_json(file, scene, plan);
-    if (const std::optional<OrdersError>& orders = plan.request.grouping.error.orders) {
-        members.emplace_back("orders", error_json(orders->tiles));
+    const PlannedError& error = plan.request.grouping.error;
+    if (error.integrator) {
+        members.emplace_back("candidate", error.integrator->candidate);
+        members.emplace_back("integrator", error_json(error.integrator->error));
+    }
+    if (const std::optional<OrdersError>& orders = error.orders) {
+        members.emplace_back("orders", error_json(orders->pixels));
         members.emplace_back("orders_mean", orders->mean);
     }
     if (!plan.plan.certificate.empty()) members.emplace_back("certificate", plan.plan.certificate);

@@ -195,8 +195,8 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
         attributes["tyndall:integratorBound"] = number(stats.integrator->error.bound);
     }
     if (stats.orders) {
-        attributes["tyndall:ordersError"] = number(stats.orders->tiles.error);
-        attributes["tyndall:ordersBound"] = number(stats.orders->tiles.bound);
+        attributes["tyndall:ordersError"] = number(stats.orders->pixels.error);
+        attributes["tyndall:ordersBound"] = number(stats.orders->pixels.bound);
         attributes["tyndall:ordersMean"] = number(stats.orders->mean);
     }
     if (request.target_error > 0) attributes["tyndall:targetError"] = number(request.target_error);

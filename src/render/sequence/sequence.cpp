@@ -55,7 +55,7 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (stats.integrator)
         text += formatted(": noise %.3g, integrator %.3g (%s)", stats.noise->error, stats.integrator->error.error,
                           stats.integrator->candidate.c_str());
-    if (stats.orders) text += formatted(", multiple scattering %.3g", stats.orders->tiles.error);
+    if (stats.orders) text += formatted(", multiple scattering %.3g", stats.orders->pixels.error);
     text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
     if (request.time_budget > 0)
         text += formatted(", %.3g s of a budget of %.3g s", stats.goal_seconds, request.time_budget);

@@ -33,8 +33,8 @@ Json frame_json(const FrameReport& frame) {
     }
     if (frame.stats.orders) {
         json.members.emplace_back("orders_mean", frame.stats.orders->mean);
-        json.members.emplace_back("orders_error", frame.stats.orders->tiles.error);
-        json.members.emplace_back("orders_bound", frame.stats.orders->tiles.bound);
+        json.members.emplace_back("orders_error", frame.stats.orders->pixels.error);
+        json.members.emplace_back("orders_bound", frame.stats.orders->pixels.bound);
     }
     if (frame.stats.goal_seconds > 0) json.members.emplace_back("goal_seconds", frame.stats.goal_seconds);
     if (frame.stats.forecast_seconds > 0 && frame.stats.forecast_seconds < infinity)

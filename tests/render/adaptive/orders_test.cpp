@@ -15,6 +15,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace tyndall::test {
 namespace {
 View view_of(uint32_t seed) {
@@ -33,15 +35,16 @@ Settings all_orders_settings() {
     return settings;
 }
 
-// Path tracing that passes for a mode with a grid, brighter by a share.
+// Path tracing that passes for a mode with a grid: with it, all light is brighter by a share.
 template<int percent> Mode off_by() {
     Mode mode = mode_of_all_orders();
     mode.adds_fluence = true, mode.accuracy = Accuracy::single_scattering;
     mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
         const ScatterFunction right = mode_of_all_orders().prepare(view, snapshot, settings, history);
-        return ScatterFunction([right](const RayBatch& batch, std::span<Scatter> results) {
+        const float share = settings.fluence.orders > 1 ? 1 + percent / 100.0f : 1;
+        return ScatterFunction([right, share](const RayBatch& batch, std::span<Scatter> results) {
             right(batch, results);
-            for (Scatter& result : results) result.radiance *= 1 + percent / 100.0f;
+            for (Scatter& result : results) result.radiance *= share;
         });
     };
     return mode;
@@ -69,10 +72,26 @@ Mode off_below() {
     Mode mode = off_by<0>();
     mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
         const ScatterFunction right = mode_of_all_orders().prepare(view, snapshot, settings, history);
-        return ScatterFunction([right](const RayBatch& batch, std::span<Scatter> results) {
+        const int first_wrong = settings.fluence.orders > 1 ? last_row : std::numeric_limits<int>::max();
+        return ScatterFunction([right, first_wrong](const RayBatch& batch, std::span<Scatter> results) {
             right(batch, results);
             for (size_t i = 0; i < results.size(); ++i)
-                if (batch.positions[i].y >= last_row) results[i].radiance *= 2;
+                if (batch.positions[i].y >= first_wrong) results[i].radiance *= 2;
+        });
+    };
+    return mode;
+}
+
+// The same, brighter and darker by half in turns of two columns: averages over tiles are right.
+Mode off_in_stripes() {
+    Mode mode = off_by<0>();
+    mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
+        const ScatterFunction right = mode_of_all_orders().prepare(view, snapshot, settings, history);
+        const float off = settings.fluence.orders > 1 ? 0.5f : 0;
+        return ScatterFunction([right, off](const RayBatch& batch, std::span<Scatter> results) {
+            right(batch, results);
+            for (size_t i = 0; i < results.size(); ++i)
+                results[i].radiance *= 1 + (static_cast<int>(batch.positions[i].x) & 2 ? off : -off);
         });
     };
     return mode;
@@ -87,19 +106,36 @@ OrdersError error_of(const Mode& mode, uint32_t seed, double wanted = 0.05) {
 TEST(Orders, AGridThatIsRightIsFoundSo) {
     // Through the same rays both have the same light: nothing is left to chance.
     const OrdersError error = error_of(off_by<0>(), 1);
-    EXPECT_NEAR(error.tiles.error, 0, 1e-6);
-    EXPECT_NEAR(error.tiles.bound, 0, 1e-6);
+    EXPECT_NEAR(error.pixels.error, 0, 1e-6);
+    EXPECT_NEAR(error.pixels.bound, 0, 1e-6);
     EXPECT_NEAR(error.mean, 0, 1e-6);
 }
 
 TEST(Orders, AShareOfAllLightIsFound) {
-    // Light 20 % too bright everywhere: the mean is off by that, tiles by it times the rms of the light over its mean,
+    // Light 20 % too bright everywhere: the mean is off by that, pixels by it times the rms of the light over its mean,
     // which is at least 1.
     const OrdersError error = error_of(off_by<20>(), 1);
     EXPECT_NEAR(error.mean, 0.2, 1e-4);
-    EXPECT_GE(error.tiles.bound, 0.2);
-    EXPECT_GE(error.tiles.error, 0.17);
-    EXPECT_LE(error.tiles.bound, 0.6);
+    EXPECT_GE(error.pixels.bound, 0.2);
+    EXPECT_GE(error.pixels.error, 0.17);
+    EXPECT_LE(error.pixels.bound, 0.6);
+}
+
+TEST(Orders, ErrorsThatCancelBetweenNeighboursAreFound) {
+    // Half of the light, whose rms over its mean is at least 1.
+    const OrdersError error = error_of(off_in_stripes(), 1);
+    EXPECT_NEAR(error.mean, 0, 0.05);
+    EXPECT_GE(error.pixels.bound, 0.5);
+    EXPECT_GE(error.pixels.error, 0.43);
+    EXPECT_LE(error.pixels.bound, 1.5);
+}
+
+TEST(Orders, LightThatScattersOnceHasNoNoiseInIt) {
+    // In thin fog little light scatters twice; noise of the rest would be half of all.
+    const Snapshot snapshot =
+        snapshot_of({homogeneous_medium(0.005f, {vec3(-3), vec3(3)})}, {sun_light({0, -1, -0.2f})});
+    const OrdersError error = orders_error(main_mode(), view_of(1), snapshot, all_orders_settings(), 0, {});
+    EXPECT_LE(error.pixels.bound, 0.05);
 }
 
 TEST(Orders, TilesCountByTheirPixels) {
@@ -143,8 +179,8 @@ TEST(Orders, NoiseAloneIsNoError) {
     int none = 0;
     for (uint32_t seed = 0; seed < 20; ++seed) {
         const OrdersError error = error_of(as_right(), seed, 0);
-        EXPECT_GT(error.tiles.bound, 0);
-        none += error.tiles.error == 0;
+        EXPECT_GT(error.pixels.bound, 0);
+        none += error.pixels.error == 0;
     }
     EXPECT_GE(none, 4);
 }
@@ -157,10 +193,10 @@ TEST(Orders, BoundsHold) {
     std::vector<OrdersError> all;
     for (uint32_t seed = 0; seed < count; ++seed) {
         all.push_back(error_of(march, seed));
-        truth += all.back().tiles.error * all.back().tiles.error / count;
+        truth += all.back().pixels.error * all.back().pixels.error / count;
     }
     int held = 0;
-    for (const OrdersError& one : all) held += one.tiles.bound >= std::sqrt(truth);
+    for (const OrdersError& one : all) held += one.pixels.bound >= std::sqrt(truth);
     EXPECT_GE(held, 18) << std::sqrt(truth); // of 20 at 97.5 %: fewer in one of seventy
 }
 
@@ -168,8 +204,8 @@ TEST(Orders, HaveTheSameBitsForAnyThreadCount) {
     const auto made = [] { return error_of(main_mode(), 3); };
     const OrdersError one = on_threads(1, made), two = on_threads(2, made);
     EXPECT_EQ(one.mean, two.mean);
-    EXPECT_EQ(one.tiles.error, two.tiles.error);
-    EXPECT_EQ(one.tiles.bound, two.tiles.bound);
+    EXPECT_EQ(one.pixels.error, two.pixels.error);
+    EXPECT_EQ(one.pixels.bound, two.pixels.bound);
 }
 
 TEST(Orders, LeaveTheRestOfAnErrorToNoise) {
@@ -185,9 +221,9 @@ TEST(Orders, CountInWhatATargetPromises) {
     const Snapshot snapshot = milk();
     render_to_target(main_mode(), view, snapshot, settings, {0.3, 0, Quality::preview, {}}, {}, stats);
     ASSERT_TRUE(stats.orders && stats.integrator);
-    EXPECT_GT(stats.orders->tiles.bound, 0);
+    EXPECT_GT(stats.orders->pixels.bound, 0);
     EXPECT_NEAR(stats.error()->bound,
-                std::hypot(stats.noise->bound, stats.integrator->error.bound, stats.orders->tiles.bound), 1e-12);
+                std::hypot(stats.noise->bound, stats.integrator->error.bound, stats.orders->pixels.bound), 1e-12);
     EXPECT_LE(stats.error()->bound, 0.3);
 
     settings.fluence.orders = 1;
