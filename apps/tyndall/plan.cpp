@@ -100,12 +100,11 @@ PlannedSamples counted(const Scene& scene, const RenderRequest& request, const R
     return plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
 }
 
-// How far multiple scattering is off in the first of the frames; all of its samples share that.
-OrdersError grid_error(const Scene& scene, const RenderRequest& request, const RenderPlan& plan) {
+// What samples do not remove, in the first of the frames.
+PlannedError first_frame_error(const Scene& scene, const RenderRequest& request, const RenderPlan& plan) {
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
     const View view = view_of(scene, request, plan.settings, request.frames[0]);
-    const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
-    return orders_error(*plan.mode, view, snapshot, plan.settings, 0, options);
+    return shared_error(*plan.mode, view, snapshot, plan.settings, {false, nullptr, &cancel_flag(), {}, {}});
 }
 
 // The plan as a file that render --plan takes.
@@ -127,7 +126,7 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
                 seconds_text(planned.seconds) + " here");
     } else {
         request.grouping = grouping_of(samples, groups);
-        if (takes_fluence(*plan.mode, plan.settings)) request.grouping.error.orders = grid_error(scene, request, plan);
+        request.grouping.error = first_frame_error(scene, request, plan);
     }
     drop_absent_layers(scene, plan, request);
     const int most = request.grouping.groups * (wants_layer(request, "halves") ? 1 : request.grouping.sections);
@@ -136,7 +135,7 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
     check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     save_plan(file, scene, {request, plan, {}, build_name()});
     const std::optional<Integrator>& integrator = request.grouping.error.integrator;
-    if (integrator && integrator->error.bound >= request.target_error)
+    if (request.target_error > 0 && integrator && integrator->error.bound >= request.target_error)
         fail(ExitCode::differs, request.scene_file.string(),
              formatted("%s was written, but the mode's own error is %.3g, at most %.3g: samples do not help",
                        printable(file, 100).c_str(), integrator->error.error, integrator->error.bound));

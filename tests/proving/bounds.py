@@ -3,9 +3,8 @@
     bounds.py --seeds 5101-5150 [--kinds samples,target] [--program build/release/tyndall] [-o DIR] [--truths DIR] [--jobs 2]
 
 Every seed has one mode, with single scattering or with all orders, and is planned, rendered in two parts and merged four
-times: by numbers of samples, whose bound is for noise alone and is held against many more samples of the same, and by a
-target, whose bound is for all and is held against exact single scattering. Bounds of all orders are for all in both cases,
-and held against path tracing.
+times: by three numbers of samples, and by a target. What merge says is held against exact single scattering, or against path
+tracing where there are all orders.
 Prints a row a frame and what they add up to, by mode and number of groups; writes DIR/bounds.json. Ends with 1 when more
 than one bound in twenty is false, or the median bound is more than twice the error."""
 import argparse
@@ -44,9 +43,10 @@ def mean_of_pictures(pictures):
     return Truth(layers, variance, 0)
 
 
-def by_seeds(program, scene, folder, options):
-    """The same by many more samples; None where it cannot be rendered."""
-    runs = [render(program, scene, folder / "truth.exr", ["--samples", MANY, *options, "--seed", 1000 + i])
+def path_traced(program, scene, folder, options):
+    """All orders by many samples; None where they cannot be rendered."""
+    runs = [render(program, scene, folder / "truth.exr",
+                   ["--orders", "all", "--mode", "path", "--samples", MANY, *options, "--seed", 1000 + i])
             for i in range(PICTURES)]
     return None if any(run.layers is None for run in runs) else mean_of_pictures([run.layers for run in runs])
 
@@ -78,65 +78,39 @@ def row_of(common, program, scene, folder, asked, truth):
         return common | {"refused": f"no truth: off by {truth.error():.4f} where at most {said['bound']:.4f} is said"}
     return common | {"groups": said["groups"], "samples": said["samples"], "said": said["error"], "bound": said["bound"],
                      "achieved": achieved, "truth_error": truth.error(),
-                     "integrator": plan.get("target", {}).get("integrator"),
-                     "orders_error": plan.get("target", {}).get("orders")}
+                     "integrator": plan.get("integrator"),
+                     "orders_error": plan.get("orders")}
 
 
-def small(drawn, options):
-    return ["--frames", drawn.frame, "--res", "{}x{}".format(*options.size)]
-
-
-def all_orders(seed, options, folder):
-    """The truth of all orders, which bounds of a grid of multiple scattering are held against."""
-    drawn, size = draw(seed)
-    scene = write_scene(drawn, size, folder / "scene", options.program)
-    return by_seeds(options.program, scene, folder, ["--orders", "all", "--mode", "path", *small(drawn, options)])
-
-
-def by_samples(seed, common, options, folder, truth):
-    mode, orders = common["mode"], common["orders"]
-    drawn, size = draw(seed)
-    scene = write_scene(drawn, size, folder / "scene", options.program)
-    plain = ["--mode", mode, "--orders", orders, *small(drawn, options)]
-    plain += () if mode == "path" else ("--quality", "draft")  # noise is the same at any
-    plain += FEW_PATHS if orders == "all" and mode != "path" else ()
-    truth = truth if orders == "all" else by_seeds(options.program, scene, folder, plain)
-    if truth is None:
-        return [common | {"what": "samples", "refused": "no truth"}]
-    return [row_of(common | {"what": "noise"}, options.program, scene, folder, [*plain, *asked], truth) for asked in SAMPLES]
-
-
-def by_target(seed, common, options, folder, truth):
-    mode, orders = common["mode"], common["orders"]
-    common = common | {"what": "target"}
+def scene_and_truth(seed, orders, folder, options):
+    """The scene, the options that make its frame and the truth of it: None where there is none."""
     if orders == "1":
-        # kept truths are of the size that is drawn
         wanted = argparse.Namespace(program=options.program, truths=options.truths, size=None, truth_seconds=60)
         scene, frame, truth, _ = scene_with_truth(seed, folder, [0.2 * TARGET], wanted)
-        plain = ["--mode", mode, "--orders", orders, "--frames", frame]
-    else:
-        drawn, size = draw(seed)
-        scene = write_scene(drawn, size, folder / "scene", options.program)
-        plain = ["--orders", "all", *small(drawn, options), "--mode", mode, *(FEW_PATHS if mode != "path" else ())]
-    if truth is None:
-        return [common | {"refused": "no truth"}]
-    return [row_of(common, options.program, scene, folder, [*plain, "--target-error", TARGET], truth)]
+        return scene, ["--frames", frame], truth
+    drawn, size = draw(seed)
+    scene = write_scene(drawn, size, folder / "scene", options.program)
+    frame = ["--frames", drawn.frame, "--res", "{}x{}".format(*options.size)]
+    return scene, frame, path_traced(options.program, scene, folder, frame)
 
 
 def prove(seed, options):
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"proving_bounds_{seed}_"))
     mode, orders = KINDS[seed % len(KINDS)]
     common = {"seed": seed, "family": family_of(seed).__name__, "mode": mode, "orders": orders}
-    rows, start, kind = [], time.monotonic(), "truth"
+    rows, start, what = [], time.monotonic(), "truth"
     try:
-        (folder / kind).mkdir()
-        truth = all_orders(seed, options, folder / kind) if orders == "all" else None
-        for kind, frames in (("samples", by_samples), ("target", by_target)):
-            (folder / kind).mkdir()
-            if kind in options.kinds:
-                rows += frames(seed, common, options, folder / kind, truth)
+        scene, frame, truth = scene_and_truth(seed, orders, folder, options)
+        if truth is None:
+            return [common | {"what": what, "refused": "no truth", "seconds": time.monotonic() - start}]
+        plain = ["--mode", mode, "--orders", orders, *frame, *(FEW_PATHS if orders == "all" and mode != "path" else ())]
+        draft = () if mode == "path" else ("--quality", "draft")
+        asked = [("samples", [*draft, *some]) for some in SAMPLES] + [("target", ["--target-error", TARGET])]
+        for what, more in asked:
+            if what in options.kinds:
+                rows.append(row_of(common | {"what": what}, options.program, scene, folder, [*plain, *more], truth))
     except subprocess.TimeoutExpired as late:
-        rows.append(common | {"what": kind, "refused": f"took more than {late.timeout} s"})
+        rows.append(common | {"what": what, "refused": f"took more than {late.timeout} s"})
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     return [row | {"seconds": time.monotonic() - start} for row in rows]
@@ -147,7 +121,7 @@ def is_true(row):
 
 
 def line(row):
-    start = f"{row['seed']:6d} {row['family']:12s} {row['mode']:6s} {row['orders']:3s} {row['what']:6s}"
+    start = f"{row['seed']:6d} {row['family']:12s} {row['mode']:6s} {row['orders']:3s} {row['what']:7s}"
     if "refused" in row:
         return f"{start} {row['refused']}"
     return (f"{start} {row['groups']} groups {row['samples']:4d} samples said {row['said']:.4f} at most {row['bound']:.4f} is "

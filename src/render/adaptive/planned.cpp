@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "modes/mode.h"
+#include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
 #include "trace/view.h"
 
@@ -10,9 +11,10 @@
 
 namespace tyndall {
 namespace {
-constexpr int pilot_samples = 8;        // per pixel, each with random numbers of its own
-constexpr uint32_t max_checks = 3;      // of the candidate; each but the last may ask for a finer one
-constexpr uint32_t image_check = 1;     // the tiles of a finished image; those of checks beforehand follow it
+constexpr int pilot_samples = 8;    // per pixel, each with random numbers of its own
+constexpr uint32_t max_checks = 3;  // of the candidate; each but the last may ask for a finer one
+constexpr uint32_t image_check = 1; // the tiles of a finished image; those of checks beforehand follow it
+constexpr int64_t max_shown_pixels = 1 << 21;
 constexpr uint32_t use_pilot = 0x9170u; // none of the frame's samples may be those that it was planned by
 
 FrameOptions without_report(const FrameOptions& options) {
@@ -108,32 +110,55 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
 }
 
 namespace {
-Integrator checked_integrator(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
-                              const Settings& settings, const Layers& image, const Noise& noise,
-                              const FrameOptions& options) {
-    const Noise& before = planned.integrator->error;
-    Choice choice;
-    choice.candidate = {planned.integrator->candidate, settings}, choice.has_integrator = true;
-    choice.measured.integrator.value = before.error * before.error;
-    choice.measured.integrator.bound = before.bound * before.bound;
-    Goal goal{planned.target, infinity, Quality::preview}; // no finer candidate is looked for
+// On tiles where an image shows that there may be some; no finer candidate is looked for.
+Integrator measured_integrator(const Choice& choice, double target, const Mode& mode, const View& view,
+                               const Snapshot& snapshot, const Layers& image, const Noise& noise, uint32_t salt,
+                               const FrameOptions& options) {
+    Goal goal{target, infinity, Quality::preview};
     goal.clock = steady_seconds;
-    const Choice after = checked(choice, image, noise, 1, infinity, mode, even_frame(view), snapshot, settings, goal,
-                                 image_check, options);
+    const Settings& settings = choice.candidate.settings;
+    const Choice after =
+        checked(choice, image, noise, 1, infinity, mode, even_frame(view), snapshot, settings, goal, salt, options);
     const SquaredError& error = after.measured.integrator;
-    return {{std::sqrt(error.value), std::sqrt(error.bound)}, planned.integrator->candidate, settings};
+    return {{std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, settings};
 }
+
+Choice choice_of(const std::string& candidate, const Settings& settings, const Noise& integrator) {
+    Choice choice;
+    choice.candidate = {candidate, settings}, choice.has_integrator = true;
+    choice.measured.integrator.value = integrator.error * integrator.error;
+    choice.measured.integrator.bound = integrator.bound * integrator.bound;
+    return choice;
+}
+}
+
+PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                          const FrameOptions& given) {
+    const FrameOptions options = without_report(given);
+    PlannedError error;
+    if (takes_fluence(mode, settings)) error.orders = orders_error(mode, view, snapshot, settings, 0, options);
+    if (!has_integrator(mode)) return error;
+    Layers image; // which shows where errors may be; where it would take long, tiles are drawn without
+    if (static_cast<int64_t>(view.size.x) * view.size.y <= max_shown_pixels) {
+        View few = even_view(even_frame(view), scout_samples, scout_samples);
+        few.seed = hash(view.seed, use_pilot);
+        FrameStats stats;
+        image = render_frame(mode, few, snapshot, settings, options, stats);
+    }
+    error.integrator = measured_integrator(choice_of("as set", settings, {}), 0, mode, view, snapshot, image, {},
+                                           image_check, options);
+    return error;
 }
 
 void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
                    const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
     if (!stats.noise) return;
     if (planned.orders) stats.orders = planned.orders;
-    if (planned.target == 0) return;
-    stats.integrator = planned.integrator;
-    if (planned.integrator && !planned.is_truth)
-        stats.integrator =
-            checked_integrator(planned, mode, view, snapshot, settings, image, *stats.noise, without_report(options));
+    if (planned.integrator) stats.integrator = planned.integrator;
+    if (!planned.is_checked()) return;
+    const Integrator& before = *planned.integrator;
+    stats.integrator = measured_integrator(choice_of(before.candidate, settings, before.error), planned.target, mode,
+                                           view, snapshot, image, *stats.noise, image_check, without_report(options));
 }
 
 double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups) {

@@ -18,6 +18,10 @@ struct PlannedSamples {
 PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                             const Goal& goal, const FrameOptions& options);
 
+// What samples do not remove of a frame's error, by settings that no target has chosen.
+PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                          const FrameOptions& options);
+
 // Adds to the statistics of a finished image what is known of its error besides noise. Where a target was asked for,
 // the integrator's is measured again, on tiles on which the image itself shows that there may be some; independent of
 // what the candidate was chosen by, and the same for the same image.

@@ -140,7 +140,7 @@ MergedFrame merge_frame(std::span<const PartFile> files, const PartGroups& group
     MergedFrame merged{std::move(layers), stats, {}, empty_pixels};
     const PlannedError& planned = request.grouping.error;
     LoadedFrame frame;
-    if (post || (planned.integrator && !planned.is_truth)) {
+    if (post || planned.is_checked()) {
         RenderRequest of_frame = request;
         of_frame.frames = {view.frame};
         frame = load_first_frame(scene, of_frame);
