@@ -23,41 +23,40 @@ PIXELS = 1920 * 1080
 STORAGE = 1e9                # bytes a second of the storage that all share
 LINK = 1.25e8                # and of a machine's own link to it
 INPUT = 1e9                  # bytes of a frame's volume and scene
-MEMORY = 64e9                # bytes of the machine that merges
 HERO, FRAME, FRAMES = 24 * 3600.0, 3600.0, 1000  # seconds that a frame's samples take on one machine; frames of a shot
 
 
 def run(program, *words):
-    """Processor seconds and peak bytes of a run."""
+    """Processor seconds of a run."""
     child = subprocess.Popen([str(word) for word in (program, *words, "-q")], stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode not in (0, 1):
         raise SystemExit(f"{words[0]} ended with {child.returncode}")
-    return used.ru_utime + used.ru_stime, used.ru_maxrss * 1024
+    return used.ru_utime + used.ru_stime
 
 
 def measured(program, name, size, folder):
-    """Of a scene: seconds that each part spends apart from its samples, bytes of parts, seconds and memory of merging."""
+    """Of a scene: seconds that each part spends apart from its samples, bytes of parts, seconds of merging."""
     plan, stats = folder / f"{name}.json", folder / f"{name}.stats.json"
     run(program, "plan", SOURCE / f"scenes/{name}.json", *SCENES[name], "--res", size, "--frames", 1, "--save", plan)
-    one, _ = run(program, "render", "--plan", plan, "-o", folder / "one.exr", "--stats-json", stats)
+    one = run(program, "render", "--plan", plan, "-o", folder / "one.exr", "--stats-json", stats)
     pixels, rows, start = int(np.prod([int(n) for n in size.split("x")])), [], []
     for count in COUNTS:
-        parts = [run(program, "render", "--plan", plan, "-o", folder / f"{name}.exr", "--part", f"{part}/{count}")[0]
+        parts = [run(program, "render", "--plan", plan, "-o", folder / f"{name}.exr", "--part", f"{part}/{count}")
                  for part in range(1, count + 1)]
         files = sorted(folder.glob(f"{name}.part-*-of-{count}.exr"))
-        seconds, memory = run(program, "merge", *files, "-o", folder / "merged.exr")
-        rows.append((count, sum(file.stat().st_size for file in files) / count / pixels, seconds, memory / pixels))
+        seconds = run(program, "merge", *files, "-o", folder / "merged.exr")
+        rows.append((count, sum(file.stat().st_size for file in files) / count / pixels, seconds))
         start.append((sum(parts) - one) / (count - 1))
         for file in files:
             file.unlink()
-    counts, sizes, seconds, memory = np.array(rows).T
+    counts, sizes, seconds = np.array(rows).T
     start_of_merge = smallest_merge(program, name, folder)
     slope, rest = np.polyfit(counts, seconds, 1)
     return {"start": start[1], "start_by_count": dict(zip(COUNTS, start)), "one": one, "bytes": dict(zip(COUNTS, sizes)),
             "merge_second": max(slope, 0) / pixels, "merge_start": start_of_merge, "merge_rest": max(rest - start_of_merge, 0) / pixels,
-            "memory": np.polyfit(counts, memory, 1)[0], "merge_seconds": dict(zip(COUNTS, seconds))}
+            "merge_seconds": dict(zip(COUNTS, seconds))}
 
 
 def smallest_merge(program, name, folder):
@@ -65,7 +64,7 @@ def smallest_merge(program, name, folder):
     plan, part = folder / "small.json", folder / "small.part-1-of-1.exr"
     run(program, "plan", SOURCE / f"scenes/{name}.json", *SCENES[name], "--res", "8x8", "--frames", 1, "--save", plan)
     run(program, "render", "--plan", plan, "-o", folder / "small.exr", "--part", "1/1")
-    return min(run(program, "merge", part, "-o", folder / "merged.exr")[0] for _ in range(3))
+    return min(run(program, "merge", part, "-o", folder / "merged.exr") for _ in range(3))
 
 
 def merging(cost, parts):
@@ -79,18 +78,16 @@ def one_frame(cost, machines, parts=None):
     load = max(INPUT / LINK, parts * INPUT / STORAGE)
     write = max(size / LINK, parts * size / STORAGE)
     merge = merging(cost, parts) + parts * size / STORAGE if parts > 1 else 0
-    return {"start": cost["start"], "load": load, "render": HERO / parts, "write": write, "merge": merge,
-            "memory": parts * PIXELS * cost["memory"]}
+    return {"start": cost["start"], "load": load, "render": HERO / parts, "write": write, "merge": merge}
 
 
 def total(steps):
-    return sum(seconds for name, seconds in steps.items() if name != "memory")
+    return sum(steps.values())
 
 
 def best_parts(cost, machines):
-    """How many parts take least time, of those that the memory of the machine that merges allows."""
-    choices = [n for n in np.unique(np.geomspace(1, machines, 400).astype(int)) if one_frame(cost, n)["memory"] <= MEMORY]
-    return int(min(choices, key=lambda n: total(one_frame(cost, n))))
+    """How many parts take least time."""
+    return int(min(np.unique(np.geomspace(1, machines, 400).astype(int)), key=lambda n: total(one_frame(cost, n))))
 
 
 def sequence(cost, machines):
@@ -112,17 +109,16 @@ def tables(costs):
         lines += [f"**{name}**: a part costs {cost['start']:.2f} processor seconds beside its samples; its file takes "
                   + ", ".join(f"{size:.1f} ({count})" for count, size in cost["bytes"].items())
                   + f" bytes per pixel (number of parts); merging takes {1e9 * cost['merge_second']:.0f} ns per part and pixel "
-                  f"beside {1e9 * cost['merge_rest']:.0f} ns per pixel, and {cost['memory']:.0f} bytes of memory per part and pixel.",
-                  "", "| machines | loading | rendering | writing | merging | all | times as fast | memory of merge |",
-                  "|---|---|---|---|---|---|---|---|"]
+                  f"beside {1e9 * cost['merge_rest']:.0f} ns per pixel.",
+                  "", "| machines | loading | rendering | writing | merging | all | times as fast |", "|---|---|---|---|---|---|---|"]
         alone = total(one_frame(cost, 1))
         for machines in (1, 3, 10, 30, 100, 300, 1000, 3000, 10000):
             steps = one_frame(cost, machines)
             lines.append(f"| {machines:,} | {steps['start'] + steps['load']:.0f} s | {steps['render']:.0f} s | {steps['write']:.0f} s | "
-                         f"{steps['merge']:.0f} s | {total(steps):.0f} s | {alone / total(steps):.1f} | {steps['memory'] / 1e9:.1f} GB |")
+                         f"{steps['merge']:.0f} s | {total(steps):.0f} s | {alone / total(steps):.1f} |")
         best = best_parts(cost, 10000)
         longer = next(n for n in range(2, 10001) if one_frame(cost, n)["merge"] > one_frame(cost, n)["render"])
-        lines += ["", f"From {longer} parts on, merging takes longer than rendering. Within {MEMORY / 1e9:.0f} GB for merging, {best} parts are quickest: {total(one_frame(cost, best)):.0f} s, "
+        lines += ["", f"From {longer} parts on, merging takes longer than rendering. {best} parts are quickest: {total(one_frame(cost, best)):.0f} s, "
                   f"{alone / total(one_frame(cost, best)):.0f} times as fast as one machine.", "",
                   "| machines, 1,000 frames | whole frames | three parts each |", "|---|---|---|"]
         for machines in (1, 10, 100, 300, 1000):

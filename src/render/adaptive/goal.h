@@ -41,6 +41,9 @@ struct Goal {
     std::optional<OrdersError> orders{}; // measured for this very picture beforehand; none = it is not
 };
 
+// Of what a candidate rendered; each but the last may ask for a finer one.
+inline constexpr uint32_t max_checks = 3;
+
 // Share of the error wanted that the integrator may use up.
 inline constexpr double integrator_share = 0.7;
 

@@ -12,7 +12,6 @@
 namespace tyndall {
 namespace {
 constexpr int pilot_samples = 8;    // per pixel, each with random numbers of its own
-constexpr uint32_t max_checks = 3;  // of the candidate; each but the last may ask for a finer one
 constexpr uint32_t image_check = 1; // the tiles of a finished image; those of checks beforehand follow it
 constexpr int64_t max_shown_pixels = 1 << 21;
 constexpr uint32_t use_pilot = 0x9170u; // none of the frame's samples may be those that it was planned by

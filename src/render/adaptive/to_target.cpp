@@ -18,7 +18,6 @@ namespace {
 constexpr double max_first_samples = 64;
 constexpr double max_check_share = 0.2; // of the seconds there are
 constexpr double longest_seconds = 600; // where none are given, and an error is far
-constexpr uint32_t max_checks = 3;      // of finished pictures; each but the last may ask for a finer candidate
 
 // All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
 // fiftieth more, so that the bound is met at the first try more often than not.

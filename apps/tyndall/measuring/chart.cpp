@@ -7,7 +7,7 @@
 #include "common.h"
 #include "measure/chart/report.h"
 #include "modes/mode.h"
-#include "render_options.h"
+#include "rendering/render_options.h"
 #include "scene/scene.h"
 #include "trace/moment.h"
 

@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/output.h"
+#include "measuring/stress_report.h"
+#include "measuring/stress_resume.h"
 #include "modes/mode.h"
-#include "stress_report.h"
-#include "stress_resume.h"
 
 namespace tyndall {
 namespace {

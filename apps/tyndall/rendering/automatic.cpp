@@ -1,4 +1,4 @@
-#include "automatic.h"
+#include "rendering/automatic.h"
 
 #include "base/clock.h"
 #include "base/error.h"

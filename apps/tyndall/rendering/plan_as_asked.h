@@ -1,6 +1,6 @@
 // What tyndall plan --save and tyndall submit share.
 #pragma once
-#include "render_options.h"
+#include "rendering/render_options.h"
 
 namespace tyndall {
 void add_groups_option(const Command& command, std::string& groups);

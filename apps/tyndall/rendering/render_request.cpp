@@ -1,12 +1,12 @@
 // What the options of tyndall render ask for.
-#include "automatic.h"
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/parts/plan_file.h"
-#include "render_options.h"
+#include "rendering/automatic.h"
+#include "rendering/render_options.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,4 +1,4 @@
-#include "explain_json.h"
+#include "measuring/explain_json.h"
 #include "common.h"
 
 namespace tyndall {

@@ -1,6 +1,6 @@
 // What an earlier tyndall stress has found, taken back from its stress.json.
 #pragma once
-#include "stress_report.h"
+#include "measuring/stress_report.h"
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // The options of tyndall render and their help.
-#include "render_options.h"
+#include "rendering/render_options.h"
 
 namespace tyndall {
 namespace {

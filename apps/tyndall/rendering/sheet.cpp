@@ -1,4 +1,4 @@
-#include "sheet.h"
+#include "rendering/sheet.h"
 
 #include "base/error.h"
 #include "base/io/frames.h"

@@ -1,5 +1,5 @@
 // The metrics of tyndall compare by name.
-#include "compare_report.h"
+#include "measuring/compare_report.h"
 
 #include "base/error.h"
 #include "base/text.h"

@@ -2,8 +2,8 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
-#include "compare_report.h"
 #include "measure/metrics/heatmap.h"
+#include "measuring/compare_report.h"
 #include "render/image/png.h"
 
 namespace tyndall {

@@ -1,4 +1,4 @@
-#include "stress_resume.h"
+#include "measuring/stress_resume.h"
 
 #include "base/error.h"
 #include "base/io/file.h"

@@ -1,5 +1,5 @@
 // The results of tyndall stress as one page that needs nothing else.
-#include "stress_report.h"
+#include "measuring/stress_report.h"
 
 #include "measure/report/svg.h"
 

@@ -1,5 +1,5 @@
 // Tables for people, and the same as JSON.
-#include "compare_report.h"
+#include "measuring/compare_report.h"
 
 #include "base/error.h"
 

@@ -1,6 +1,6 @@
 // tyndall submit: a job for a render farm, as files of its engine.
-#include "automatic.h"
-#include "plan_as_asked.h"
+#include "rendering/automatic.h"
+#include "rendering/plan_as_asked.h"
 
 #include "base/error.h"
 #include "base/io/file.h"

@@ -1,5 +1,5 @@
 // Tables for people, and the same as JSON.
-#include "stress_report.h"
+#include "measuring/stress_report.h"
 
 #include <algorithm>
 
