@@ -77,6 +77,10 @@ struct SamplePoint {
     float weight = 1;
 };
 
+// The ray of a sample that lies at a position: through the lens, where the camera has one. Points of the lens follow a
+// scrambled (0,2)-sequence of their own.
+Ray sample_ray(const View& view, vec2 position, SamplePlace place);
+
 // Importance sampled by the filter, so that weights are one, or by filter and glow where a lamp is seen.
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample);
 }

@@ -19,6 +19,7 @@ View centered(View view) {
     view.pixel_samples = view.batches = view.lamp_samples = 1;
     view.filter = PixelFilter::center, view.fog_parts = false;
     view.lamps.clear();
+    view.camera.lens = {};
     return view;
 }
 

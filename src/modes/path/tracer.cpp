@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-// Where a direction from the camera lies on the picture, 0..1 from the upper left.
+// Where a ray of the camera lies on the picture, 0..1 from the upper left.
 vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     const Camera& camera = tracer.camera;
     const float aspect = static_cast<float>(tracer.size.x) / tracer.size.y;
@@ -14,8 +14,12 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
         const vec3 offset = (ray.origin - camera.position) / (0.5f * camera.ortho_height);
         screen = {glm::dot(offset, camera.right), glm::dot(offset, camera.up)};
     } else {
-        const float depth = glm::dot(ray.direction, camera.forward) * std::tan(0.5f * camera.vertical_fov);
-        screen = vec2(glm::dot(ray.direction, camera.right), glm::dot(ray.direction, camera.up)) / depth;
+        const float along = glm::dot(ray.direction, camera.forward);
+        // Through the lens, the pinhole's ray leads to the same point in focus.
+        const vec3 direction =
+            camera.lens ? ray.direction + (ray.origin - camera.position) * (along / camera.lens.focus) : ray.direction;
+        const float depth = along * std::tan(0.5f * camera.vertical_fov);
+        screen = vec2(glm::dot(direction, camera.right), glm::dot(direction, camera.up)) / depth;
     }
     return {0.5f * (screen.x / aspect + 1), 0.5f * (1 - screen.y)};
 }

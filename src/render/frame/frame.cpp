@@ -6,6 +6,7 @@
 #include "base/io/cache_folder.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
+#include "render/frame/camera_paths.h"
 #include "render/frame/edges.h"
 #include "render/frame/frame_task.h"
 #include "render/frame/part.h"
@@ -42,6 +43,12 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
         }
         if ((s + 1) % batch_size) continue;
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
+    }
+
+    if (view.camera.lens) { // through all of it depths of a blurred edge would be noise
+        float depths[16];
+        depths_through_middle(task.tracer, {tile.pixels, count}, depths);
+        for (size_t i = 0; i < count; ++i) sums[i].depth = depths[i];
     }
 
     const float samples_float = static_cast<float>(sample_count);

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "modes/mode.h"
+#include "render/frame/camera_paths.h"
 #include "render/frame/edges.h"
 #include "render/frame/sums.h"
 #include "render/image/exr.h"
@@ -106,6 +107,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
         if (part.range.slices == 1 || holds(part.range, int64_t{node.section} * part.leaves + node.index, block))
             sums[n] = node_sums(sums_of, node);
     }
+    if (task.tracer.view.camera.lens) depths_through_middle(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
     store_tile(sums_of, sums, work);
     keep_in_time(work);
 }
