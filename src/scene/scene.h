@@ -35,6 +35,7 @@ struct Node {
 struct Instance {
     int node = -1, mesh = -1;
     bool casts_shadows = true; // else it shadows no light; it is seen and lit as ever
+    bool matte = false;        // holds out what is behind it; it lights and shadows as ever
 };
 
 struct CameraSource {

@@ -44,7 +44,8 @@ struct View {
     int edge_samples = 1;       // most times as many samples where the picture changes from pixel to pixel
     bool surface_parts = false; // whether the light of surfaces and of the background is wanted apart
     bool fog_parts = false;     // and that in fog by where it comes from
-    bool background = true;     // whether the background is in the picture
+    bool background = true;     // whether the background is in the picture ...
+    bool covered = true;        // ... and then in alpha
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 

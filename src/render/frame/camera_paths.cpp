@@ -81,7 +81,7 @@ bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<
         Path path = s.path[i];
         const float t = s.length[i];
         if (met.points[k].alpha >= 1) {
-            samples[path.lane].alpha = 1;
+            samples[path.lane].alpha = 1 - samples[path.lane].held;
             samples[path.lane].depth = planar_depth(view.camera, path.ray, t);
             continue;
         }
@@ -132,7 +132,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     for (size_t i = 0; i < count; ++i) {
         PixelSample& result = samples[i];
         result.surface = scatter[i].surface, result.background = scatter[i].background;
-        result.inscatter = scatter[i].radiance;
+        result.inscatter = scatter[i].radiance, result.held = scatter[i].held;
         result.transmittance = scatter[i].transmittance;
         result.validity = scatter[i].validity;
         result.steps = scatter[i].steps;
@@ -145,7 +145,7 @@ void follow_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSa
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         for (int i = 0; i < s.count; ++i)
-            if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through;
+            if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through - samples[s.path[i].lane].held;
         const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
         if (!advance(tracer.view, met, s, samples)) return;
     }

@@ -11,6 +11,7 @@
 #include "render/frame/frame_task.h"
 #include "render/frame/part.h"
 #include "render/frame/pixel_sum.h"
+#include "trace/mattes.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 
@@ -142,7 +143,7 @@ void add(const Image<vec3>& part, Image<vec3>& sum) {
 View view_before_post(const View& view) {
     View whole = view;
     whole.crop_low = whole.crop_high = ivec2(0);
-    whole.background = true, whole.surface_parts = true;
+    whole.covered = view.background, whole.background = true, whole.surface_parts = true;
     return whole;
 }
 
@@ -166,7 +167,8 @@ void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, cons
 }
 
 void cover_background(const View& view, const Snapshot& snapshot, Layers& layers) {
-    if (view.background && has_background(snapshot.background)) std::ranges::fill(layers.alpha.pixels, 1.0f);
+    if (view.background && has_background(snapshot.background) && !has_mattes(snapshot))
+        std::ranges::fill(layers.alpha.pixels, 1.0f);
 }
 
 void prepare_files(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings) {

@@ -9,6 +9,7 @@
 #include "render/frame/edges.h"
 #include "render/frame/sums.h"
 #include "render/image/exr.h"
+#include "trace/mattes.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
@@ -180,7 +181,7 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;
     part.range = range, part.leaves = view.leaves;
     part.numbers = fixed_sums + 3 * task.parts.size(), part.lights = lights;
-    part.covered = given.background && has_background(snapshot.background);
+    part.covered = given.background && has_background(snapshot.background) && !has_mattes(snapshot);
     check_size(part);
     part = begun_part(std::move(part), std::exchange(checkpoints.last, {}));
 

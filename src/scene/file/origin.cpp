@@ -14,13 +14,15 @@ struct Sight {
     double size;
 };
 
+bool is_placed(const Field& camera) { return camera.member("position") && camera.member("target"); }
+
 // The entry that read_cameras() makes the default camera; empty when that is one of the glTF's, with a lens or without.
 Field camera_field(const Field& root) {
     if (!root) return {};
     const Field chosen = root.member("camera"), cameras = root.member("cameras");
-    if (chosen && chosen.json->kind == Json::Kind::object) return chosen.member("position") ? chosen : Field{};
+    if (chosen && chosen.json->kind == Json::Kind::object) return is_placed(chosen) ? chosen : Field{};
     for (size_t i = 0; cameras && i < cameras.json->items.size(); ++i)
-        if (cameras.item(i).member("position") &&
+        if (is_placed(cameras.item(i)) &&
             (!chosen || cameras.item(i).json->string_or("name", "") == chosen.json->string))
             return cameras.item(i);
     return {};

@@ -10,6 +10,7 @@
 #include "trace/frame_cache.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
+#include "trace/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
