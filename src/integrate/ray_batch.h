@@ -16,6 +16,7 @@ struct Scatter {
     int steps = 0;           // evaluations spent, for statistics
     // Of a mode with Surfaces::own: light of surfaces, and of the background, through the fog.
     vec3 surface{0}, background{0};
+    float held = 0; // of such a mode: share of the light from behind the fog that mattes hold out
 
     vec3 whole() const { return surface + background + radiance; }
 };

@@ -11,14 +11,15 @@ namespace tyndall {
 namespace {
 // Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
 // scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
-// once.
+// once, for rays from one point: those through a lens are taken to slices.
 constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
 }
 
-ShadowsBy exact_shadows(const Light& light, const Occluders& occluders) {
-    const uint64_t most = is_soft(light) ? max_sliced : max_with_volumes;
+ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders) {
+    const bool sliced = is_soft(light) || view.camera.lens;
+    const uint64_t most = sliced ? max_sliced : max_with_volumes;
     if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
-    return is_soft(light) ? ShadowsBy::slices : ShadowsBy::volumes;
+    return sliced ? ShadowsBy::slices : ShadowsBy::volumes;
 }
 
 FilterSteps filter_steps(const Light& light) {

@@ -20,7 +20,7 @@ namespace tyndall {
 enum class ShadowsBy { none, volumes, slices, rays, maps };
 
 // The quickest that is exact; rays where surfaces have alpha or are too many.
-ShadowsBy exact_shadows(const Light& light, const Occluders& occluders);
+ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders);
 
 struct LightShadows {
     ShadowsBy by = ShadowsBy::none;

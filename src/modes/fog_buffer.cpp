@@ -156,6 +156,7 @@ ivec2 shared_size(ivec2 size, Resolution share) {
 
 ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, const FogBufferOptions& options,
                                 ScatterFunction whole, History* history) {
+    if (view.camera.lens) return whole;
     std::shared_ptr<FogBuffer> picture = compute(view, snapshot, options.share, whole);
     if (options.blur) blur_pattern(*picture);
     if (history) {

@@ -35,6 +35,7 @@ struct Node {
 struct Instance {
     int node = -1, mesh = -1;
     bool casts_shadows = true; // else it shadows no light; it is seen and lit as ever
+    bool matte = false;        // holds out what is behind it; it lights and shadows as ever
 };
 
 struct CameraSource {
@@ -43,7 +44,11 @@ struct CameraSource {
     Keyed<vec3> position{vec3(0, 1, 4)}, target{vec3(0)}, up{vec3(0, 1, 0)}; // ... else these
     Keyed<float> vertical_fov{0.8f};                                         // radians
     float ortho_height = 0, near = 0.01f, far = infinity;
-    std::string entry; // JSON pointer of what the scene file says of it; empty = nothing
+    Keyed<float> aperture{0.0f};       // radius of the lens, metres; 0 = a pinhole
+    std::optional<Keyed<float>> focus; // metres along the viewing direction; none: as far as the target
+    int blades = 0;
+    Keyed<float> blade_turn{0.0f}; // radians
+    std::string entry;             // JSON pointer of what the scene file says of it; empty = nothing
 };
 
 // What the number of a light's intensity means.

@@ -36,6 +36,7 @@ CacheKey& CacheKey::add(const View& view) {
     const Camera& camera = view.camera;
     add(camera.position).add(camera.right).add(camera.up).add(camera.forward).add(camera.vertical_fov);
     add(camera.ortho_height).add(camera.near).add(camera.far);
+    if (const Lens& lens = camera.lens) add(lens.radius).add(lens.focus).add(lens.blades).add(lens.turn);
     return add(view.size).add(view.filter).add(view.filter_radius);
 }
 

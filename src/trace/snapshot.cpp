@@ -154,6 +154,17 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     return snapshot;
 }
 
+namespace {
+void set_lens(const Scene& scene, const CameraSource& source, double seconds, Camera& camera) {
+    camera.lens = {source.aperture.at(seconds), infinity, source.blades, source.blade_turn.at(seconds)};
+    if (!camera.lens) return;
+    camera.lens.focus =
+        source.focus ? source.focus->at(seconds) : glm::distance(camera.position, source.target.at(seconds));
+    if (!(camera.lens.focus > 0))
+        refuse(scene.file.string(), "camera " + source.name + ": focus_distance is not above 0");
+}
+}
+
 Camera camera_at(const Scene& scene, int camera, double seconds) {
     const CameraSource& source = scene.cameras[camera];
     const float fov = source.vertical_fov.at(seconds);
@@ -170,6 +181,7 @@ Camera camera_at(const Scene& scene, int camera, double seconds) {
     result.name = source.name;
     result.ortho_height = source.ortho_height;
     result.near = source.near, result.far = source.far;
+    set_lens(scene, source, seconds, result);
     return result;
 }
 

@@ -9,6 +9,7 @@
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
+constexpr uint32_t use_lens = 0x1e45u;
 
 int lamp_factor(const View& view, ivec2 tile) {
     if (view.lamps.empty()) return 1;
@@ -47,6 +48,13 @@ SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
     return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};
+}
+
+Ray sample_ray(const View& view, vec2 position, SamplePlace place) {
+    const Camera& camera = view.camera;
+    if (!camera.lens) return camera_ray(camera, view.size, position);
+    const Sample2 u = sample2(place.index, hash(place.sequence, use_lens));
+    return lens_ray(camera, view.size, position, aperture_point(camera.lens, {u.x, u.y}));
 }
 
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample) {

@@ -44,7 +44,8 @@ struct View {
     int edge_samples = 1;       // most times as many samples where the picture changes from pixel to pixel
     bool surface_parts = false; // whether the light of surfaces and of the background is wanted apart
     bool fog_parts = false;     // and that in fog by where it comes from
-    bool background = true;     // whether the background is in the picture
+    bool background = true;     // whether the background is in the picture ...
+    bool covered = true;        // ... and then in alpha
     uint32_t seed = 0;
     int frame = 0; // varies the jitter from frame to frame
 
@@ -76,6 +77,10 @@ struct SamplePoint {
     vec2 position; // pixels from the upper left of the picture
     float weight = 1;
 };
+
+// The ray of a sample that lies at a position: through the lens, where the camera has one. Points of the lens follow a
+// scrambled (0,2)-sequence of their own.
+Ray sample_ray(const View& view, vec2 position, SamplePlace place);
 
 // Importance sampled by the filter, so that weights are one, or by filter and glow where a lamp is seen.
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample);

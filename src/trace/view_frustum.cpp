@@ -21,13 +21,18 @@ void append_edge(const Ray& a, const Ray& b, const Ray& middle, ViewFrustum& spa
 }
 }
 
+// Rays through a lens of radius r and focus f stray by r |1 - z/f| at depth z, which is at most r + r z/f: a pinhole's
+// picture that is wider by r/f per metre, seen from a place that is r farther out.
 ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor) {
     ViewFrustum space{anchor, {}};
-    const vec2 low(-past_edge(view)), high = vec2(view.size) - low;
+    const Lens& lens = view.camera.lens;
+    const float wider = lens ? 0.5f * blur_diameter(view.camera, view.size, infinity) : 0;
+    const vec2 low(-past_edge(view) - wider), high = vec2(view.size) - low;
     const vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
     const auto ray = [&](vec2 at) { return camera_ray(view.camera, view.size, at); };
     for (int i = 0; i < 4; ++i)
         append_edge(ray(corners[i]), ray(corners[(i + 1) % 4]), ray(0.5f * vec2(view.size)), space);
+    for (HalfSpace& side : space.sides) side.offset += lens.radius;
     append_side(view.camera.forward, view.camera.position, space);
 
     Box fog;

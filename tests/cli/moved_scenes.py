@@ -114,8 +114,9 @@ def write_moved(source, target, factor=1, offset=(0, 0, 0)):
         scene["gltf"] = moved.name
     cameras = scene.get("cameras", []) + ([scene["camera"]] if isinstance(scene.get("camera"), dict) else [])
     for camera in cameras:
-        camera.setdefault("near", 0.01)
-        _change(camera, ("position", "target", "ortho_height", "near", "far"), _times(factor))
+        if "position" in camera:  # not a lens on a camera of the glTF
+            camera.setdefault("near", 0.01)
+        _change(camera, ("position", "target", "ortho_height", "near", "far", "aperture_radius", "focus_distance"), _times(factor))
         _change(camera, ("position", "target"), _plus(offset))
     for light in scene.get("lights", []):
         _change(light, ("position", "target", "range", "radius"), _times(factor))

@@ -103,6 +103,11 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
                       {"warnings", scene.warnings}});
 }
 
+std::string lens_text(const CameraSource& camera) {
+    const double radius = double{camera.aperture.at(0)};
+    return radius > 0 ? formatted(", lens of %g m in radius", radius) : "";
+}
+
 std::string content_text(const Scene& scene) {
     const Totals totals = totals_of(scene);
     std::string text = "  geometry      " + count_text(totals.triangles, "triangle") + " in " +
@@ -117,9 +122,10 @@ std::string content_text(const Scene& scene) {
                 seconds_text(double{totals.last_key}) + "\n";
     for (const CameraSource& camera : scene.cameras)
         text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
-                (camera.ortho_height > 0 ? ", orthographic\n"
-                                         : formatted(", vertical field of view %.1f degrees\n",
-                                                     glm::degrees(double{camera.vertical_fov.at(0)})));
+                (camera.ortho_height > 0 ? ", orthographic"
+                                         : formatted(", vertical field of view %.1f degrees",
+                                                     glm::degrees(double{camera.vertical_fov.at(0)}))) +
+                lens_text(camera) + "\n";
     for (const LightSource& light : scene.lights)
         text += formatted("  light         %s, %s, %g %s%s%s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),

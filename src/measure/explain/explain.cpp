@@ -10,6 +10,7 @@
 #include "render/adaptive/candidates.h"
 #include "render/frame/camera_paths.h"
 #include "scene/scene.h"
+#include "trace/mattes.h"
 #include "volume/rays/fog_reach.h"
 
 namespace tyndall {
@@ -19,6 +20,7 @@ View centered(View view) {
     view.pixel_samples = view.batches = view.lamp_samples = 1;
     view.filter = PixelFilter::center, view.fog_parts = false;
     view.lamps.clear();
+    view.camera.lens = {};
     return view;
 }
 
@@ -91,6 +93,7 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     const int material =
         whole.meshes[static_cast<size_t>(whole.instances[static_cast<size_t>(instance)].mesh)].material;
     if (material >= 0) surface.material = whole.materials[static_cast<size_t>(material)].name;
+    if (is_matte(scene.snapshot, instance)) surface.radiance = vec3(0), of_lights.assign(of_lights.size(), vec3(0));
     surface.alpha = point.alpha, surface.share = path.through * point.alpha;
     story.reference.color += surface.share * surface.radiance;
     for (size_t l = 0; l < story.lights.size(); ++l) story.lights[l].surfaces += surface.share * of_lights[l];

@@ -31,6 +31,8 @@ Scene scaled(Scene scene, float factor) {
     for (CameraSource& camera : scene.cameras) {
         scale(camera.position, factor), scale(camera.target, factor);
         camera.near *= factor, camera.far *= factor, camera.ortho_height *= factor;
+        scale(camera.aperture, factor);
+        if (camera.focus) scale(*camera.focus, factor);
     }
     for (LightSource& light : scene.lights) scale_light(light, factor);
     for (MediumSource& medium : scene.media) scale_medium(medium, factor);

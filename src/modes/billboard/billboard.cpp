@@ -3,6 +3,7 @@
 #include "modes/billboard/limitations.h"
 #include "modes/billboard/settings.h"
 
+#include "modes/lens_fog.h"
 #include "modes/mode.h"
 #include "scene/light.h"
 #include "trace/view.h"
@@ -11,9 +12,9 @@
 namespace tyndall {
 ScatterFunction prepare_billboard(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     const auto billboards = std::make_shared<const Billboards>(make_billboards(view, snapshot, settings));
-    return [billboards](const RayBatch& batch, std::span<Scatter> results) {
+    return through_middle(view, [billboards](const RayBatch& batch, std::span<Scatter> results) {
         billboard_packet(*billboards, batch, results);
-    };
+    });
 }
 
 Mode billboard_mode() {

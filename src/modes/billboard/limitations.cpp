@@ -2,6 +2,7 @@
 
 #include "modes/billboard/billboard.h"
 #include "modes/billboard/settings.h"
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
@@ -39,6 +40,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
             limitations.push_back({Severity::info, &limitation::no_opening, Subject::light, name});
     }
     add_mean_filters(snapshot, limitations);
+    add_fog_through_middle(view, snapshot, limitations);
     add_left_out_emission(snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)

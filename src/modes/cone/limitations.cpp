@@ -2,7 +2,9 @@
 
 #include "modes/cone/cone.h"
 #include "modes/cone/settings.h"
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
@@ -59,6 +61,8 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
             limitations.push_back(
                 {Severity::degraded, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_single_scattering(view, snapshot, limitations);
+    if (settings.of<ConeSettings>().resolution != Resolution::full)
+        add_no_fog_picture(view, "cone.resolution", limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) add_emission(snapshot, true, limitations);
     return limitations;

@@ -11,6 +11,7 @@
 #include "modes/froxel/settings.h"
 #include "modes/froxel/statics.h"
 #include "modes/history.h"
+#include "modes/lens_fog.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
@@ -221,10 +222,11 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
                 : integrate_froxels(picture.grid, picture.tiles,
                                     fill_froxels(frame->scene, picture.grid, picture.tiles, {.beams = &picture.beams}),
                                     picture.view_depth);
-    return with_field_light(std::move(fields), [frame](const RayBatch& batch, std::span<Scatter> results) {
+    ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);
-    });
+    };
+    return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 
 Mode froxel_mode() {

@@ -4,6 +4,7 @@
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/settings.h"
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -127,6 +128,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     Limitations limitations = main_mode().limitations(view, snapshot, terms);
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     if (snapshot.media.empty()) return limitations;
+    add_fog_through_middle(view, snapshot, limitations);
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();
     const FroxelSize size = middle_froxel(view, snapshot, froxel);

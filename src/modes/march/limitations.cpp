@@ -9,6 +9,7 @@
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -27,7 +28,7 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
     if (visibility == Visibility::intervals && !alpha)
         for (const Light& light : snapshot.lights)
             if (const auto& casters = shadow_casters(light, snapshot);
-                casters && exact_shadows(light, *casters) == ShadowsBy::rays)
+                casters && exact_shadows(view, light, *casters) == ShadowsBy::rays)
                 limitations.push_back({Severity::info,
                                        &limitation::sampled_shadows,
                                        Subject::light,
@@ -44,7 +45,9 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
         add_single_scattering(view, snapshot, limitations);
     else
         add_fluence(view, snapshot, settings.fluence, limitations);
-    if (terms.light == LightTransmittance::grid) add_light_grid_cells(snapshot, terms.light_resolution, limitations);
+    const bool no_froxels = terms.light == LightTransmittance::froxel && view.camera.lens;
+    if (terms.light == LightTransmittance::grid || no_froxels)
+        add_light_grid_cells(snapshot, terms.light_resolution, limitations);
     for (const Medium& medium : snapshot.media)
         if (!terms.heterogeneity && medium.density.kind == DensityKind::bricks)
             limitations.push_back({Severity::wrong, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});

@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-ShadowsBy shadows_by(Visibility visibility, const Light& light, const Occluders& occluders) {
+ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light, const Occluders& occluders) {
     switch (visibility) {
     case Visibility::off:
         return ShadowsBy::none;
@@ -23,7 +23,7 @@ ShadowsBy shadows_by(Visibility visibility, const Light& light, const Occluders&
     case Visibility::maps:
         return ShadowsBy::maps;
     case Visibility::intervals:
-        return exact_shadows(light, occluders);
+        return exact_shadows(view, light, occluders);
     case Visibility::exact:
         return ShadowsBy::slices;
     }
@@ -51,7 +51,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
     const auto by = [&](const Light& light) {
-        return shadows_by(march.visibility, light, *shadow_casters(light, snapshot));
+        return shadows_by(view, march.visibility, light, *shadow_casters(light, snapshot));
     };
     add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
     add_steps(march, !intervals && !exact, *fog);

@@ -2,10 +2,11 @@
 #include "modes/path/tracer.h"
 
 #include "modes/path/vertex.h"
+#include "trace/mattes.h"
 
 namespace tyndall {
 namespace {
-// Where a direction from the camera lies on the picture, 0..1 from the upper left.
+// Where a ray of the camera lies on the picture, 0..1 from the upper left.
 vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     const Camera& camera = tracer.camera;
     const float aspect = static_cast<float>(tracer.size.x) / tracer.size.y;
@@ -14,8 +15,12 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
         const vec3 offset = (ray.origin - camera.position) / (0.5f * camera.ortho_height);
         screen = {glm::dot(offset, camera.right), glm::dot(offset, camera.up)};
     } else {
-        const float depth = glm::dot(ray.direction, camera.forward) * std::tan(0.5f * camera.vertical_fov);
-        screen = vec2(glm::dot(ray.direction, camera.right), glm::dot(ray.direction, camera.up)) / depth;
+        const float along = glm::dot(ray.direction, camera.forward);
+        // Through the lens, the pinhole's ray leads to the same point in focus.
+        const vec3 direction =
+            camera.lens ? ray.direction + (ray.origin - camera.position) * (along / camera.lens.focus) : ray.direction;
+        const float depth = along * std::tan(0.5f * camera.vertical_fov);
+        screen = vec2(glm::dot(direction, camera.right), glm::dot(direction, camera.up)) / depth;
     }
     return {0.5f * (screen.x / aspect + 1), 0.5f * (1 - screen.y)};
 }
@@ -175,17 +180,19 @@ void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float d
 
 void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
     const float share = line.through * surface.alpha;
+    const bool held = walk.order == 0 && is_matte(walk.snapshot, instance); // seen by the camera
+    if (held) walk.results[line.walker.lane].held += share;
     // A glowing surface is seen even where it lights nothing.
-    if ((walk.tracer.surfaces_emit || walk.order == 0) && max_component(surface.emission) > 0) {
+    if (!held && (walk.tracer.surfaces_emit || walk.order == 0) && max_component(surface.emission) > 0) {
         const float aimed =
             line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
         const float weight = aimed > 0 ? line.walker.density / (line.walker.density + aimed) : 1;
         add_light(walk, line, surface.emission * (share * weight), OtherLight::emission, line.walker.in_fog);
     }
-    if (walk.turns && share > 0) gather_at_surface(walk, line, surface, share);
+    if (walk.turns && share > 0 && !held) gather_at_surface(walk, line, surface, share);
     if (line.walking && (surface.alpha >= 1 || line.numbers(use_blend).x < surface.alpha)) {
         line.walking = false;
-        if (walk.turns) bounce(walk, line, surface);
+        if (walk.turns && !held) bounce(walk, line, surface);
     }
 
     // On to what lies behind, off the surface by more than rounding.

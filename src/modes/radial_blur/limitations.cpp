@@ -1,5 +1,6 @@
 #include "modes/radial_blur/limitations.h"
 
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
@@ -17,6 +18,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
         if (medium.density.kind == DensityKind::bricks && own.fog)
             limitations.push_back({Severity::degraded, &limitation::homogeneous_dimming, Subject::medium, medium.name});
     add_mean_filters(snapshot, limitations);
+    add_fog_through_middle(view, snapshot, limitations);
     add_left_out_emission(snapshot, limitations);
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, own);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {

@@ -1,8 +1,10 @@
 #include "modes/shadow_map/limitations.h"
 
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
+#include "modes/resolution.h"
 #include "modes/settings.h"
 #include "modes/shadow_map/settings.h"
 #include "modes/shared_limitations.h"
@@ -42,6 +44,8 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     add_sampled_filters(snapshot, Sampled::all_filters, own.steps, limitations);
     add_mean_albedo(snapshot, limitations);
+    if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
+    if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
     return limitations;
 }
 }

@@ -1,6 +1,7 @@
 #include "modes/shadow_volume/limitations.h"
 
 #include "integrate/single_scattering.h"
+#include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/settings.h"
 #include "modes/shadow_volume/settings.h"
@@ -59,6 +60,7 @@ Limitations shadow_volume_limitations(const View& view, const Snapshot& snapshot
     add_light_transmittance(snapshot, settings.terms.light, limitations);
     add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     add_shadows(snapshot, limitations);
+    add_fog_through_middle(view, snapshot, limitations);
     return limitations;
 }
 }

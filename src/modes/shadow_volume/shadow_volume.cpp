@@ -2,6 +2,7 @@
 #include "integrate/field_light.h"
 #include "integrate/single_scattering.h"
 #include "integrate/style.h"
+#include "modes/lens_fog.h"
 #include "modes/mode.h"
 #include "modes/shadow_volume/limitations.h"
 #include "modes/shadow_volume/settings.h"
@@ -37,9 +38,10 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     }
     const auto by = [](const Light&) { return ShadowsBy::volumes; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
-    return with_field_light(std::move(fields), [frame](const RayBatch& batch, std::span<Scatter> results) {
+    ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);
-    });
+    };
+    return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 
 Mode shadow_volume_mode() {

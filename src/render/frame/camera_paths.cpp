@@ -20,7 +20,8 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
     result.off_center = glm::dot(off, off), result.weight = weight;
 
     Path path;
-    path.ray = camera_ray(view.camera, view.size, position);
+    path.place = sample_place(view, pixel, sample);
+    path.ray = sample_ray(view, position, path.place);
     const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
     path.skip = view.camera.near / along;
     path.screen = position / vec2(view.size), path.position = position;
@@ -31,7 +32,6 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
     path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
-    path.place = sample_place(view, pixel, sample);
     path.samples = static_cast<uint32_t>(samples_of(view, pixel) / batches_of(view, pixel));
     if (const uint32_t batch = static_cast<uint32_t>(sample) / path.samples) {
         path.seed = hash(path.seed, batch);
@@ -81,7 +81,7 @@ bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<
         Path path = s.path[i];
         const float t = s.length[i];
         if (met.points[k].alpha >= 1) {
-            samples[path.lane].alpha = 1;
+            samples[path.lane].alpha = 1 - samples[path.lane].held;
             samples[path.lane].depth = planar_depth(view.camera, path.ray, t);
             continue;
         }
@@ -132,25 +132,40 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     for (size_t i = 0; i < count; ++i) {
         PixelSample& result = samples[i];
         result.surface = scatter[i].surface, result.background = scatter[i].background;
-        result.inscatter = scatter[i].radiance;
+        result.inscatter = scatter[i].radiance, result.held = scatter[i].held;
         result.transmittance = scatter[i].transmittance;
         result.validity = scatter[i].validity;
         result.steps = scatter[i].steps;
         s.path[i].through = scatter[i].transmittance;
     }
 }
+
+// What covers the background, and the depth.
+void follow_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples) {
+    for (int layer = 0; layer < max_layers; ++layer) {
+        find_surfaces(tracer.snapshot, layer, s);
+        for (int i = 0; i < s.count; ++i)
+            if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through - samples[s.path[i].lane].held;
+        const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
+        if (!advance(tracer.view, met, s, samples)) return;
+    }
+}
 }
 
 void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     add_light(tracer, s, samples, parts);
+    follow_surfaces(tracer, s, samples);
+}
 
-    // What covers the background, and the depth.
-    for (int layer = 0; layer < max_layers; ++layer) {
-        find_surfaces(tracer.snapshot, layer, s);
-        for (int i = 0; i < s.count; ++i)
-            if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through;
-        const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
-        if (!advance(tracer.view, met, s, samples)) return;
-    }
+void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths) {
+    View pinhole = tracer.view;
+    pinhole.camera.lens = {}, pinhole.filter = PixelFilter::center;
+    pinhole.pixel_samples = pinhole.batches = 1, pinhole.leaves = 0;
+    pinhole.allotted = pinhole.edges = nullptr, pinhole.lamps.clear();
+    PathPacket s;
+    PixelSample samples[16];
+    start_paths(pinhole, pixels, 0, s, samples);
+    follow_surfaces(tracer, s, samples);
+    for (size_t i = 0; i < pixels.size(); ++i) depths[i] = samples[i].depth;
 }
 }

@@ -69,4 +69,8 @@ RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s);
 
 // Modes with Surfaces::own: one whole ray for each path.
 void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts);
+
+// Planar depths of the first opaque surfaces on the rays through the centres of up to 16 pixels and the middle of the
+// lens.
+void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths);
 }

@@ -6,10 +6,12 @@
 #include "base/io/cache_folder.h"
 #include "base/parallel.h"
 #include "modes/mode.h"
+#include "render/frame/camera_paths.h"
 #include "render/frame/edges.h"
 #include "render/frame/frame_task.h"
 #include "render/frame/part.h"
 #include "render/frame/pixel_sum.h"
+#include "trace/mattes.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 
@@ -42,6 +44,12 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
         }
         if ((s + 1) % batch_size) continue;
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
+    }
+
+    if (view.camera.lens) { // through all of it depths of a blurred edge would be noise
+        float depths[16];
+        depths_through_middle(task.tracer, {tile.pixels, count}, depths);
+        for (size_t i = 0; i < count; ++i) sums[i].depth = depths[i];
     }
 
     const float samples_float = static_cast<float>(sample_count);
@@ -135,7 +143,7 @@ void add(const Image<vec3>& part, Image<vec3>& sum) {
 View view_before_post(const View& view) {
     View whole = view;
     whole.crop_low = whole.crop_high = ivec2(0);
-    whole.background = true, whole.surface_parts = true;
+    whole.covered = view.background, whole.background = true, whole.surface_parts = true;
     return whole;
 }
 
@@ -159,7 +167,8 @@ void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, cons
 }
 
 void cover_background(const View& view, const Snapshot& snapshot, Layers& layers) {
-    if (view.background && has_background(snapshot.background)) std::ranges::fill(layers.alpha.pixels, 1.0f);
+    if (view.background && has_background(snapshot.background) && !has_mattes(snapshot))
+        std::ranges::fill(layers.alpha.pixels, 1.0f);
 }
 
 void prepare_files(const Mode& mode, const View& given, const Snapshot& snapshot, const Settings& settings) {

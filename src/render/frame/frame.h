@@ -55,7 +55,7 @@ View view_before_post(const View& view);
 void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Layers& layers,
               FrameStats& stats);
 
-// Alpha is 1 where the background is part of the image.
+// Alpha is 1 where the background is part of the image; with mattes its samples have seen to that already.
 void cover_background(const View& view, const Snapshot& snapshot, Layers& layers);
 
 // Throws Error (internal) when cancelled.

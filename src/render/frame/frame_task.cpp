@@ -6,6 +6,7 @@
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/scene.h"
+#include "trace/mattes.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
@@ -63,6 +64,9 @@ bool contains(const Layers& layers, ivec2 pixel) {
 }
 
 namespace {
+// Whether alpha has to tell a background from what mattes hold out of it.
+bool counts_held(const Snapshot& snapshot) { return has_background(snapshot.background) && has_mattes(snapshot); }
+
 // Counts the time of every call.
 ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<double>> seconds) {
     return [scatter = std::move(scatter), seconds](const RayBatch& batch, std::span<Scatter> results) {
@@ -84,7 +88,8 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     auto scatter_seconds = std::make_shared<std::atomic<double>>(0);
     FrameTask task{prepared,
                    {view, snapshot, timed(prepared->scatter, scatter_seconds), mode.surfaces,
-                    settings.terms.light_points, prepared->light_depths},
+                    settings.terms.light_points, prepared->light_depths,
+                    view.background && view.covered && counts_held(snapshot)},
                    options.prepared ? 0 : prepared->mode_seconds,
                    scatter_seconds,
                    std::move(layers),

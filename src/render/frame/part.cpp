@@ -5,9 +5,11 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "modes/mode.h"
+#include "render/frame/camera_paths.h"
 #include "render/frame/edges.h"
 #include "render/frame/sums.h"
 #include "render/image/exr.h"
+#include "trace/mattes.h"
 #include "trace/sampling/lamp_samples.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
@@ -106,6 +108,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
         if (part.range.slices == 1 || holds(part.range, int64_t{node.section} * part.leaves + node.index, block))
             sums[n] = node_sums(sums_of, node);
     }
+    if (task.tracer.view.camera.lens) depths_through_middle(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
     store_tile(sums_of, sums, work);
     keep_in_time(work);
 }
@@ -178,7 +181,7 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;
     part.range = range, part.leaves = view.leaves;
     part.numbers = fixed_sums + 3 * task.parts.size(), part.lights = lights;
-    part.covered = given.background && has_background(snapshot.background);
+    part.covered = given.background && has_background(snapshot.background) && !has_mattes(snapshot);
     check_size(part);
     part = begun_part(std::move(part), std::exchange(checkpoints.last, {}));
 

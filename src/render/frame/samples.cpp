@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "render/frame/camera_paths.h"
 #include "scene/light.h"
+#include "trace/mattes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -67,14 +68,17 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
 
     for (size_t k = 0; k < met.count; ++k) {
         const Path& path = s.path[met.which[k]];
-        samples[path.lane].surface += path.through * met.points[k].alpha * radiance[k];
+        if (is_matte(tracer.snapshot, met.points[k].instance))
+            samples[path.lane].held += path.through * met.points[k].alpha;
+        else
+            samples[path.lane].surface += path.through * met.points[k].alpha * radiance[k];
     }
 }
 
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
     result.background +=
         path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
-    result.alpha = 1 - path.through;
+    result.alpha = 1 - path.through - result.held;
 }
 }
 
@@ -111,6 +115,7 @@ void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int
     const size_t part_count = parts.size() / pixels.size();
     for (size_t i = 0; i < pixels.size(); ++i) {
         PixelSample& result = samples[i];
+        if (tracer.covered) result.alpha = 1 - result.held;
         if (!tracer.view.background) result.background = vec3(0);
         result.surface *= result.weight, result.background *= result.weight, result.inscatter *= result.weight;
         for (vec3& part : parts.subspan(i * part_count, part_count)) part *= result.weight;

@@ -13,6 +13,7 @@ struct PixelSample {
     vec3 surface{0}, background{0}, inscatter{0}; // what makes up its colour; times the weight
     float weight = 1;                             // of the sample in its pixel
     float alpha = 0, transmittance = 1, validity = 1;
+    float held = 0;         // share of the sample that mattes hold out
     float depth = infinity; // planar z of the first opaque surface
     float off_center = 0;   // squared distance of the ray from the pixel's centre, pixels
     int steps = 0;
@@ -29,6 +30,7 @@ struct FrameTracer {
     Surfaces surfaces;                        // shared or own: who shades them
     int light_points;                         // of a soft light, for shared surfaces
     std::span<const LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+    bool covered = false; // whether alpha counts a background that mattes hold out in part (else see cover_background)
 };
 
 // Traces sample `sample` of up to 16 pixels. `parts` is empty or receives pixels × part_count(lights).

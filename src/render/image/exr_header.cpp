@@ -98,6 +98,7 @@ Imf::Header make_exr_header(const ExrWindow& window, const Provenance& provenanc
     const Imath::M44f to_camera = world_to_camera(camera);
     Imf::addWorldToCamera(header, to_camera);
     Imf::addWorldToNDC(header, to_camera * camera_to_ndc(camera, window.display));
+    if (camera.lens && std::isfinite(camera.lens.focus)) Imf::addFocus(header, camera.lens.focus);
     for (const auto& [name, text] : provenance.attributes) header.insert(name, Imf::StringAttribute(text));
     return header;
 }

@@ -47,10 +47,14 @@ std::string light_text(const Scene& scene, double seconds) {
     return text;
 }
 
+std::string lens_text(const Lens& lens) {
+    return number(lens.radius) + " " + number(lens.focus) + " " + std::to_string(lens.blades) + " " + number(lens.turn);
+}
+
 std::string camera_text(const Camera& camera) {
     return numbers(camera.position) + " " + numbers(camera.right) + " " + numbers(camera.up) + " " +
            number(camera.vertical_fov) + " " + number(camera.ortho_height) + " " + number(camera.near) + " " +
-           number(camera.far);
+           number(camera.far) + (camera.lens ? " lens " + lens_text(camera.lens) : "");
 }
 
 std::string settings_text(const Settings& settings) {

@@ -1,6 +1,8 @@
-// The cameras of a scene file, and which one is the default.
+// The cameras of a scene file, lenses on those of the glTF, and which one is the default.
 #include "base/text.h"
 #include "scene/file/scene_file.h"
+
+#include <array>
 
 namespace tyndall {
 namespace {
@@ -11,8 +13,26 @@ void check_aim(const CameraSource& camera, const Field& field) {
         if (up == vec3(0)) refuse(field.member("up"), "has no direction: its length is 0");
 }
 
+// The lens around the pinhole: fields that a camera of the glTF may be given too.
+void read_lens(const Field& field, CameraSource& camera) {
+    const Field aperture = field.member("aperture_radius"), focus = field.member("focus_distance");
+    const Field blades = field.member("aperture_blades"), turn = field.member("blade_rotation");
+    for (const Field& given : {focus, blades, turn})
+        if (given && !aperture) refuse(given, "says nothing without aperture_radius");
+    if (turn && !blades) refuse(turn, "says nothing without aperture_blades");
+    if (!aperture) return;
+    if (camera.ortho_height > 0) refuse(aperture, "is for perspective cameras: this one is orthographic");
+    if (!focus && camera.node >= 0) refuse(field, "needs focus_distance: a camera of the glTF has no target");
+    camera.aperture = keyed_number(aperture);
+    if (focus) camera.focus = keyed_number(focus);
+    if (blades) camera.blades = static_cast<int>(read_number(blades));
+    if (turn) camera.blade_turn = keyed_degrees(turn);
+}
+
 CameraSource camera_source(const Field& field, std::string_view default_name, dvec3 origin) {
     CameraSource camera;
+    for (const char* key : {"position", "target"})
+        if (!field.member(key)) refuse(field, "missing key " + quote_json(key));
     camera.name = field.json->string_or("name", default_name);
     camera.entry = field.pointer;
     camera.position = keyed_place(field.member("position"), origin);
@@ -30,6 +50,7 @@ CameraSource camera_source(const Field& field, std::string_view default_name, dv
         camera.far = read_number(far);
         if (camera.far <= camera.near) refuse(far, "must be greater than near");
     }
+    read_lens(field, camera);
     return camera;
 }
 
@@ -43,6 +64,18 @@ int index_of(const Scene& scene, std::string_view name) {
     const std::vector<std::string> names = camera_names(scene);
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
+}
+
+// The camera of the glTF that an entry puts a lens on: it has that name, and the entry says nothing else.
+CameraSource* under_lens(const Field& field, Scene& scene) {
+    const int known = index_of(scene, field.json->string_or("name", ""));
+    if (known < 0 || scene.cameras[static_cast<size_t>(known)].node < 0) return nullptr;
+    const auto of_lens = [](const auto& member) {
+        return std::ranges::count(
+                   std::array{"name", "aperture_radius", "focus_distance", "aperture_blades", "blade_rotation"},
+                   member.first) > 0;
+    };
+    return std::ranges::all_of(field.json->members, of_lens) ? &scene.cameras[static_cast<size_t>(known)] : nullptr;
 }
 
 void add(const CameraSource& camera, const Field& field, Scene& scene) {
@@ -59,13 +92,21 @@ void read_cameras(const Field& root, Scene& scene) {
         for (size_t i = 0; i < cameras.json->items.size(); ++i) {
             const Field field = cameras.item(i);
             if (!field.member("name")) refuse(field, "a camera in a list needs a name");
-            add(camera_source(field, "", scene.origin), field, scene);
+            if (CameraSource* known = under_lens(field, scene))
+                read_lens(field, *known);
+            else
+                add(camera_source(field, "", scene.origin), field, scene);
         }
     if (static_cast<int>(scene.cameras.size()) > first_here) scene.camera = first_here;
 
     const Field chosen = root.member("camera");
     if (!chosen) return;
     if (chosen.json->kind == Json::Kind::object) {
+        if (CameraSource* known = under_lens(chosen, scene)) {
+            read_lens(chosen, *known);
+            scene.camera = static_cast<int>(known - scene.cameras.data());
+            return;
+        }
         add(camera_source(chosen, "camera", scene.origin), chosen, scene);
         scene.camera = static_cast<int>(scene.cameras.size()) - 1;
         return;

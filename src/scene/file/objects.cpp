@@ -1,4 +1,5 @@
-// Objects of the glTF as a scene file names them: which of them cast shadows, and the links of lights to them.
+// Objects of the glTF as a scene file names them: which of them cast shadows or hold out, and the links of lights to
+// them.
 #include "base/text.h"
 #include "scene/file/scene_file.h"
 
@@ -61,9 +62,11 @@ void read_objects(const Field& root, Scene& scene) {
         const Field object = objects.item(i), name = object.member("name");
         if (std::ranges::count(known, name.json->string)) refuse(name, "another object has this name already");
         known.push_back(name.json->string);
-        for (const int instance : instances_of(name, scene))
-            scene.instances[static_cast<size_t>(instance)].casts_shadows =
-                object.json->boolean_or("casts_shadows", true);
+        for (const int index : instances_of(name, scene)) {
+            Instance& instance = scene.instances[static_cast<size_t>(index)];
+            if (object.member("casts_shadows")) instance.casts_shadows = object.json->boolean_or("casts_shadows", true);
+            if (object.member("matte")) instance.matte = object.json->boolean_or("matte", false);
+        }
     }
 }
 

@@ -14,13 +14,17 @@ struct Sight {
     double size;
 };
 
-// The entry that read_cameras() makes the default camera; empty when that is one of the glTF's.
+bool is_placed(const Field& camera) { return camera.member("position") && camera.member("target"); }
+
+// The entry that read_cameras() makes the default camera; empty when that is one of the glTF's, with a lens or without.
 Field camera_field(const Field& root) {
     if (!root) return {};
     const Field chosen = root.member("camera"), cameras = root.member("cameras");
-    if (chosen && chosen.json->kind == Json::Kind::object) return chosen;
+    if (chosen && chosen.json->kind == Json::Kind::object) return is_placed(chosen) ? chosen : Field{};
     for (size_t i = 0; cameras && i < cameras.json->items.size(); ++i)
-        if (!chosen || cameras.item(i).json->string_or("name", "") == chosen.json->string) return cameras.item(i);
+        if (is_placed(cameras.item(i)) &&
+            (!chosen || cameras.item(i).json->string_or("name", "") == chosen.json->string))
+            return cameras.item(i);
     return {};
 }
 
@@ -34,9 +38,9 @@ std::optional<Sight> sight_of(const Field& root, const Scene& scene) {
     if (bounds.empty()) return {};
     const double size = glm::length(dvec3(bounds.size()));
     const Field chosen = root ? root.member("camera") : Field{};
+    const std::string name = chosen ? chosen.json->string_or("name", chosen.json->string) : "";
     for (const CameraSource& camera : scene.cameras)
-        if (!chosen || camera.name == chosen.json->string)
-            return Sight{dvec3(world_matrix(scene, camera.node, 0)[3]), size};
+        if (!chosen || camera.name == name) return Sight{dvec3(world_matrix(scene, camera.node, 0)[3]), size};
     return Sight{dvec3(bounds.center()), size};
 }
 }

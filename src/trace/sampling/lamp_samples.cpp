@@ -88,6 +88,10 @@ std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
         if (!at) continue;
         const vec3 rim = light.position + light.radius * view.camera.right;
         View::Lamp lamp{*at, glm::distance(*at, pixel_of(view.camera, view.size, rim).value_or(*at))};
+        if (view.camera.lens) { // it is as wide as its blur
+            const float depth = glm::dot(light.position - view.camera.position, view.camera.forward);
+            lamp.radius += 0.5f * blur_diameter(view.camera, view.size, depth);
+        }
         set_beam(view, light, lamp);
         lamps.push_back(lamp);
     }

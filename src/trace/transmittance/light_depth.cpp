@@ -10,6 +10,7 @@
 #include "trace/frame_cache.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
+#include "trace/view.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -87,7 +88,7 @@ LightDepthGrid cached_grid(const Snapshot& snapshot, std::span<const Medium* con
 
 LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightTransmittance method, int resolution,
                             const View* view, bool filled) {
-    if (method == LightTransmittance::froxel && !view) method = LightTransmittance::grid;
+    if (method == LightTransmittance::froxel && (!view || view->camera.lens)) method = LightTransmittance::grid;
     LightDepth depth;
     depth.method = method;
     depth.light = light;

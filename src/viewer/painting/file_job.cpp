@@ -29,6 +29,8 @@ std::string add_camera(Scene& scene, const Viewpoint& view) {
     source.position = {camera.position}, source.target = {view.target()}, source.up = {camera.up};
     source.vertical_fov = {camera.vertical_fov}, source.ortho_height = camera.ortho_height;
     source.near = camera.near, source.far = camera.far;
+    source.aperture = {camera.lens.radius}, source.focus = {camera.lens.focus};
+    source.blades = camera.lens.blades, source.blade_turn = {camera.lens.turn};
     scene.cameras.push_back(source);
     return source.name;
 }

@@ -19,6 +19,7 @@ std::string bits_of(const Camera& camera) {
     CacheKey key;
     key.add(camera.position).add(camera.right).add(camera.up).add(camera.forward);
     key.add(camera.vertical_fov).add(camera.ortho_height).add(camera.near).add(camera.far);
+    if (const Lens& lens = camera.lens) key.add(lens.radius).add(lens.focus).add(lens.blades).add(lens.turn);
     return key.bits;
 }
 

@@ -92,11 +92,21 @@ Viewpoint viewpoint(const ViewState& state) {
     return viewpoint_of(scene, find_camera(scene, state.camera), seconds_of(state));
 }
 
+namespace {
+std::string lens_json(const Lens& lens) {
+    if (!lens) return {};
+    const std::string blades =
+        formatted(", \"aperture_blades\": %d, \"blade_rotation\": %.4g", lens.blades, glm::degrees(lens.turn));
+    return formatted(", \"aperture_radius\": %.4g, \"focus_distance\": %.5g", lens.radius, lens.focus) +
+           (lens.blades ? blades : "");
+}
+}
+
 std::string camera_json(const Viewpoint& view) {
     const Camera& camera = view.camera;
     const auto vector = [](vec3 v) { return formatted("[%.5g, %.5g, %.5g]", v.x, v.y, v.z); };
     return "{\"name\": \"view\", \"position\": " + vector(camera.position) + ", \"target\": " + vector(view.target()) +
-           formatted(", \"vertical_fov\": %.4g}", glm::degrees(camera.vertical_fov));
+           formatted(", \"vertical_fov\": %.4g", glm::degrees(camera.vertical_fov)) + lens_json(camera.lens) + "}";
 }
 
 void advance(ViewState& state, double now, uint64_t shown_revision) {

@@ -53,6 +53,17 @@ TEST(Objects, FlagsReachAllBelowANodeOrAMesh) {
               (Flags{false, true, true}));
 }
 
+TEST(Objects, MattesAndShadowsAreApart) {
+    const Scratch folder;
+    put_room(folder);
+    const Scene scene =
+        loaded(folder, R"(}], "objects": [{"name": "Lamp", "matte": true}, {"name": "Cap", "casts_shadows": false}])");
+    Flags mattes;
+    for (const Instance& instance : scene.instances) mattes.push_back(instance.matte);
+    EXPECT_EQ(mattes, (Flags{true, true, false}));
+    EXPECT_EQ(casting(scene), (Flags{true, false, true}));
+}
+
 TEST(Objects, LinksOfLights) {
     const Scratch folder;
     put_room(folder);

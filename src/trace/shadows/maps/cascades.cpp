@@ -65,6 +65,12 @@ Across across(const ShadowMap& map, const View& view, double near, double far) {
                 at[axis] = glm::dot(row(map, axis), start) + (along == 0 ? 0 : along * depth);
             }
             result.grow(at);
+            if (!camera.lens) continue;
+            const double aside = static_cast<double>(lens_reach(camera.lens, static_cast<float>(depth)));
+            for (const double sign : {-1.0, 1.0}) {
+                const double beside[2] = {at[0] + sign * aside, at[1] + sign * aside};
+                result.grow(beside);
+            }
         }
     }
     return result;

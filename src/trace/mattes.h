@@ -1,0 +1,16 @@
+// Objects that hold out: where the camera sees one there is neither colour nor alpha. Light treats them as any other.
+#pragma once
+#include "scene/scene.h"
+#include "trace/snapshot.h"
+
+#include <algorithm>
+
+namespace tyndall {
+inline bool has_mattes(const Snapshot& snapshot) {
+    return snapshot.scene && std::ranges::any_of(snapshot.scene->instances, &Instance::matte);
+}
+
+inline bool is_matte(const Snapshot& snapshot, int instance) {
+    return snapshot.scene && snapshot.scene->instances[static_cast<size_t>(instance)].matte;
+}
+}
