@@ -1,6 +1,6 @@
 #include "integrate/style.h"
 #include "scene/light.h"
-#include "trace/snapshot.h"
+#include "trace/environment.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
@@ -42,6 +42,11 @@ Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
     drop_clear(result.media);
     for (Light& light : result.lights) light.intensity *= style.tint;
     result.ambient *= style.tint;
+    if (result.environment && style.tint != vec3(1)) {
+        auto tinted = std::make_shared<Environment>(*result.environment);
+        tinted->scale *= style.tint;
+        result.environment = tinted;
+    }
     return result;
 }
 

@@ -1,7 +1,7 @@
 #include "integrate/terms.h"
 
 #include "integrate/style.h"
-#include "trace/snapshot.h"
+#include "trace/environment.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -12,7 +12,13 @@ Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
         if (!terms.phase) medium.optics.phase = {PhaseKind::isotropic};
         if (!terms.emission) medium.optics.emission.radiance = vec3(0);
     }
-    if (!terms.ambient) snapshot.ambient = vec3(0);
+    if (!terms.ambient) snapshot.ambient = vec3(0), snapshot.environment = nullptr;
+    return snapshot;
+}
+
+Snapshot with_mean_environment(Snapshot snapshot) {
+    if (!snapshot.environment) return snapshot;
+    snapshot.ambient += snapshot.environment->mean() * snapshot.environment->volume_scale;
     return snapshot;
 }
 }

@@ -9,7 +9,7 @@ struct TermSettings {
     bool phase = true;         // off: isotropic
     bool heterogeneity = true; // off: bricks at their mean density
     bool emission = true;
-    bool ambient = true;
+    bool ambient = true; // with the environment's light
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids
     int light_points = 1;      // of a soft light, asked for shadows at once
@@ -17,6 +17,9 @@ struct TermSettings {
 
 // The snapshot without the terms of fog that are off.
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms);
+
+// The snapshot with the environment's mean as ambient light besides, for what knows of no other.
+Snapshot with_mean_environment(Snapshot snapshot);
 
 // How light that nothing looks up before the camera is dimmed: grids before the lights instead.
 inline LightTransmittance without_froxels(LightTransmittance light) {

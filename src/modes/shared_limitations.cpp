@@ -2,6 +2,7 @@
 
 #include "modes/settings.h"
 #include "scene/light.h"
+#include "trace/environment.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -54,6 +55,13 @@ void add_table(const Medium& medium, Limitations& limitations) {
                            {ratio}});
 }
 
+bool scatters(const Medium& medium) { return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0; }
+
+// Luminance of the environment's light in fog, where there is some to light; else 0.
+double nits_in_fog(const Snapshot& snapshot) {
+    if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters)) return 0;
+    return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
+}
 void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) {
     if (max_component(snapshot.ambient) > 0)
         limitations.push_back({Severity::info, &limitation::unshadowed_ambient, Subject::scene});
@@ -144,7 +152,7 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     add_float_precision(view, snapshot, limitations);
     const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));
-    if (snapshot.lights.empty() || fog.empty()) return;
+    if (!has_sources(snapshot) || fog.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
     const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0,
                          Severity severity = Severity::info) {
@@ -197,10 +205,7 @@ bool has_emission(const Medium& medium) {
 
 // Whether there is something that light could fall on.
 bool can_be_lit(const Snapshot& snapshot) {
-    return (snapshot.occluders && !snapshot.occluders->empty()) ||
-           std::ranges::any_of(snapshot.media, [](const Medium& medium) {
-               return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0;
-           });
+    return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters);
 }
 }
 
@@ -216,6 +221,22 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
             add(limitation::out_of_gamut, {100 * static_cast<double>(field->out_of_gamut), lowest_in_gamut()});
         if (lights_nothing) add(limitation::unscattered_emission, {lumens_of(medium)});
     }
+}
+
+void add_mean_environment(const Snapshot& snapshot, Limitations& limitations) {
+    const double nits = nits_in_fog(snapshot);
+    if (!(nits > 0)) return;
+    limitations.push_back({Severity::degraded,
+                           &limitation::mean_environment,
+                           Subject::light,
+                           snapshot.environment->name,
+                           {100 * snapshot.environment->table->uneven, nits}});
+}
+
+void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations) {
+    if (const double nits = nits_in_fog(snapshot); nits > 0)
+        limitations.push_back(
+            {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
 }
 
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {

@@ -17,6 +17,11 @@ inline constexpr LimitationKind float_precision{
     "float_precision", "float precision at this distance from the origin is {} m: edges and shadows are no finer"};
 inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
                                                    "ambient light is not shadowed by surfaces or fog"};
+inline constexpr LimitationKind mean_environment{
+    "mean_environment", "in the fog its light is its mean from all around, shadowed by nothing: {}% of it comes from "
+                        "elsewhere, of {} nits"};
+inline constexpr LimitationKind environment_left_out{"environment_left_out",
+                                                     "its light in the fog is left out: {} nits from all around"};
 inline constexpr LimitationKind light_grid_cells{
     "light_grid_cells", "cells of the light grid are up to {} optical depths deep: light in dense parts is blurred"};
 inline constexpr LimitationKind long_steps{
@@ -87,6 +92,10 @@ void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
 // What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
+
+// Where the fog has the environment's light as its mean, or none of it.
+void add_mean_environment(const Snapshot& snapshot, Limitations& limitations);
+void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the light of fog is not drawn at all.
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);

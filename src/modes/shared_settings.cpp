@@ -46,8 +46,8 @@ void append_term_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(terms.heterogeneity)));
     rows.push_back(choice_row("terms.emission", switches, "light that fog gives off; in path, surfaces too",
                               TYNDALL_FIELD(terms.emission)));
-    rows.push_back(
-        choice_row("terms.ambient", switches, "the scene's ambient light in the fog", TYNDALL_FIELD(terms.ambient)));
+    rows.push_back(choice_row("terms.ambient", switches, "ambient light and that of the environment in the fog",
+                              TYNDALL_FIELD(terms.ambient)));
 }
 
 void set_term_quality(TermSettings& terms, Quality quality) {

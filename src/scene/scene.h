@@ -143,7 +143,17 @@ struct Background {
     std::shared_ptr<const Image<vec3>> image;     // image
     bool lat_long = false;                        // wrapped around the scene; else a plate behind the picture
     Keyed<float> intensity{1.0f};
-    float rotation = 0; // radians about Y, lat-long
+    Keyed<float> exposure{0.0f}; // stops
+    float rotation = 0;          // radians about Y, lat-long
+};
+
+// Light from all around.
+struct EnvironmentSource {
+    std::string name;
+    Background map;                               // its own, or that of the scene
+    Keyed<float> intensity{1.0f}, exposure{0.0f}; // factor on the map, and stops
+    Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};
+    bool shadows = true;
 };
 
 // A hand-placed beam card for the billboard technique.
@@ -180,6 +190,7 @@ struct Scene {
     Keyed<vec3> ambient{vec3(0)}; // uniform radiance from everywhere, unshadowed
     std::vector<MediumSource> media;
     Background background;
+    std::optional<EnvironmentSource> environment;
     std::vector<Billboard> billboards;
     std::vector<InputFile> inputs;     // every file read, for hashes and reloading
     std::vector<std::string> warnings; // one line each, said once

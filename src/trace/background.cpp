@@ -1,5 +1,6 @@
 // What is seen where there is no surface: a colour, a sky gradient or a picture.
 #include "base/image.h"
+#include "scene/scene.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {
@@ -18,12 +19,24 @@ vec3 sample_image(const Image<vec3>& image, vec2 uv, bool wrap) {
     const vec3 lower = glm::mix(image.at(x0, y1), image.at(x1, y1), share.x);
     return glm::mix(upper, lower, share.y);
 }
+}
 
-// The middle of the picture lies along -Z; `rotation` turns it to the left.
 vec2 lat_long_position(vec3 direction, float rotation) {
     const float turn = (std::atan2(direction.x, -direction.z) + rotation) / (2 * pi);
     return {0.5f + turn - std::floor(0.5f + turn), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / pi};
 }
+
+BackgroundNow background_at(const Background& background, double seconds) {
+    BackgroundNow now;
+    now.stated = background.stated;
+    now.kind = background.kind;
+    now.color = background.color.at(seconds);
+    now.zenith = background.zenith.at(seconds), now.ground = background.ground.at(seconds);
+    now.image = background.image;
+    now.lat_long = background.lat_long;
+    now.intensity = background.intensity.at(seconds) * std::exp2(background.exposure.at(seconds));
+    now.rotation = background.rotation;
+    return now;
 }
 
 bool has_background(const BackgroundNow& background) {

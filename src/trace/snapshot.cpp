@@ -6,6 +6,7 @@
 #include "scene/light.h"
 #include "scene/photometry/light_power.h"
 #include "scene/scene.h"
+#include "trace/environment.h"
 #include "trace/fog.h"
 #include "trace/frame_cache.h"
 #include "trace/light_filters.h"
@@ -59,18 +60,6 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
 bool shines(const Light& light) {
     return is_finite(light.intensity) && max_component(light.intensity) > 0 &&
            std::max(light.volume_scale, light.surface_scale) > 0;
-}
-
-BackgroundNow background_at(const Background& background, double seconds) {
-    BackgroundNow now;
-    now.stated = background.stated;
-    now.kind = background.kind;
-    now.color = background.color.at(seconds);
-    now.zenith = background.zenith.at(seconds), now.ground = background.ground.at(seconds);
-    now.image = background.image;
-    now.lat_long = background.lat_long;
-    now.intensity = background.intensity.at(seconds), now.rotation = background.rotation;
-    return now;
 }
 
 // A box that is finite in every direction; fog without bounds says nothing about where the scene is.
@@ -139,6 +128,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     }
     snapshot.ambient = scene.ambient.at(moment.seconds);
     snapshot.background = background_at(scene.background, moment.seconds);
+    snapshot.environment = environment_at(scene, moment.seconds, previous ? previous->environment.get() : nullptr);
     add_media(scene, moment, previous, missing, snapshot);
 
     const double start = steady_seconds();

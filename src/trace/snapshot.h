@@ -11,7 +11,9 @@
 
 namespace tyndall {
 struct BrickPool;
+struct Background;
 struct CacheFolder;
+struct Environment;
 struct FrameCache;
 struct Light;
 struct Medium;
@@ -52,17 +54,18 @@ struct Snapshot {
     std::vector<Medium> media; // that dim light or emit it; of non-zero extinction
     vec3 ambient{0};
     BackgroundNow background;
-    std::shared_ptr<const Occluders> occluders; // of all surfaces
-    std::vector<CasterSet> casters;             // of lights that some surfaces alone shadow
-    std::vector<std::vector<bool>> lit;         // instances, of lights that shine on some alone
-    vec3 anchor{0};                             // the middle of the scene, the same in every frame
-    float extent = 10;                          // metres: how large it is, the same in every frame
-    Box bounds;                                 // of meshes, local lights and bounded media
-    std::vector<std::string> notes;             // what was mended in the files of this frame; say once
-    std::vector<FogSource> fog_sources;         // one per medium of the scene: what the next frame can use again
-    std::shared_ptr<FrameCache> cache;          // made for this frame so far; null in snapshots made by hand
-    std::shared_ptr<FrameCache> cache_before;   // for the frame before; null of the first
-    std::shared_ptr<CacheFolder> files;         // with things of a plan that was prepared; else null
+    std::shared_ptr<const Environment> environment; // light from all around; null = none
+    std::shared_ptr<const Occluders> occluders;     // of all surfaces
+    std::vector<CasterSet> casters;                 // of lights that some surfaces alone shadow
+    std::vector<std::vector<bool>> lit;             // instances, of lights that shine on some alone
+    vec3 anchor{0};                                 // the middle of the scene, the same in every frame
+    float extent = 10;                              // metres: how large it is, the same in every frame
+    Box bounds;                                     // of meshes, local lights and bounded media
+    std::vector<std::string> notes;                 // what was mended in the files of this frame; say once
+    std::vector<FogSource> fog_sources;             // one per medium of the scene: what the next frame can use again
+    std::shared_ptr<FrameCache> cache;              // made for this frame so far; null in snapshots made by hand
+    std::shared_ptr<FrameCache> cache_before;       // for the frame before; null of the first
+    std::shared_ptr<CacheFolder> files;             // with things of a plan that was prepared; else null
 
     // Not inline: who only holds a snapshot needs neither lights nor media.
     Snapshot();
@@ -88,6 +91,12 @@ bool is_lit(const Light& light, const Snapshot& snapshot, int instance);
 
 // Whether light gets through a surface that shadows one of the lights.
 bool has_alpha_shadows(const Snapshot& snapshot);
+
+BackgroundNow background_at(const Background& background, double seconds);
+
+// Where a direction lies on a map from the upper left, 0..1: its middle is -Z, and `rotation` (radians) turns it to the
+// left.
+vec2 lat_long_position(vec3 direction, float rotation);
 
 // Whether there is one: where the scene says nothing of it, it is black and nothing.
 bool has_background(const BackgroundNow& background);

@@ -1,5 +1,6 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
+#include "trace/environment_surface.h"
 #include "trace/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -95,5 +96,6 @@ void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths
             if (per_light) (*per_light)[i * lights + l] = added;
         }
     }
+    if (snapshot.environment) add_environment(snapshot, points, u, radiance);
 }
 }

@@ -11,8 +11,8 @@ struct Snapshot;
 struct SurfacePoint;
 
 // Radiance leaving each point towards the viewer. Up to 16 points; `u`, points × n pairs of numbers in [0,1), picks n
-// points on each soft light: n for the first point, then n for the next. per_light (optional) receives points × lights
-// radiances.
+// points on each soft light, and n directions of the environment: n for the first point, then n for the next. per_light
+// (optional) receives points × lights radiances.
 void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths, std::span<const SurfacePoint> points,
                     std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light = nullptr);
 }

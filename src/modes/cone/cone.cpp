@@ -119,7 +119,7 @@ float AnchoredFog::extinction() const {
 float filter_node_angle(const Light& light) { return whole_angle(light) / (8 * filter_pieces_of_ray); }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    Snapshot seen = with_terms(stylised(snapshot, settings.style), settings.terms);
+    Snapshot seen = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms));
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);

@@ -63,6 +63,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     add_single_scattering(view, snapshot, limitations);
     if (settings.of<ConeSettings>().resolution != Resolution::full)
         add_no_fog_picture(view, "cone.resolution", limitations);
+    add_mean_environment(snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) add_emission(snapshot, true, limitations);
     return limitations;

@@ -41,7 +41,7 @@ struct FroxelFrame {
 // The scene as the settings see it. Returns what rays find by themselves.
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
-    scene.snapshot = with_terms(stylised(snapshot, settings.style), terms);
+    scene.snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), terms));
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
     scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);

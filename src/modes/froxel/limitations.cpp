@@ -129,6 +129,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     if (snapshot.media.empty()) return limitations;
     add_fog_through_middle(view, snapshot, limitations);
+    add_mean_environment(snapshot, limitations);
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();
     const FroxelSize size = middle_froxel(view, snapshot, froxel);

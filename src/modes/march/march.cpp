@@ -1,5 +1,6 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
+#include "integrate/environment_light.h"
 #include "integrate/field_light.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
@@ -46,6 +47,8 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     const MarchSettings& march = settings.march;
     const bool intervals = march.visibility == Visibility::intervals, exact = march.visibility == Visibility::exact;
     fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
+    EnvironmentLight sky = environment_light(fog->snapshot, settings.style, settings.terms, view.camera,
+                                             march.visibility != Visibility::off, march.min_transmittance);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
@@ -60,12 +63,12 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         for (size_t i = 0; i < maps.size(); ++i) fog->shadows[i].map = maps[i];
     }
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    return with_field_light(std::move(fields),
-                            [fog, intervals, exact](const RayBatch& batch, std::span<Scatter> results) {
-                                if (intervals) return single_scattering_packet(*fog, batch, results);
-                                if (exact) return march_exact(*fog, batch, results);
-                                march_packet(*fog, batch, results);
-                            });
+    ScatterFunction scatter = [fog, intervals, exact](const RayBatch& batch, std::span<Scatter> results) {
+        if (intervals) return single_scattering_packet(*fog, batch, results);
+        if (exact) return march_exact(*fog, batch, results);
+        march_packet(*fog, batch, results);
+    };
+    return with_environment_light(std::move(sky), with_field_light(std::move(fields), std::move(scatter)));
 }
 
 Mode march_mode() {

@@ -2,6 +2,7 @@
 #include "modes/path/connect.h"
 
 #include "scene/light.h"
+#include "trace/environment.h"
 #include "trace/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
@@ -43,9 +44,8 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
         const vec3 arriving = c.light * passing;
         (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;
         if (!c.in_fog || batch.parts.empty()) continue;
-        const bool glowing = c.light_index < 0;
-        batch.part(c.lane, glowing ? batch.index_of(OtherLight::emission) : static_cast<size_t>(c.light_index)) +=
-            arriving;
+        const bool other = c.light_index < 0;
+        batch.part(c.lane, other ? batch.index_of(c.other) : static_cast<size_t>(c.light_index)) += arriving;
     }
 }
 }
@@ -98,6 +98,15 @@ Connection connection_to_fire(vec3 point, const EmissivePlace& target) {
     c.point = point;
     c.to_light = c.shadow = offset / distance;
     c.fog_length = c.shadow_length = distance;
+    return c;
+}
+
+Connection connection_to_sky(const Environment& environment, vec3 point, vec3 direction) {
+    Connection c;
+    c.point = point;
+    c.to_light = c.shadow = direction;
+    c.fog_length = c.shadow_length = infinity;
+    c.shadows = environment.shadows, c.other = OtherLight::ambient;
     return c;
 }
 

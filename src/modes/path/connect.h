@@ -15,9 +15,10 @@ struct Connection {
     float shadow_length = 0;
     bool shadows = true;
     vec3 light{0};        // what reaches the eye if nothing is in the way
-    int light_index = -1; // of the snapshot; -1 = a glowing surface or fog
-    size_t lane = 0;      // of the batch
-    bool in_fog = false;  // the path's first event was in fog
+    int light_index = -1; // of the snapshot; -1 = none of its lights, but the next
+    OtherLight other = OtherLight::emission;
+    size_t lane = 0;     // of the batch
+    bool in_fog = false; // the path's first event was in fog
     RandomStream random;
 };
 
@@ -29,6 +30,9 @@ Connection connection_to_glow(vec3 point, const EmissivePoint& target);
 
 // From a point to a place in glowing fog.
 Connection connection_to_fire(vec3 point, const EmissivePlace& target);
+
+// From a point to where the environment's light comes from.
+Connection connection_to_sky(const Environment& environment, vec3 point, vec3 direction);
 
 // Share of light that surfaces let through, of up to 16 connections; 1 for dark ones and lights without shadows.
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility);

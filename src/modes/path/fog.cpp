@@ -206,6 +206,38 @@ float gather_on_the_way(const Walk& walk, Segment& line) {
     return before * passing({candidate.distance, line.end});
 }
 
+// Light from all around that a medium scatters at a point of the line, per metre of it times `weight`.
+void gather_sky_by(const Walk& walk, Segment& line, const FogPoint& fog, size_t medium, float weight) {
+    const Snapshot& snapshot = walk.snapshot;
+    const Optics& optics = snapshot.media[medium].optics;
+    const vec3 scattered = fog.albedo_of(optics, medium) * (fog.extinction[medium] * weight);
+    const auto cosine = [&](vec3 direction) { return glm::dot(direction, line.rest.direction); };
+    gather_sky(
+        walk, line, fog.position, vec3(0), snapshot.environment->volume_scale, walk.order == 0 || line.walker.in_fog,
+        [&](vec3 direction) { return scattered * phase_value(optics.phase, cosine(direction)); },
+        [&](vec3 direction) { return fog.density(snapshot, cosine(direction)); });
+}
+
+// Of thin fog at one distance of each medium's range; thicker fog asks where paths collide with it.
+void gather_sky_on_the_way(const Walk& walk, Segment& line) {
+    if (!walk.turns) return;
+    FogPoint& fog = walk.scratch.fog;
+    for (size_t m = 0; m < walk.snapshot.media.size() && line.through > 0; ++m) {
+        const Interval<float> range = thin_range(line, walk.snapshot.media[m]);
+        if (range.empty()) continue;
+        const float distance = range.low + line.numbers(use_sky_distance).x * range.length();
+        look_at_fog(walk.snapshot, line.rest.at(distance), fog, walk.results[line.walker.lane].steps);
+        if (!(fog.extinction[m] > 0)) continue;
+        gather_sky_by(walk, line, fog, m, range.length() * line.through * passing_share(walk, line, {0, distance}));
+    }
+}
+
+void gather_sky_at_collision(const Walk& walk, Segment& line, const FogPoint& fog) {
+    for (size_t m = 0; m < walk.snapshot.media.size(); ++m)
+        if (fog.extinction[m] > 0 && thin_range(line, walk.snapshot.media[m]).empty())
+            gather_sky_by(walk, line, fog, m, 1 / fog.total);
+}
+
 // Light that reaches the point of a collision, straight from lights and glowing surfaces.
 void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
     const Snapshot& snapshot = walk.snapshot;
@@ -229,6 +261,7 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
         if (chance > 0)
             queue(walk, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
     }
+    if (snapshot.environment) gather_sky_at_collision(walk, line, fog);
     if (walk.tracer.glow.empty()) return;
     const EmissivePoint target =
         pick_glow_point(walk.tracer.glow, snapshot, line.numbers(use_light).y, line.numbers(use_glow));
@@ -266,12 +299,15 @@ void collide(const Walk& walk, Segment& line) {
     gather_at_collision(walk, line, nearest, fog);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
-    scatter(walk, line, {fog.position, direction}, fog.albedo_of(optics, static_cast<size_t>(hit)), density, in_fog);
+    const float sky_scale = walk.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
+    scatter(walk, line, {fog.position, direction}, fog.albedo_of(optics, static_cast<size_t>(hit)), density, sky_scale,
+            in_fog);
 }
 }
 
 void follow_fog(const Walk& walk, Segment& line) {
     gather_emission(walk, line);
+    if (walk.snapshot.environment) gather_sky_on_the_way(walk, line);
     const float passing = gather_on_the_way(walk, line);
     if (line.walking) collide(walk, line);
     line.through *= passing;

@@ -7,19 +7,26 @@
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
+#include "trace/environment.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 
 namespace tyndall {
 namespace {
 bool has_emission(const PathTracer& tracer) {
-    if (max_component(tracer.snapshot.ambient) > 0 || !tracer.fields.empty()) return true;
+    if (max_component(tracer.snapshot.ambient) > 0 || tracer.finds_sky || !tracer.fields.empty()) return true;
     for (const Medium& medium : tracer.snapshot.media)
         if (max_component(medium.optics.emission.radiance) > 0) return true;
     if (tracer.surfaces_emit && tracer.snapshot.scene)
         for (const Material& material : tracer.snapshot.scene->materials)
             if (max_component(material.emission) > 0) return true;
     return false;
+}
+
+// Whether light from all around is the same on a shadow ray and on a line that leaves the scene.
+bool finds_sky(const Snapshot& snapshot) {
+    return snapshot.environment && snapshot.environment->shadows &&
+           (!snapshot.scene || std::ranges::all_of(snapshot.scene->instances, &Instance::casts_shadows));
 }
 }
 
@@ -31,6 +38,7 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     if (tracer->surfaces_emit) tracer->glow = make_emissive_triangles(tracer->snapshot);
     tracer->fields = take_fields(tracer->snapshot, settings.style, view.camera).fields;
     tracer->fire = make_emissive_bricks(tracer->fields);
+    tracer->finds_sky = finds_sky(tracer->snapshot);
     tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }

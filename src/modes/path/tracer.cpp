@@ -52,6 +52,12 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         if (cosine > 0 && chance > 0)
             queue(walk, line, connection, reflected * target.emission * (cosine / chance), line.walker.in_fog);
     }
+    if (walk.snapshot.environment)
+        gather_sky(
+            walk, line, surface.position, surface.face_normal, walk.snapshot.environment->surface_scale,
+            line.walker.in_fog,
+            [&](vec3 direction) { return reflected * std::max(glm::dot(surface.normal, direction), 0.0f); },
+            [&](vec3 direction) { return std::max(glm::dot(surface.normal, direction), 0.0f) / pi; });
     if (walk.tracer.glow.empty()) return;
     const EmissivePoint target = pick_glow_point(walk.tracer.glow, walk.snapshot, line.numbers(use_surface_light).y,
                                                  line.numbers(use_surface_glow));
@@ -75,7 +81,18 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
         glm::normalize(across * std::cos(turned) * x + across * std::sin(turned) * y + cosine * surface.normal);
     const float side = glm::dot(surface.face_normal, direction) < 0 ? -1.0f : 1.0f;
     const vec3 origin = surface.position + surface.face_normal * (side * shadow_offset(surface.position));
-    scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, line.walker.in_fog);
+    const float sky_scale = walk.tracer.finds_sky ? walk.snapshot.environment->surface_scale : 0;
+    scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, sky_scale, line.walker.in_fog);
+}
+
+// Ambient light, and the environment's share of what was not found by aiming at it (balance heuristic).
+vec3 surroundings(const Walk& walk, const Segment& line) {
+    const PathVertex& from = line.walker;
+    if (!(from.sky_scale > 0)) return walk.snapshot.ambient;
+    const Environment& environment = *walk.snapshot.environment;
+    const float aimed = environment_density(environment, from.ray.direction);
+    const float weight = from.sky_scale * from.density / (from.density + aimed);
+    return walk.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
 }
 
 // Nothing more is met: the background for the eye, the surroundings for everything else.
@@ -86,7 +103,7 @@ void leave(const Walk& walk, Segment& line) {
             background_radiance(walk.snapshot.background, line.walker.ray.direction,
                                 screen_position(walk.tracer, line.walker.ray));
     else
-        add_light(walk, line, walk.snapshot.ambient * line.through, OtherLight::ambient, line.walker.in_fog);
+        add_light(walk, line, surroundings(walk, line) * line.through, OtherLight::ambient, line.walker.in_fog);
     line.walking = false, line.through = 0;
 }
 
@@ -164,10 +181,10 @@ void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, b
     if (max_component(connection.light) > 0) walk.scratch.connections.push_back(connection);
 }
 
-void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, bool in_fog) {
+void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, float sky_scale, bool in_fog) {
     const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !walk.tracer.has_emission;
     PathVertex next = line.walker;
-    next.ray = ray, next.skip = 0, next.density = density, next.in_fog = in_fog;
+    next.ray = ray, next.skip = 0, next.density = density, next.sky_scale = sky_scale, next.in_fog = in_fog;
     next.throughput *= share;
     const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;

@@ -23,6 +23,7 @@ struct PathTracer {
     EmissiveTriangles glow;
     std::vector<Medium> fields; // media that only emit; not in the snapshot
     EmissiveBricks fire;        // their light, which paths aim at
+    bool finds_sky = false;     // the environment by lines that leave the scene, too; else by aiming at it alone
     bool has_emission = false;  // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "modes/path/connect.h"
 #include "modes/path/lights.h"
+#include "trace/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
@@ -25,7 +26,9 @@ enum Use : uint32_t {
     use_bounce,
     use_emission,
     use_fire,
-    use_in_fire
+    use_in_fire,
+    use_sky,
+    use_sky_distance
 };
 
 // The end of a path: where its next line starts and what it carries.
@@ -35,6 +38,7 @@ struct PathVertex {
     float skip = 0;      // surfaces nearer than this are not met
     vec3 throughput{1};  // share of light that comes down the path
     float density = 0;   // chance per steradian of the line's direction; 0 at the eye
+    float sky_scale = 0; // of the environment's light on what the line started from; 0 = it does not look for it
     bool in_fog = false; // the path's first event was in fog
     SamplePlace place{0, 0};
     uint32_t id = 0;
@@ -116,9 +120,22 @@ void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, b
 // A place in glowing fog to aim at from the line.
 EmissivePlace pick_fire(const Walk& walk, const Segment& line);
 
+// Light from all around by one picked direction, onto a point that scatters `share(direction)`, 1/sr, into the line,
+// and picks directions itself with chances of `density(direction)`, 1/sr.
+template<class Share, class Density>
+void gather_sky(const Walk& walk, Segment& line, vec3 point, vec3 face_normal, float scale, bool in_fog,
+                const Share& share, const Density& density) {
+    const EnvironmentSample sky = sample_environment(*walk.snapshot.environment, line.numbers(use_sky));
+    const float own = walk.tracer.finds_sky ? density(sky.direction) : 0;
+    if (!(sky.density > 0)) return;
+    Connection connection = connection_to_sky(*walk.snapshot.environment, point, sky.direction);
+    connection.face_normal = face_normal;
+    queue(walk, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
+}
+
 // Starts the walker's next line with a share of what this one carries, unless roulette ends the path. `density`: chance
-// per steradian of the direction.
-void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, bool in_fog);
+// per steradian of the direction; `sky_scale`: of the environment's light there.
+void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, float sky_scale, bool in_fog);
 
 // Light scattered by the fog of the current stretch, from lights; then whether the path collides there and turns.
 void follow_fog(const Walk& walk, Segment& line);

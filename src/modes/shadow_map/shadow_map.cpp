@@ -32,7 +32,7 @@ float fog_detail(std::span<const Medium> media) {
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
-    march->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms);
+    march->snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms));
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);

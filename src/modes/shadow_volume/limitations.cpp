@@ -30,7 +30,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
         add_mean_albedo(snapshot, limitations);
     }
     if (settings.terms.emission) add_emission(snapshot, true, limitations);
-    add_single_scattering(view, snapshot, limitations);
+    add_single_scattering(view, snapshot, limitations), add_mean_environment(snapshot, limitations);
 }
 
 void add_shadows(const Snapshot& snapshot, Limitations& limitations) {

@@ -24,7 +24,8 @@ float half_diagonal(const Box& scene) {
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
-    frame->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), frame->style = settings.style;
+    frame->snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)),
+    frame->style = settings.style;
     FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);
     frame->nodes = own.nodes, frame->steps = own.steps;
     if (own.draw == ShadowDraw::shells)

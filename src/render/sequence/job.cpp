@@ -94,7 +94,7 @@ std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan
         std::ranges::any_of(scene.materials, [](const Material& material) { return material.emission != vec3(0); });
     const bool fog_glows = std::ranges::any_of(scene.media, emits_light);
     const auto has = [&](std::string_view layer) {
-        if (layer == "ambient") return !scene.media.empty() && lit(scene.ambient);
+        if (layer == "ambient") return !scene.media.empty() && (scene.environment || lit(scene.ambient));
         if (layer == "emission") return fog_glows || (!scene.media.empty() && surfaces_glow);
         return layer != "multiple" || (plan.mode->adds_fluence && plan.settings.fluence.orders > 1);
     };

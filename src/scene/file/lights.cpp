@@ -25,6 +25,7 @@ void check_fields(const Field& field, const LightSource& light) {
     only("range", !kind.distant, "point lights and spots");
     only("radius", !kind.distant, "point lights and spots");
     only("angle", kind.distant, "suns");
+    for (const char* name : {"sky", "image", "rotation", "visible"}) only(name, false, "environments");
     if (const Field target = field.member("target"); target && field.member("direction"))
         refuse(target, "and direction exclude each other");
 }
@@ -113,6 +114,7 @@ void read_lights(const Field& root, Scene& scene) {
     const size_t of_gltf = scene.lights.size();
     for (size_t i = 0; i < lights.json->items.size(); ++i) {
         const Field field = lights.item(i);
+        if (is_environment(field)) continue;
         LightSource* known = field.member("name") ? find(scene, field.json->string_or("name", "")) : nullptr;
         if (known && known >= scene.lights.data() + of_gltf)
             refuse(field.member("name"), "another light has this name already");

@@ -51,8 +51,8 @@ bool is_dark(const Scene& scene) {
         return std::ranges::all_of(color.values, [](vec3 value) { return value == vec3(0); });
     };
     const Background& back = scene.background;
-    return scene.lights.empty() && black(scene.ambient) && !back.image && black(back.color) && black(back.zenith) &&
-           black(back.ground) && std::ranges::none_of(scene.media, emits_light) &&
+    return scene.lights.empty() && !scene.environment && black(scene.ambient) && !back.image && black(back.color) &&
+           black(back.zenith) && black(back.ground) && std::ranges::none_of(scene.media, emits_light) &&
            std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
 }
 
@@ -81,6 +81,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
     read_lights(root, scene);
     read_media(root, scene);
     read_background(root, scene);
+    read_environment(root, scene);
     read_billboards(root, scene);
     if (is_dark(scene)) warn(scene, root.file + ": there is no light: everything will be black");
     warn_of_endless_fog(scene);

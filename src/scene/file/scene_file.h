@@ -14,8 +14,13 @@ void read_lights(const Field& root, Scene& scene);  // after the glTF: entries m
 void read_phase(const Field& medium_field, MediumSource& medium, Scene& scene);
 
 void read_media(const Field& root, Scene& scene);
+// A color, a sky or a lat-long image.
+void read_map(const Field& field, Scene& scene, Background& map);
 void read_background(const Field& root, Scene& scene);
-void read_billboards(const Field& root, Scene& scene); // after the lights: each names one
+
+bool is_environment(const Field& light);                // of an entry among the lights
+void read_environment(const Field& root, Scene& scene); // after lights and background
+void read_billboards(const Field& root, Scene& scene);  // after the lights: each names one
 
 // The instances of an object: of a node and all below it, or else of a mesh; empty for names of neither.
 std::vector<int> instances_named(const Scene& scene, const std::string& name);

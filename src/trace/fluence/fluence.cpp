@@ -6,6 +6,7 @@
 #include "scene/light.h"
 #include "scene/light_filter.h"
 #include "scene/photometry/ies_profile.h"
+#include "trace/environment.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"
 #include "trace/fluence/walls.h"
@@ -175,6 +176,13 @@ void add_phase(const Phase& phase, CacheKey& key) {
     for (const float value : phase.shape->table.values) key.add(value);
 }
 
+void add_environment(const Environment& environment, CacheKey& key) {
+    const BackgroundNow& map = environment.map;
+    key.add(map.kind).add(map.color).add(map.zenith).add(map.ground).add(map.image).add(map.intensity);
+    key.add(map.rotation).add(environment.scale).add(environment.volume_scale).add(environment.surface_scale);
+    key.add(environment.shadows);
+}
+
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
     CacheKey key;
     key.add(seed);
@@ -185,6 +193,7 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
                   key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale));
         add_filter(light, key);
     }
+    if (snapshot.environment) add_environment(*snapshot.environment, key);
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
         key.add(medium.density.kind).add(grey_extinction(optics)).add(optics.albedo);
@@ -205,7 +214,7 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     LightPathRules rules;
     rules.reach = light_reach(snapshot);
     FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
-    if (grid.empty() || snapshot.lights.empty()) return {};
+    if (grid.empty() || !has_sources(snapshot)) return {};
     rules.reach.grow(grid.bounds); // cells at the rim are filled as others are
     rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
@@ -231,7 +240,7 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
 
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed) {
-    if (settings.orders < 2 || snapshot.media.empty() || snapshot.lights.empty()) return nullptr;
+    if (settings.orders < 2 || snapshot.media.empty() || !has_sources(snapshot)) return nullptr;
     const std::shared_ptr<const FluenceGrid> grid = cached(snapshot, "fluence", fluence_key(snapshot, settings, seed),
                                                            [&] { return make_fluence(snapshot, settings, seed); });
     return grid->empty() ? nullptr : grid;

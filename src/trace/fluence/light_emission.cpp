@@ -1,6 +1,7 @@
 #include "trace/fluence/light_emission.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
+#include "trace/environment.h"
 
 namespace tyndall {
 namespace {
@@ -45,7 +46,6 @@ void fit_directions(const Box& reach, LightSquare& square) {
     make_frame(axis, square.across, square.up);
     square.power = light.intensity * (2 * pi * (1 - cosine));
 }
-}
 
 LightSquare square_of(const Light& light, const Box& reach) {
     LightSquare square;
@@ -56,7 +56,34 @@ LightSquare square_of(const Light& light, const Box& reach) {
     return square;
 }
 
+LightSquare square_of(const std::shared_ptr<const Environment>& environment, const Box& reach) {
+    Light light;
+    light.name = environment->name, light.kind = LightKind::sun, light.shadows = environment->shadows;
+    light.volume_scale = environment->volume_scale, light.surface_scale = environment->surface_scale;
+    LightSquare square;
+    square.environment = environment, square.as_light = std::make_shared<const Light>(std::move(light));
+    square.light = square.as_light.get();
+    square.center = reach.center(), square.radius = 0.5f * glm::length(reach.size());
+    square.power = environment->mean() * (4 * pi * pi * square.radius * square.radius);
+    return square;
+}
+}
+
+std::vector<LightSquare> squares_of(const Snapshot& snapshot, const Box& reach) {
+    std::vector<LightSquare> squares;
+    for (const Light& light : snapshot.lights) squares.push_back(square_of(light, reach));
+    if (snapshot.environment) squares.push_back(square_of(snapshot.environment, reach));
+    return squares;
+}
+
 Ray LightSquare::ray(vec2 place, vec2 soft) const {
+    if (environment) {
+        const vec3 from = sample_environment(*environment, place).direction;
+        vec3 x, y;
+        make_frame(from, x, y);
+        const vec2 at = on_disc(soft);
+        return {center + radius * (from + at.x * x + at.y * y), -from};
+    }
     if (is_distant(*light)) {
         const vec2 at = low + place * (high - low), disc = on_disc(soft) * std::tan(light->angle);
         const vec3 direction = light->angle > 0 ? glm::normalize(axis + disc.x * across + disc.y * up) : axis;
@@ -72,6 +99,12 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
 }
 
 vec3 LightSquare::share(vec3 direction) const {
+    if (environment) {
+        const float density = environment_density(*environment, -direction);
+        if (!(density > 0)) return vec3(0);
+        const vec3 mean = environment->mean();
+        return environment_radiance(*environment, -direction) / glm::max(mean, 1e-30f) / (4 * pi * density);
+    }
     vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
     if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));
     return share;

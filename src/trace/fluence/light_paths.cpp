@@ -83,7 +83,7 @@ void note(const Walk& walk, PathVertex& walker, float length) {
 
 // What the light's range leaves of light that comes straight from it.
 float ranged(const Walk& walk, const PathVertex& walker, vec3 point) {
-    const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
+    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
     return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
@@ -100,7 +100,7 @@ void turn(const Walk& walk, PathVertex& walker, Ray ray, vec3 share) {
 
 void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float distance) {
     const vec3 point = walker.ray.at(distance);
-    const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
+    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
     vec3 share = albedo_at(optics, point);
     if (walker.order == 0) share *= light.volume_scale * ranged(walk, walker, point);
     walk.result.first_scatterings += walker.order == 0;
@@ -112,7 +112,7 @@ void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float d
 // Lambert. Light that a surface does not cut off passes and is reflected as well, in half of the paths each; what does
 // not shine on a surface is not reflected.
 void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, float distance) {
-    const Light& light = walk.snapshot.lights[static_cast<size_t>(walker.light_index)];
+    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
     const bool lit = walker.order > 0 || is_lit(light, walk.snapshot, surface.instance);
     const bool through = walker.order == 0 && !shadows_light(light, walk.snapshot, surface.instance);
     const float reflecting = !through ? surface.alpha : lit ? 0.5f : 0.0f;
@@ -209,20 +209,21 @@ Box fog_bounds(const Snapshot& snapshot, const Box& reach) {
     return fog;
 }
 
+bool has_sources(const Snapshot& snapshot) { return !snapshot.lights.empty() || snapshot.environment; }
+
 RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
     RayStrata strata{side, {}};
     double sum = 0;
-    for (const Light& light : snapshot.lights)
+    for (const LightSquare& square : squares_of(snapshot, reach))
         for (int i = 0; i < side * side; ++i)
-            strata.cumulative.push_back(sum += luminance(square_of(light, reach).power) / (side * side));
+            strata.cumulative.push_back(sum += luminance(square.power) / (side * side));
     for (double& each : strata.cumulative) each /= sum;
     return strata;
 }
 
 void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
                        int64_t count, int64_t total, LightPathResult& result) {
-    std::vector<LightSquare> squares;
-    for (const Light& light : snapshot.lights) squares.push_back(square_of(light, rules.reach));
+    const std::vector<LightSquare> squares = squares_of(snapshot, rules.reach);
     const Walk walk{snapshot, strata, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
     PathVertex walkers[walkers_at_once];
     for (int64_t done = 0; done < count; done += walkers_at_once) {

@@ -32,6 +32,9 @@ struct RayStrata {
 // Chances in proportion to the power of the lights, spread evenly over their squares.
 RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side);
 
+// Whether the snapshot has light whose paths can be followed: lights or an environment.
+bool has_sources(const Snapshot& snapshot);
+
 // What a number of paths brought.
 struct LightPathResult {
     std::vector<Flight> flights;   // in the order of the paths

@@ -43,9 +43,16 @@ bool is_own_camera(const Scene& scene, size_t i) { return scene.cameras[i].node 
 bool has_view_angle(const Scene& scene, size_t i) {
     return is_own_camera(scene, i) && scene.cameras[i].ortho_height == 0;
 }
-bool is_even(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::color; }
-bool is_sky(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::sky; }
-bool is_image(const Scene& scene, size_t) { return scene.background.kind == BackgroundKind::image; }
+// Of a background that the file states: one that shows the map of an environment is not changed apart from it.
+bool is_kind(const Scene& scene, BackgroundKind kind) {
+    const Background& back = scene.background;
+    const bool shown = scene.environment && !scene.environment->map.stated &&
+                       scene.environment->map.kind == back.kind && scene.environment->map.image == back.image;
+    return back.kind == kind && !shown;
+}
+bool is_even(const Scene& scene, size_t) { return is_kind(scene, BackgroundKind::color); }
+bool is_sky(const Scene& scene, size_t) { return is_kind(scene, BackgroundKind::sky); }
+bool is_image(const Scene& scene, size_t) { return is_kind(scene, BackgroundKind::image); }
 bool always(const Scene&, size_t) { return true; }
 
 template<auto member> Slot of_light(Scene& scene, size_t i) { return &(scene.lights[i].*member); }
