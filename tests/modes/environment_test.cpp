@@ -61,7 +61,7 @@ void expect_near(const RayEstimate& got, double expected, double share, const st
 
 TEST(Environment, DirectionsArePickedByTheirLight) {
     for (const BackgroundNow& map :
-         {even_map(vec3(2, 1, 3)), half_sky(), disc_map(glm::normalize(vec3(1, 2, -3)), 0.03f, 1),
+         {even_map(vec3(2, 1, 3)), half_sky(), disc_map(glm::normalize(vec3(1, 2, -3)), 0.3f, 1),
           map_of(
               {31, 17}, [](vec3 d) { return vec3(1 + d.x, 1 + d.y * d.z, 2); }, -0.4f)}) {
         const auto environment = make_environment(map);
@@ -174,7 +174,7 @@ void expect_agreement(const RayEstimate& a, const RayEstimate& b, double precisi
     for (int c = 0; c < 3; ++c) {
         const double error = std::hypot(a.error[c], b.error[c]);
         EXPECT_NEAR(a.value[c], b.value[c], sigmas * error) << what;
-        EXPECT_LT(error, precision * b.value[c]) << what;
+        EXPECT_LE(error, precision * b.value[c]) << what; // both may be in the dark
     }
 }
 
@@ -197,7 +197,7 @@ TEST(Environment, MarchIsAsPathsOfOneOrder) {
         for (const std::vector<Medium>& media : {std::vector{grid}, std::vector{grid, colored}}) {
             Stage stage = stage_of(media, {}, {shade(0.5f, 1.2f)});
             stage.snapshot.environment = make_environment(map);
-            for (const vec3 way : {vec3(0.3f, -0.4f, -1), vec3(-0.35f, 0.1f, -1)}) {
+            for (const vec3 way : {vec3(0.05f, -0.1f, -1), vec3(-0.08f, 0.05f, -1)}) {
                 const Ray ray{{0.4f, 0.6f, 3}, glm::normalize(way), 6};
                 expect_agreement(marched_light(stage.snapshot, ray, 1 << 11, {}),
                                  path_fog_light(stage.snapshot, ray, 1 << 13), 0.03, "march");
@@ -278,15 +278,29 @@ TEST(Environment, ModesSayWhatTheyMissOfIt) {
     }
 }
 
-// What they have as its mean is right in fog so thin that nothing is shadowed.
-TEST(Environment, MeanIsRightUnderAnEvenSkyInThinFog) {
-    Snapshot snapshot = snapshot_of({homogeneous_medium(0.01f, unit_box)});
-    snapshot.environment = make_environment(even_map(vec3(1, 2, 3)));
+TEST(Environment, ModesWithItsMeanHaveItAsAmbientLight) {
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.01f, unit_box)}), even = snapshot;
+    snapshot.environment = make_environment(half_sky());
+    even.ambient = snapshot.environment->mean();
     const View view = view_of({0.5f, 0.5f, 3}, vec3(0.5f));
     const std::vector<Ray> rays = picture_rays(view, snapshot);
-    const double expected = mean_of(run_mode("march", view, snapshot, {}, rays));
-    for (const char* mode : {"froxel", "shadow-map", "shadow-volume", "cone"})
-        EXPECT_NEAR(mean_of(run_mode(mode, view, snapshot, {}, rays)), expected, 0.02 * expected) << mode;
+    for (const char* mode : {"froxel", "shadow-map", "shadow-volume", "cone"}) {
+        const double expected = mean_of(run_mode(mode, view, even, {}, rays));
+        EXPECT_GT(expected, 0) << mode;
+        EXPECT_NEAR(mean_of(run_mode(mode, view, snapshot, {}, rays)), expected, 1e-6 * expected) << mode;
+    }
+}
+
+// Light that scatters more than once, from the fluence grid. With 1.6 million paths the grid's noise is below 1 % here;
+// with the default of 200 000 it is up to 3 %.
+TEST(Environment, FluenceHasItsLightThatScattersAgain) {
+    Snapshot snapshot = snapshot_of({homogeneous_medium(2, unit_box, {PhaseKind::isotropic})});
+    snapshot.environment = make_environment(half_sky());
+    const Ray ray{{0.4f, 0.3f, 3}, glm::normalize(vec3(0.05f, 0.1f, -1)), 6};
+    Settings all;
+    all.fluence.orders = all_orders, all.fluence.paths *= 8;
+    const RayEstimate path = estimate_ray(path_mode(snapshot), ray, 1 << 12, fog_light);
+    EXPECT_NEAR(marched_light(snapshot, ray, 1 << 10, all).value.x, path.value.x, 0.015 * path.value.x);
 }
 }
 }

@@ -61,5 +61,14 @@ TEST(SceneEnvironment, IsTheBackgroundWithoutAMapOfItsOwn) {
     EXPECT_FLOAT_EQ(scene.environment->intensity.at(0), 5);
     EXPECT_FLOAT_EQ(scene.background.intensity.at(0), 1) << "what is seen is as the background says";
 }
+
+TEST(SceneEnvironment, IsNotAPlate) {
+    const Scratch folder;
+    folder.put("plate.hdr", small_map());
+    const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, "lights": [{"type": "environment"}],
+        "background": {"image": "plate.hdr"}})"));
+    EXPECT_FALSE(answer.loaded);
+    EXPECT_NE(answer.message.find("/lights/0: the background is a plate"), std::string::npos) << answer.message;
+}
 }
 }

@@ -190,7 +190,6 @@ const Mistake mistakes[] = {
     {R"("background": {"color": 1, "rotation": 5})", "/background/rotation", "image only"},
     {R"("background": {"sky": {"zenith": 1}})", "/background/sky", "horizon"},
     {R"("lights": [{"type": "environment"}])", "/lights/0", "background"},
-    {R"("lights": [{"type": "environment"}], "background": {"image": "plate.hdr"})", "/background/image", ""},
     {R"("lights": [{"type": "environment", "color": 1, "image": "a.hdr"}])", "/lights/0", "exactly one"},
     {R"("lights": [{"type": "environment", "color": 1, "radius": 2}])", "/lights/0/radius", "is an environment"},
     {R"("lights": [{"type": "environment", "color": 1, "unit": "lux"}])", "/lights/0/unit", "is an environment"},
