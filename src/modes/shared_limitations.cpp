@@ -62,6 +62,7 @@ double nits_in_fog(const Snapshot& snapshot) {
     if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters)) return 0;
     return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
 }
+
 void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) {
     if (max_component(snapshot.ambient) > 0)
         limitations.push_back({Severity::info, &limitation::unshadowed_ambient, Subject::scene});

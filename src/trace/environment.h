@@ -3,11 +3,13 @@
 #include "trace/snapshot.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace tyndall {
 struct EnvironmentSource;
+struct SurfacePoint;
 
 // Cells of a latitude-longitude map and the chances of picking one: luminance times solid angle, a row first.
 struct DirectionTable {
@@ -47,4 +49,10 @@ EnvironmentSample sample_environment(const Environment& environment, vec2 u);
 
 // With which sample_environment() picks a direction, 1/sr.
 float environment_density(const Environment& environment, vec3 direction);
+
+// Adds to the radiance of up to 16 Lambert surfaces what they scatter of the environment's light, by n pairs of
+// directions for each: by the light and by the cosine, which share it (balance heuristic). `u`: points × n pairs of
+// numbers.
+void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> points, std::span<const vec2> u,
+                     std::span<vec3> radiance);
 }

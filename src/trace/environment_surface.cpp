@@ -1,7 +1,7 @@
-#include "trace/environment_surface.h"
-
+// Light from all around on Lambert surfaces, through the fog.
 #include "trace/environment.h"
 #include "trace/occlusion/occluders.h"
+#include "trace/surface.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -10,14 +10,6 @@ namespace {
 struct SkyDirections {
     vec3 direction[16], light[16];
 };
-
-vec3 by_cosine(vec3 normal, vec2 u) {
-    vec3 x, y;
-    make_frame(normal, x, y);
-    const float across = std::sqrt(u.x), turned = 2 * pi * u.y;
-    return glm::normalize(across * std::cos(turned) * x + across * std::sin(turned) * y +
-                          std::sqrt(std::max(0.0f, 1 - u.x)) * normal);
-}
 
 // What a point scatters of the light from a direction that is picked with a chance of `density`, 1/sr, by the light,
 // and by the cosine.
@@ -67,7 +59,7 @@ void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> poi
             by_light.direction[i] = sample.direction;
             by_light.light[i] =
                 sample.density > 0 ? weighted(points[i], sample.direction, sample.radiance, sample.density) : vec3(0);
-            by_surface.direction[i] = by_cosine(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
+            by_surface.direction[i] = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
             by_surface.light[i] =
                 weighted(points[i], by_surface.direction[i], environment_radiance(environment, by_surface.direction[i]),
                          environment_density(environment, by_surface.direction[i]));

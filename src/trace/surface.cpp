@@ -1,6 +1,6 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
-#include "trace/environment_surface.h"
+#include "trace/environment.h"
 #include "trace/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -97,5 +97,12 @@ void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths
         }
     }
     if (snapshot.environment) add_environment(snapshot, points, u, radiance);
+}
+
+vec3 cosine_direction(vec3 normal, vec2 u) {
+    vec3 x, y;
+    make_frame(normal, x, y);
+    const float across = std::sqrt(u.x), turned = 2 * pi * u.y, cosine = std::sqrt(std::max(0.0f, 1 - u.x));
+    return glm::normalize(across * std::cos(turned) * x + across * std::sin(turned) * y + cosine * normal);
 }
 }

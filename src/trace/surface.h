@@ -15,4 +15,7 @@ struct SurfacePoint;
 // (optional) receives points × lights radiances.
 void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths, std::span<const SurfacePoint> points,
                     std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light = nullptr);
+
+// A direction picked by the cosine to a normal, from two numbers in [0,1); the square of the sine is the first.
+vec3 cosine_direction(vec3 normal, vec2 u);
 }

@@ -3,6 +3,7 @@
 
 #include "modes/path/vertex.h"
 #include "trace/mattes.h"
+#include "trace/surface.h"
 
 namespace tyndall {
 namespace {
@@ -74,11 +75,8 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
 // Lambert: directions by their cosine, which leaves the base colour as weight.
 void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) {
     const vec2 u = line.numbers(use_bounce);
-    vec3 x, y;
-    make_frame(surface.normal, x, y);
-    const float across = std::sqrt(u.x), turned = 2 * pi * u.y, cosine = std::sqrt(std::max(0.0f, 1 - u.x));
-    const vec3 direction =
-        glm::normalize(across * std::cos(turned) * x + across * std::sin(turned) * y + cosine * surface.normal);
+    const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
+    const vec3 direction = cosine_direction(surface.normal, u);
     const float side = glm::dot(surface.face_normal, direction) < 0 ? -1.0f : 1.0f;
     const vec3 origin = surface.position + surface.face_normal * (side * shadow_offset(surface.position));
     const float sky_scale = walk.tracer.finds_sky ? walk.snapshot.environment->surface_scale : 0;

@@ -45,6 +45,11 @@ View small_view(View view) {
 }
 }
 
+double task_seconds(const FarmJob& job, double setup, double samples, int threads) {
+    const double frames = static_cast<double>(std::min(static_cast<size_t>(job.chunk), job.frames.size()));
+    return frames * (setup + samples / job.parts * threads / (job.cpus > 0 ? job.cpus : threads));
+}
+
 TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderRequest& asked,
                            std::atomic<bool>& cancel) {
     RenderRequest request = asked;
@@ -64,11 +69,8 @@ TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderR
     if (!counted) return forecast;
     const double pixels =
         static_cast<double>(view.size.x) * view.size.y / (static_cast<double>(small.size.x) * small.size.y);
-    const double samples = pixels * view.pixel_samples * stats.render_seconds / job.parts;
-    const int threads = thread_count();
-    const double frame =
-        loaded.seconds + stats.prepare_seconds + samples * threads / (job.cpus > 0 ? job.cpus : threads);
-    forecast.seconds = frame * static_cast<double>(std::min<size_t>(static_cast<size_t>(job.chunk), job.frames.size()));
+    forecast.seconds = task_seconds(job, loaded.seconds + stats.prepare_seconds,
+                                    pixels * view.pixel_samples * stats.render_seconds, thread_count());
     return forecast;
 }
 

@@ -13,6 +13,9 @@ struct TaskForecast {
     std::optional<double> seconds{}; // of all frames of a task, on its processors; none where an error decides samples
 };
 
+// Of a task of the job, where a frame takes so long to load and prepare and all its samples so long on `threads`.
+double task_seconds(const FarmJob& job, double setup, double samples, int threads);
+
 // Loads the first of the job's frames. Throws Error.
 TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderRequest& asked,
                            std::atomic<bool>& cancel);
