@@ -13,7 +13,7 @@ PICTURE = ROOT / "docs/images/architecture.svg"
 COMMAND = "python3 docs/make_architecture.py"
 LAYERS = {"base": "#64748b", "volume": "#0e7490", "scene": "#15803d", "trace": "#4d7c0f", "integrate": "#a16207",
           "modes": "#c2410c", "render": "#be123c", "measure": "#86198f", "viewer": "#5b21b6", "apps": "#1e3a8a"}
-LIBRARIES = {"tbb/": "TBB", "nlohmann/": "nlohmann-json", "hwy/": "Highway", "openvdb/": "OpenVDB",
+LIBRARIES = {"tbb/": "TBB", "nlohmann/": "nlohmann-json", "hwy/": "Highway", "openvdb/": "OpenVDB", "nanovdb/": "NanoVDB",
              "tiny_gltf": "tinygltf", "stb_image": "stb", "embree": "Embree", "OpenEXR/": "OpenEXR", "Imf": "OpenEXR",
              "CLI/": "CLI11", "GLFW/": "GLFW", "imgui": "Dear ImGui"}
 CELL, GAP = 15, 6          # pixels: a folder's row and column; between layers

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "volume/vdb/vdb.h"
 
 #include <fstream>
 
@@ -34,19 +35,17 @@ FileKind json_kind(const std::filesystem::path& file) {
 FileKind file_kind(const std::filesystem::path& file) {
     check_readable(file);
     const std::string extension = file.extension().string();
-    if (extension == ".vdb") return FileKind::vdb;
+    if (is_volume_name(file)) return FileKind::vdb;
     if (extension == ".gltf" || extension == ".glb") return FileKind::gltf;
     if (extension == ".exr") return FileKind::exr;
     if (extension == ".ies" || extension == ".IES") return FileKind::ies;
     if (extension == ".json") return json_kind(file);
 
     const std::string bytes = first_bytes(file);
-    if (bytes.starts_with(" BDV")) return FileKind::vdb;
+    if (bytes.starts_with(" BDV") || bytes.starts_with("NanoVDB")) return FileKind::vdb;
     if (bytes.starts_with("glTF")) return FileKind::gltf;
     if (bytes.starts_with("\x76\x2f\x31\x01")) return FileKind::exr;
     if (bytes.starts_with("IESNA") || bytes.starts_with("IES:LM-6")) return FileKind::ies;
-    if (bytes.starts_with("NanoVDB") || extension == ".nvdb")
-        refuse(file.string(), "NanoVDB files are not read; convert it with nanovdb_convert to a .vdb");
-    refuse(file.string(), "not a kind of file tyndall knows (.vdb .gltf .glb .json .exr .ies)");
+    refuse(file.string(), "not a kind of file tyndall knows (.vdb .nvdb .gltf .glb .json .exr .ies)");
 }
 }

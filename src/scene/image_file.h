@@ -1,4 +1,4 @@
-// PNG, JPEG and Radiance pictures as linear light. The only user of stb_image.
+// PNG, JPEG, Radiance and OpenEXR pictures as linear light. The only user of stb_image.
 #pragma once
 #include "base/image.h"
 
@@ -8,7 +8,7 @@
 namespace tyndall {
 inline constexpr int largest_image_side = 16384;
 
-enum class ImageFormat { png, jpeg, radiance, other };
+enum class ImageFormat { png, jpeg, radiance, openexr, other };
 
 // Told from the first bytes, never from the name.
 ImageFormat image_format(std::string_view bytes);
@@ -19,8 +19,9 @@ ivec2 image_size(std::string_view bytes, std::string_view where);
 // sRGB bytes to linear colour, alpha as it is. Throws Error (refused) naming `where`.
 Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 
-// A picture behind the scene: sRGB PNG or JPEG, or Radiance .hdr. Throws Error (refused) naming `where`.
-Image<vec3> decode_picture(std::string_view bytes, std::string_view where);
+// A picture behind the scene: sRGB PNG or JPEG, Radiance .hdr or OpenEXR, whose display window it fills, black where
+// there are no pixels. Negative light is set to 0, of which `note` tells. Throws Error (refused) naming `where`.
+Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::string& note);
 
 // A picture whose sides were divided by a whole number, each texel the mean of a block; blocks at the right and lower
 // edge may stick out of the picture, where it is black.
@@ -31,7 +32,7 @@ struct ReducedPicture {
 };
 
 // As decode_picture(); `linear`: numbers of PNG and JPEG are light as they are. Sides are at most `largest` in the file
-// (Radiance: half of that) and `most` afterwards. Throws Error (refused) naming `where`.
+// (of floats: half of that) and `most` afterwards. Throws Error (refused) naming `where`.
 ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where);
 
 // Half the size, each texel the mean of four (alpha-weighted colour); odd edges repeat their last texel.

@@ -7,10 +7,10 @@ import sys
 LAYERS = ["base", "volume", "scene", "trace", "integrate", "modes", "render", "measure", "viewer"]
 OWNERS = {  # header prefix -> where it may be included
     "tbb/": ["src/base"], "nlohmann/": ["src/base"], "openvdb/": ["src/volume/vdb"],
-    "nanovdb/": ["tests"], "embree": ["src/trace/occlusion/embree.h"], "trace/occlusion/embree.h": ["src/trace/occlusion"],
+    "nanovdb/": ["src/volume/vdb"], "blosc.h": ["src/volume/vdb"], "embree": ["src/trace/occlusion/embree.h"], "trace/occlusion/embree.h": ["src/trace/occlusion"],
     "trace/occlusion/scene.h": ["src/trace/occlusion"], "tiny_gltf": ["src/scene"],
-    "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/render/image/exr"],
-    "Imf": ["src/render/image/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "GL/": ["apps"], "imgui": ["apps"],
+    "stb_image.h": ["src/scene"], "stb_image_write": ["src/render"], "OpenEXR/": ["src/base/exr", "src/render/image/exr"],
+    "Imf": ["src/base/exr", "src/render/image/exr"], "CLI/": ["apps"], "GLFW/": ["apps"], "GL/": ["apps"], "imgui": ["apps"],
 }
 
 TECHNIQUE = re.compile(r"src/modes/(\w+)/")

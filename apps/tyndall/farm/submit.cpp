@@ -204,7 +204,8 @@ Run add_submit(const Command& program) {
     render.output = "frames.####.exr"; // for the checks of a plan; files go to the folder
     command.option("ENGINE", texts->engine, "slurm or openjd (Open Job Description: Deadline Cloud and others)", "")
         .required();
-    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
+    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+        .required();
     command.option("-o,--output", texts->folder, "folder of the job: scripts, plan, parts, frames, logs", "FOLDER")
         .required();
     command.option("--parts", texts->parts, "parts of each frame (default: 1)", "N");

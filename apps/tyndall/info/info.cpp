@@ -31,7 +31,8 @@ std::string report_of(const std::string& file, bool json) {
 Run add_info(const Command& program) {
     const Command command = program.command("info", "what is in a file: grids, lights, cameras, layers, photometry");
     auto file = std::make_shared<std::string>();
-    command.option("FILE", *file, "a .vdb, .gltf, .glb, .exr, .ies, or a scene or recipe (.json)", "").required();
+    command.option("FILE", *file, "a .vdb, .nvdb, .gltf, .glb, .exr, .ies, or a scene or recipe (.json)", "")
+        .required();
     command.footer("Example: the grids of a volume, their size in the world and how dense they are\n"
                    "  tyndall info fog.0001.vdb\n"
                    "With --json the same for scripts; lengths in metres, light in candela and lux.");

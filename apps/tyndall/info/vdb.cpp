@@ -66,6 +66,7 @@ std::string vdb_report(const std::filesystem::path& file, bool json) {
     if (json) {
         return json_line({{"file", file.native()},
                           {"kind", "vdb"},
+                          {"format", info.format},
                           {"file_version", info.file_version},
                           {"library_version", info.library_version},
                           {"compression", info.compression},
@@ -73,9 +74,10 @@ std::string vdb_report(const std::filesystem::path& file, bool json) {
                           {"grids", json_list(info.grids, grid_json)},
                           {"scene_medium", medium_text(file, info)}});
     }
-    std::string text = printable(file.string()) + ": OpenVDB, " + count_text(info.grids.size(), "grid") +
-                       formatted(", file version %u, written by OpenVDB ", info.file_version) +
-                       printable(info.library_version, 40) + ", " + printable(info.compression, 60) + "\n";
+    std::string text = printable(file.string()) + ": " + info.format + ", " + count_text(info.grids.size(), "grid") +
+                       (info.file_version ? formatted(", file version %u", info.file_version) : "") + ", written by " +
+                       info.format + " " + printable(info.library_version, 40) + ", " +
+                       printable(info.compression, 60) + "\n";
     text += metadata_lines(info.metadata, "  ");
     for (const VdbGridInfo& grid : info.grids) text += grid_text(grid);
     if (const std::string medium = medium_text(file, info); !medium.empty())

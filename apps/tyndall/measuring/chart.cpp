@@ -112,7 +112,8 @@ int run_chart(const Options& texts, const Globals& globals) {
 Run add_chart(const Command& program) {
     const Command command = program.command("chart", "every mode's error against its time on a scene");
     auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+        .required();
     command
         .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\nimages",
                 "DIR")

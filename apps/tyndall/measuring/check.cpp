@@ -169,7 +169,7 @@ void check_file(const std::string& file, Problems& problems) {
 
 bool is_sequence(const std::string& file) {
     std::error_code ignored;
-    const bool numbered = file.ends_with(".vdb") || file.ends_with(".exr");
+    const bool numbered = is_volume_name(file) || file.ends_with(".exr");
     return numbered && has_frame_token(file) && !std::filesystem::exists(file, ignored);
 }
 
@@ -218,7 +218,8 @@ Run add_check(const Command& program) {
     const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and images");
     auto texts = std::make_shared<Options>();
     command
-        .options("FILES", texts->files, "files (.json .gltf .glb .vdb .exr); a name with #### is a whole sequence", "")
+        .options("FILES", texts->files,
+                 "files (.json .gltf .glb .vdb .nvdb .exr); a name with #### is a whole sequence", "")
         .required();
     command.option("--frames", texts->frames,
                    "frames a sequence should have (default: from the first that is there to the last)", "RANGE");

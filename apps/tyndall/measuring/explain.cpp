@@ -115,7 +115,8 @@ int run_explain(const Options& texts, const Globals& globals) {
 Run add_explain(const Command& program) {
     const Command command = program.command("explain", "say what happens along one camera ray");
     auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
+    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+        .required();
     command.option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
         .required();
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");

@@ -249,7 +249,8 @@ Run add_plan(const Command& program) {
     auto texts = std::make_shared<Options>();
     RenderOptions& render = texts->render;
     render.mode = automatic, render.output = "out.####.exr";
-    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "").required();
+    command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+        .required();
     command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
     add_groups_option(command, texts->groups);
     command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");

@@ -162,7 +162,7 @@ void add_shares(const Command& command, RenderOptions& texts) {
 }
 
 void add_render_options(const Command& command, RenderOptions& texts) {
-    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf, .glb or .vdb by itself", "");
+    command.option("SCENE", texts.scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "");
     command.option("-o,--output", texts.output, "files to write; #### stands for the frame number", "out.####.exr");
     add_what(command, texts);
     add_mode(command, texts);

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -63,6 +64,12 @@ void check_final_name(const fs::path& path) {
     if (S_ISDIR(info.st_mode)) fail(ExitCode::unwritable, path.string(), "is a directory");
     if (!S_ISREG(info.st_mode)) fail(ExitCode::unwritable, path.string(), "is a device or pipe, not a regular file");
 }
+}
+
+std::string lower_extension(const fs::path& path) {
+    std::string extension = path.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
 }
 
 std::string read_file(const fs::path& path, uint64_t most) {

@@ -13,6 +13,9 @@ namespace tyndall {
 // bytes).
 std::string read_file(const std::filesystem::path& path, uint64_t most = uint64_t{64} << 20);
 
+// Of a name, in lower case: ".glb".
+std::string lower_extension(const std::filesystem::path& path);
+
 // Throws unless the path is a readable regular file; returns its size in bytes.
 uint64_t check_readable(const std::filesystem::path& path);
 

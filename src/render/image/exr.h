@@ -1,4 +1,4 @@
-// OpenEXR pictures. The only user of OpenEXR. Encoded in memory, then written atomically.
+// OpenEXR pictures as this program writes them. Encoded in memory, then written atomically.
 //
 // Channels: R G B A (premultiplied), Z, surface.R/G/B, background.R/G/B, inscatter.R/G/B, light_NAME.R/G/B (in the
 // order that tyndall:lights names), ambient.R/G/B, emission.R/G/B, multiple.R/G/B, transmittance.T, validity.T,
@@ -6,6 +6,7 @@
 // to ±65504 (tyndall:clamped counts them), or 32 bit on request; always 32 bit are Z, 1e10 where there is no surface,
 // Variance and the halves. Rec.709, ZIP, no date and no host: the same input gives the same bytes.
 #pragma once
+#include "base/exr/exr_file.h"
 #include "render/frame/layers.h"
 #include "scene/camera.h"
 
@@ -68,29 +69,4 @@ void write_exr(const std::filesystem::path& file, const Layers& layers, const Pr
 Image<vec3> stored_color(const Layers& layers, const ExrOptions& options);
 
 inline constexpr float no_surface_z = 1e10f;
-
-struct ExrFile {
-    ivec2 display{0}, low{0}, size{0}; // display window's size; data window within it
-    std::vector<std::pair<std::string, Image<float>>> channels;
-    std::map<std::string, std::string> attributes; // text attributes; others as text
-    std::string compression;
-    bool is_unchanged = false; // every byte is as write_exr() wrote it; tyndall:check says what they were
-    const Image<float>* channel(std::string_view name) const;
-};
-
-// R, G and B; black where the file lacks them.
-Image<vec3> color_of(const ExrFile& exr);
-
-// Every pixel is decoded. Throws Error (unreadable, refused): flat, single part, NONE/RLE/ZIPS/ZIP only; limits apply.
-ExrFile read_exr(const std::filesystem::path& file);
-
-inline constexpr int max_channels = 1024;
-inline constexpr uint64_t max_decoded_bytes = uint64_t{4} << 30; // as floats
-
-// The same checks, but of the channels the names only.
-ExrFile read_exr_header(const std::filesystem::path& file);
-
-// So many rows from one on, counted from the top of the pixels that are there, of a file that has been checked. Throws
-// Error (unreadable, refused).
-ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count);
 }

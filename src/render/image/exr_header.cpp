@@ -1,19 +1,10 @@
 // OpenEXR's standard attributes: windows, colour space, time and camera.
 #include "render/image/exr_header.h"
 
-#include "base/text.h"
-
-#include <ImfBoxAttribute.h>
-#include <ImfChromaticitiesAttribute.h>
-#include <ImfDoubleAttribute.h>
-#include <ImfFloatAttribute.h>
 #include <ImfFramesPerSecond.h>
 #include <ImfIntAttribute.h>
-#include <ImfMatrixAttribute.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
-#include <ImfTimeCodeAttribute.h>
-#include <ImfVecAttribute.h>
 
 namespace tyndall {
 namespace {
@@ -57,26 +48,6 @@ void add_time_code(Imf::Header& header, int frame, double frame_rate) {
     Imf::addTimeCode(header,
                      Imf::TimeCode(part(rate * 3600LL, 24), part(rate * 60LL, 60), part(rate, 60), part(1, rate)));
 }
-
-std::string numbers(const float* values, int count) {
-    std::string text;
-    for (int i = 0; i < count; ++i) text += formatted(i ? " %.9g" : "%.9g", values[i]);
-    return text;
-}
-
-std::string chromaticities_text(const Imf::Chromaticities& c) {
-    const float values[8] = {c.red.x, c.red.y, c.green.x, c.green.y, c.blue.x, c.blue.y, c.white.x, c.white.y};
-    return numbers(values, 8);
-}
-
-std::string time_code_text(const Imf::TimeCode& t) {
-    return formatted("%02d:%02d:%02d:%02d", t.hours(), t.minutes(), t.seconds(), t.frame());
-}
-
-template<class T> const T* value_of(const Imf::Attribute& attribute) {
-    const auto* typed = dynamic_cast<const Imf::TypedAttribute<T>*>(&attribute);
-    return typed ? &typed->value() : nullptr;
-}
 }
 
 Imf::Header make_exr_header(const ExrWindow& window, const Provenance& provenance) {
@@ -101,22 +72,5 @@ Imf::Header make_exr_header(const ExrWindow& window, const Provenance& provenanc
     if (camera.lens && std::isfinite(camera.lens.focus)) Imf::addFocus(header, camera.lens.focus);
     for (const auto& [name, text] : provenance.attributes) header.insert(name, Imf::StringAttribute(text));
     return header;
-}
-
-std::string attribute_text(const Imf::Attribute& attribute) {
-    if (const auto* v = value_of<std::string>(attribute)) return *v;
-    if (const auto* v = value_of<int>(attribute)) return std::to_string(*v);
-    if (const auto* v = value_of<float>(attribute)) return numbers(v, 1);
-    if (const auto* v = value_of<double>(attribute)) return std::to_string(*v);
-    if (const auto* v = value_of<Imath::V2f>(attribute)) return numbers(&v->x, 2);
-    if (const auto* v = value_of<Imath::V3f>(attribute)) return numbers(&v->x, 3);
-    if (const auto* v = value_of<Imath::M44f>(attribute)) return numbers(v->getValue(), 16);
-    if (const auto* v = value_of<Imf::Rational>(attribute)) return std::to_string(v->n) + "/" + std::to_string(v->d);
-    if (const auto* v = value_of<Imf::TimeCode>(attribute)) return time_code_text(*v);
-    if (const auto* v = value_of<Imf::Chromaticities>(attribute)) return chromaticities_text(*v);
-    if (const auto* v = value_of<Imath::Box2i>(attribute))
-        return std::to_string(v->min.x) + " " + std::to_string(v->min.y) + " " + std::to_string(v->max.x) + " " +
-               std::to_string(v->max.y);
-    return std::string("<") + attribute.typeName() + ">";
 }
 }

@@ -1,5 +1,6 @@
 // Layers to an OpenEXR file in memory, then to disk.
 #include "base/error.h"
+#include "base/exr/exr_attributes.h"
 #include "base/io/file.h"
 #include "base/parallel.h"
 #include "base/text.h"

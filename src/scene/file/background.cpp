@@ -12,7 +12,9 @@ void read_image(const Field& image, Scene& scene, Background& map) {
     map.kind = BackgroundKind::image;
     const std::string bytes = read_file(path, largest_file);
     add_input(scene, path, bytes);
-    map.image = std::make_shared<Image<vec3>>(decode_picture(bytes, image.place()));
+    std::string note;
+    map.image = std::make_shared<Image<vec3>>(decode_picture(bytes, image.place(), note));
+    if (!note.empty()) scene.warnings.push_back(image.place() + ": " + note);
 }
 
 // What only images have.

@@ -9,6 +9,7 @@
 #include "scene/file/stand_ins.h"
 #include "scene/gltf/gltf.h"
 #include "scene_schema.h"
+#include "volume/vdb/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
@@ -17,13 +18,6 @@
 
 namespace tyndall {
 namespace {
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 // "5" or "1-48": the schema has checked the form; negative frames keep their sign.
 void read_frames(const Field& field, Scene& scene) {
     const std::string& text = field.json->string;
@@ -129,7 +123,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     Scene scene;
     scene.file = file;
     const std::string extension = lower_extension(file);
-    if (extension == ".vdb") return load_volume(file, options);
+    if (is_volume_name(file)) return load_volume(file, options);
     for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
         if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
     if (extension == ".gltf" || extension == ".glb") {

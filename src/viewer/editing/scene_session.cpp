@@ -5,17 +5,12 @@
 #include "base/text.h"
 #include "scene/file/scene_words.h"
 #include "viewer/editing/scene_text.h"
+#include "volume/vdb/vdb.h"
 
 namespace tyndall {
 namespace {
-std::string extension_of(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
-
 bool is_model(const std::filesystem::path& file) {
-    return extension_of(file) == ".gltf" || extension_of(file) == ".glb";
+    return lower_extension(file) == ".gltf" || lower_extension(file) == ".glb";
 }
 
 std::vector<Edit> edits_in_force(const SceneSession& session) {
@@ -51,7 +46,7 @@ SceneSession read_session(const std::filesystem::path& file, const LoadOptions& 
         session.text = new_scene_text(session.scene);
         return session;
     }
-    if (extension_of(file) == ".vdb") {
+    if (is_volume_name(file)) {
         SceneSession session;
         session.text = volume_scene_text(file);
         session.scene = load_scene_text(session.text, file, options);
@@ -196,7 +191,7 @@ void save(SceneSession& session) {
 }
 
 void save_as(SceneSession& session, const std::filesystem::path& file) {
-    if (is_model(file) || extension_of(file) == ".vdb")
+    if (is_model(file) || is_volume_name(file))
         fail(ExitCode::usage, file.string(), "is no name for a scene file; scene files end in .json");
     const std::filesystem::path old = session.scene.file;
     const auto folder = [](const std::filesystem::path& path) {

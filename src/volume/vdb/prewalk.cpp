@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "volume/vdb/nano_file.h"
 #include "volume/vdb/transform.h"
 
 #include <cstring>
@@ -19,9 +20,7 @@ void check_magic(ByteCursor& file) {
     const std::string_view text(start, sizeof start);
     if (text.starts_with("version https://git-"))
         refuse(file.where, "is a Git LFS pointer, not a volume: run git lfs pull");
-    if (text.starts_with("NanoVDB"))
-        refuse(file.where, "is a NanoVDB file; convert it with nanovdb_convert in.nvdb out.vdb");
-    if (std::memcmp(start, &magic, sizeof magic) != 0) refuse(file.where, "is not an OpenVDB file");
+    if (std::memcmp(start, &magic, sizeof magic) != 0) refuse(file.where, "is neither an OpenVDB nor a NanoVDB file");
     file.seek(sizeof magic, "the header");
 }
 
@@ -189,6 +188,7 @@ std::string compression_name(uint32_t flags) {
 }
 
 VdbDirectory read_directory(ByteCursor& file) {
+    if (is_nanovdb(file)) return read_nano_directory(file);
     check_magic(file);
     VdbDirectory directory;
     directory.file_version = file.value<uint32_t>("the header");

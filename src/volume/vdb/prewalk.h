@@ -23,18 +23,22 @@ struct VdbGridEntry {
     dmat4 index_to_world{1};
     std::string transform_problem;         // why index_to_world is of no use; empty when it is good
     uint64_t tree_begin = 0, tree_end = 0; // bytes of topology and voxels (of the parent, for an instance)
+    uint32_t nano_type = 0;                // how NanoVDB stores the values; 0 = a grid of an OpenVDB file
+    uint64_t nano_bytes = 0;               // of such a grid when unpacked
 };
 
 enum VdbCompression : uint32_t { vdb_zip = 1, vdb_active_mask = 2, vdb_blosc = 4 };
 std::string compression_name(uint32_t flags);
 
 struct VdbDirectory {
+    bool nano = false; // a NanoVDB file, which has no version beside its library's
     uint32_t file_version = 0, library_major = 0, library_minor = 0;
     VdbMetadata metadata;
     std::vector<VdbGridEntry> grids; // in file order, at least one
 };
 
-// Header, metadata and every grid's description. Throws Error (refused) for what is not a whole VDB file.
+// Header, metadata and every grid's description. Throws Error (refused) for what is neither a whole OpenVDB file nor a
+// whole NanoVDB file.
 VdbDirectory read_directory(ByteCursor& file);
 
 struct VdbTreeCounts {

@@ -51,8 +51,8 @@ bool read_linear_map(ByteCursor& file, const std::string& type, dmat4& matrix) {
     }
     return true;
 }
+}
 
-// What the library accepts without a word: NaN, zero scales, projections. Empty when the matrix is good.
 std::string matrix_problem(const dmat4& matrix) {
     for (int i = 0; i < 16; ++i)
         if (!std::isfinite(matrix[i / 4][i % 4])) return "its transform holds a number that is not finite";
@@ -70,7 +70,6 @@ std::string matrix_problem(const dmat4& matrix) {
         if (!(glm::dot(error, error) < 1e-6)) return "its transform is too far out or too flat to be inverted";
     }
     return {};
-}
 }
 
 VdbTransform read_transform(ByteCursor& file) {

@@ -12,6 +12,10 @@ struct VdbTransform {
     bool complete = true;    // the cursor stands behind it (not so for a kind of map that is not known)
 };
 
+// Why a matrix cannot place fog in the world: numbers that are not finite, projections, and those that cannot be
+// inverted. Empty when it can.
+std::string matrix_problem(const dmat4& matrix);
+
 // Throws Error (refused) when the record is cut or contradicts itself.
 VdbTransform read_transform(ByteCursor& file);
 }

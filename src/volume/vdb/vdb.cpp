@@ -7,46 +7,27 @@
 #include "volume/vdb/codec.h"
 #include "volume/vdb/fog.h"
 #include "volume/vdb/head.h"
+#include "volume/vdb/memory.h"
+#include "volume/vdb/nano_file.h"
+#include "volume/vdb/nano_tree.h"
 #include "volume/vdb/prewalk.h"
 
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <fstream>
 #include <limits>
 #include <new>
 
 namespace tyndall {
 namespace {
-// Most memory this process may hope for: of the machine, its control group and its own limit.
-uint64_t available_memory() {
-    uint64_t most = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-        most = std::min<uint64_t>(most, limit.rlim_cur);
-    uint64_t group = 0;
-    if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) most = std::min(most, group);
-    return most - most / 8;
-}
-
-// Of the library's tree, whose leaves hold no values, and of ours, which stand side by side for a moment.
-uint64_t memory_needed(const VdbTreeCounts& counts) {
-    const uint64_t leaf = 128 + sizeof(Leaf) + sizeof(VoxelMask) + sizeof(uint64_t);
-    return counts.leaves * leaf + counts.lower_nodes * (4096 * 8 + 1100) + counts.upper_nodes * (32768 * 8 + 8300) +
-           counts.root_tiles * 160 + counts.active_tiles * sizeof(Tile);
-}
-
-void check_memory(uint64_t bytes, const std::string& where) {
-    const uint64_t available = available_memory();
-    if (bytes <= available) return;
-    fail(ExitCode::out_of_memory, where,
-         "needs " + std::to_string(bytes >> 20) + " MB of memory, there are " + std::to_string(available >> 20) +
-             " MB");
+DecodedTree load_nano_tree(ByteCursor& file, const VdbGridEntry& grid, VdbTreeCounts& counts, int component) {
+    const std::string where = label(file, grid);
+    check_memory(grid.nano_bytes, where);
+    const LargeBytes memory = unpacked_grid(file, grid);
+    return decode_nano_tree({memory.get(), grid.nano_bytes}, grid, counts, where, component);
 }
 
 // Reads the bytes of a tree once, walks them, and decodes the very bytes that were walked.
 DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid, VdbTreeCounts& counts,
                       int component = 0) {
+    if (directory.nano) return load_nano_tree(file, grid, counts = {}, component);
     const std::string where = label(file, grid);
     const uint64_t size = grid.tree_end - grid.tree_begin;
     check_memory(size, where);
@@ -167,13 +148,18 @@ VdbInfo file_info(const std::filesystem::path& path) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
     VdbInfo info;
-    info.file_version = directory.file_version;
+    info.format = directory.nano ? "NanoVDB" : "OpenVDB", info.file_version = directory.file_version;
     info.library_version = std::to_string(directory.library_major) + "." + std::to_string(directory.library_minor);
     info.compression = compression_name(directory.grids.front().compression);
     info.metadata = directory.metadata;
     for (const VdbGridEntry& grid : directory.grids) info.grids.push_back(grid_info(file, directory, grid));
     return info;
 }
+}
+
+bool is_volume_name(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    return extension == ".vdb" || extension == ".nvdb";
 }
 
 SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, VdbReadReport* report) {

@@ -1,4 +1,5 @@
-// OpenVDB files in and out, guarded against cut, hostile and half-written ones. The only user of OpenVDB.
+// OpenVDB files in and out and NanoVDB files in, guarded against cut, hostile and half-written ones. The only user of
+// both.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
 #include "volume/value_map.h"
@@ -13,6 +14,9 @@
 #include <vector>
 
 namespace tyndall {
+// Whether a file is called as these are: .vdb, .nvdb.
+bool is_volume_name(const std::filesystem::path& file);
+
 struct VdbWriteOptions {
     bool half = true;  // 16-bit floats on disk
     bool blosc = true; // else ZIP
@@ -68,6 +72,7 @@ struct VdbGridInfo {
 };
 
 struct VdbInfo {
+    std::string format; // OpenVDB or NanoVDB
     uint32_t file_version = 0;
     std::string library_version, compression;
     std::vector<std::pair<std::string, std::string>> metadata;

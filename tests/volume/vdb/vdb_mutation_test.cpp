@@ -2,8 +2,8 @@
 // own.
 #include "support/corpus.h"
 #include "support/threads.h"
+#include "volume/vdb/nano_fixtures.h"
 #include "volume/vdb/vdb.h"
-#include "volume/vdb/vdb_fixtures.h"
 
 #include <gtest/gtest.h>
 
@@ -94,6 +94,12 @@ std::vector<std::string> originals() {
             ball.tiles = {{ivec3(64), 1, 0.5f}, {ivec3(256), 2, 0.5f}, {ivec3(8192), 3, 0.5f}};
             files.push_back(authored({ball, second}, packing, offsets));
         }
+    for (const NanoPacking packing : {NanoPacking::none, NanoPacking::zip, NanoPacking::blosc}) {
+        AuthoredGrid ball = noisy_ball({3, 0, 4094}, 8);
+        ball.tiles = {{ivec3(64), 1, 0.5f}, {ivec3(256), 2, 0.5f}, {ivec3(8192), 3, 0.5f}};
+        for (const NanoStore store : {NanoStore::plain, NanoStore::fp8, NanoStore::fpn})
+            files.push_back(nano_authored({ball}, packing, store));
+    }
     for (const std::filesystem::path& file :
          test::corpus_files_named({"vdb/vpt/dragon.vdb", "vdb/openusd/smoke_000001.vdb", "vdb/arnold/grids.vdb"}))
         files.push_back(bytes_of(file));

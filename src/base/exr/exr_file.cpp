@@ -1,11 +1,13 @@
-// OpenEXR files read back, to the last pixel.
+#include "base/exr/exr_file.h"
+
 #include "base/error.h"
+#include "base/exr/exr_attributes.h"
+#include "base/exr/exr_check.h"
 #include "base/io/file.h"
-#include "render/image/exr_check.h"
-#include "render/image/exr_header.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 
@@ -82,9 +84,8 @@ template<class Body> ExrFile guarded(const std::string& file, const Body& body) 
     }
 }
 
-ExrFile read_checked(const std::filesystem::path& path, bool pixels) {
+ExrFile read_checked(std::string_view bytes, const std::string& file, bool pixels) {
     constexpr const char* compressions[] = {"none", "rle", "zips", "zip"};
-    const std::string file = path.string(), bytes = read_file(path, largest_file);
     const ExrClaims claims = check_exr_claims(bytes, file);
     return guarded(file, [&] {
         MemoryStream stream(file.c_str(), bytes);
@@ -104,9 +105,15 @@ const Image<float>* ExrFile::channel(std::string_view name) const {
     return nullptr;
 }
 
-ExrFile read_exr(const std::filesystem::path& file) { return read_checked(file, true); }
+ExrFile read_exr(const std::filesystem::path& file) {
+    return read_checked(read_file(file, largest_file), file.string(), true);
+}
 
-ExrFile read_exr_header(const std::filesystem::path& file) { return read_checked(file, false); }
+ExrFile decode_exr(std::string_view bytes, const std::string& where) { return read_checked(bytes, where, true); }
+
+ExrFile read_exr_header(const std::filesystem::path& file) {
+    return read_checked(read_file(file, largest_file), file.string(), false);
+}
 
 ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count) {
     check_readable(file);

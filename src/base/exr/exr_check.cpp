@@ -1,7 +1,7 @@
-#include "render/image/exr_check.h"
+#include "base/exr/exr_check.h"
 
 #include "base/error.h"
-#include "render/image/exr.h"
+#include "base/exr/exr_file.h"
 
 #include <zlib.h>
 

@@ -1,0 +1,39 @@
+#include "volume/vdb/memory.h"
+
+#include "base/error.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/bricks/voxel_mask.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace tyndall {
+namespace {
+// Most memory this process may hope for: of the machine, its control group and its own limit.
+uint64_t available_memory() {
+    uint64_t most = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        most = std::min<uint64_t>(most, limit.rlim_cur);
+    uint64_t group = 0;
+    if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) most = std::min(most, group);
+    return most - most / 8;
+}
+}
+
+uint64_t memory_needed(const VdbTreeCounts& counts) {
+    const uint64_t leaf = 128 + sizeof(Leaf) + sizeof(VoxelMask) + sizeof(uint64_t);
+    return counts.leaves * leaf + counts.lower_nodes * (4096 * 8 + 1100) + counts.upper_nodes * (32768 * 8 + 8300) +
+           counts.root_tiles * 160 + counts.active_tiles * sizeof(Tile);
+}
+
+void check_memory(uint64_t bytes, const std::string& where) {
+    const uint64_t available = available_memory();
+    if (bytes <= available) return;
+    fail(ExitCode::out_of_memory, where,
+         "needs " + std::to_string(bytes >> 20) + " MB of memory, there are " + std::to_string(available >> 20) +
+             " MB");
+}
+}

@@ -1,0 +1,92 @@
+// Pictures with more light than a screen has: Radiance and OpenEXR.
+#include "base/error.h"
+#include "base/io/file.h"
+#include "scene/image_file.h"
+#include "scene/images.h"
+#include "support/expect.h"
+#include "support/scratch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+
+namespace tyndall {
+namespace {
+using ::testing::HasSubstr;
+
+TEST(ImageFile, RadianceKeepsItsRange) {
+    const Scratch folder;
+    // RGBE: mantissa / 256 · 2^(exponent - 128).
+    const auto file = folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
+    std::string note;
+    const Image<vec3> image = decode_picture(read_file(file), "test", note);
+    ASSERT_EQ(image.size, ivec2(2, 1));
+    EXPECT_EQ(image.at(0, 0), vec3(8, 4, 0));
+    EXPECT_EQ(image.at(1, 0), vec3(0));
+}
+
+// Bytes of an EXR with these pixels in a window of a larger picture.
+std::string openexr_of(const Scratch& folder, ivec2 display, ivec2 low, const Image<vec3>& pixels, bool grey = false) {
+    const auto file = folder.path() / "picture.exr";
+    const ivec2 high = low + pixels.size - 1;
+    Imf::Header header(Imath::Box2i({0, 0}, {display.x - 1, display.y - 1}),
+                       Imath::Box2i({low.x, low.y}, {high.x, high.y}));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer buffer;
+    const std::vector<std::string> names =
+        grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+    for (size_t c = 0; c < names.size(); ++c) {
+        header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+        auto* values = reinterpret_cast<const char*>(pixels.pixels.data()) + c * sizeof(float);
+        buffer.insert(names[c], Imf::Slice::Make(Imf::FLOAT, values, header.dataWindow(), sizeof(vec3),
+                                                 sizeof(vec3) * static_cast<size_t>(pixels.size.x)));
+    }
+    {
+        Imf::OutputFile output(file.c_str(), header);
+        output.setFrameBuffer(buffer);
+        output.writePixels(pixels.size.y);
+    }
+    return read_file(file);
+}
+
+TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
+    const Scratch folder;
+    Image<vec3> pixels({2, 1});
+    pixels.pixels = {{70000, 0.5f, 0.25f}, {1, -2, 3}};
+    const std::string bytes = openexr_of(folder, {4, 2}, {1, 1}, pixels);
+    EXPECT_EQ(image_format(bytes), ImageFormat::openexr);
+    std::string note;
+    const Image<vec3> image = decode_picture(bytes, "test", note);
+    ASSERT_EQ(image.size, ivec2(4, 2));
+    EXPECT_EQ(image.at(1, 1), vec3(70000, 0.5f, 0.25f));
+    EXPECT_EQ(image.at(2, 1), vec3(1, 0, 3));
+    EXPECT_EQ(image.at(0, 0), vec3(0));
+    EXPECT_EQ(image.at(3, 1), vec3(0));
+    EXPECT_THAT(note, HasSubstr("1 pixels with negative light"));
+
+    const Image<vec3> grey = decode_picture(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
+    EXPECT_EQ(grey.at(0, 0), vec3(70000));
+    const ReducedPicture half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test");
+    EXPECT_EQ(half.factor, 2);
+    EXPECT_EQ(half.image.at(0, 0), vec3(70001, -1.5f, 3.25f) / 4.0f);
+}
+
+TEST(ImageFile, OpenExrThatIsNoPicture) {
+    const Scratch folder;
+    std::string note;
+    const auto refusal = [&](const std::string& bytes) {
+        return std::string(error_of([&] { decode_picture(bytes, "sky.exr", note); }).what());
+    };
+    Image<vec3> pixels({2, 1}, vec3(1));
+    const std::string whole = openexr_of(folder, {2, 1}, {0, 0}, pixels);
+    EXPECT_THAT(refusal(whole.substr(0, whole.size() - 4)), HasSubstr("sky.exr"));
+    EXPECT_THAT(refusal(openexr_of(folder, {16000, 16000}, {0, 0}, pixels)), HasSubstr("a sixteenth"));
+    pixels.at(1, 0).y = std::numeric_limits<float>::infinity();
+    EXPECT_THAT(refusal(openexr_of(folder, {2, 1}, {0, 0}, pixels)), HasSubstr("not a number"));
+}
+}
+}
