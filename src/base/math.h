@@ -87,6 +87,7 @@ inline void make_frame(vec3 axis, vec3& u, vec3& v) {
     v = vec3(b, sign + axis.y * axis.y * a, -axis.y);
 }
 
+inline float mean_component(vec3 v) { return v.x + ((v.y - v.x) + (v.z - v.x)) / 3; } // of equal ones exactly that
 inline float max_component(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float luminance(vec3 rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
 }

@@ -11,12 +11,13 @@ namespace tyndall {
 // What the fog does to one camera ray up to its t_max.
 struct Scatter {
     vec3 radiance{0};        // light scattered and emitted towards the eye
-    float transmittance = 1; // share of what lies behind that comes through
+    float transmittance = 1; // share of what lies behind that comes through, the mean of the channels
     float validity = 1;      // 0 where the mode knows itself wrong
     int steps = 0;           // evaluations spent, for statistics
     // Of a mode with Surfaces::own: light of surfaces, and of the background, through the fog.
     vec3 surface{0}, background{0};
     float held = 0; // of such a mode: share of the light from behind the fog that mattes hold out
+    vec3 tint{1};   // times the transmittance: that of each channel, which it is the mean of
 
     vec3 whole() const { return surface + background + radiance; }
 };

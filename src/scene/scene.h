@@ -115,7 +115,8 @@ struct BlackbodySource {
 struct MediumSource {
     std::string name;
     MediumKind kind = MediumKind::homogeneous;
-    Keyed<float> extinction{0.1f}, g{0.0f}; // g: where the phase function takes that of the medium
+    Keyed<float> extinction{0.1f}, g{0.0f};        // g: where the phase function takes that of the medium
+    std::optional<Keyed<vec3>> channel_extinction; // where the channels differ; `extinction` is their mean
     Keyed<vec3> albedo{vec3(0.95f)}, emission{vec3(0)};
     PhaseSource phase;
     Box bounds = everywhere(); // homogeneous, height: in the medium's own space

@@ -10,6 +10,8 @@
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 mat4 checked_matrix(const Scene& scene, const MediumSource& source, double seconds) {
@@ -183,11 +185,30 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
 }
 }
 
+namespace {
+// The media from `first` on, which a source has added, as each channel meets them.
+void add_to_channels(const MediumSource& source, double seconds, size_t first, Snapshot& snapshot) {
+    for (size_t c = 0; c < 3; ++c) {
+        std::vector<Medium>& media = snapshot.channel_media[c];
+        media.insert(media.end(), snapshot.media.begin() + static_cast<std::ptrdiff_t>(first), snapshot.media.end());
+        if (!source.channel_extinction) continue;
+        const float extinction = source.channel_extinction->at(seconds)[static_cast<glm::length_t>(c)];
+        for (size_t m = first; m < media.size(); ++m)
+            if (!only_emits(media[m].optics)) media[m].optics.extinction = vec3(std::max(extinction, min_extinction));
+    }
+}
+}
+
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot) {
     const bool comparable = previous && previous->fog_sources.size() == scene.media.size();
+    const bool chromatic = std::ranges::any_of(
+        scene.media, [](const MediumSource& medium) { return medium.channel_extinction.has_value(); });
     snapshot.fog_sources.reserve(scene.media.size());
-    for (size_t i = 0; i < scene.media.size(); ++i)
+    for (size_t i = 0; i < scene.media.size(); ++i) {
+        const size_t first = snapshot.media.size();
         add_medium(scene, scene.media[i], moment, missing, comparable ? previous->fog_sources[i] : FogSource{},
                    snapshot);
+        if (chromatic) add_to_channels(scene.media[i], moment.seconds, first, snapshot);
+    }
 }
 }

@@ -250,7 +250,8 @@ void append_light(const MediumSource& source, double seconds, const MediumGrids&
         const BlackbodySource& blackbody = *source.blackbody;
         vec3 scale = blackbody.scale.at(seconds) * blackbody.tint.at(seconds);
         if (blackbody.by_absorption) {
-            scale *= source.extinction.at(seconds);
+            scale *= source.channel_extinction ? source.channel_extinction->at(seconds)
+                                               : vec3(source.extinction.at(seconds));
             const EmissionField* field = grids.placed_blackbody.field.get();
             if (field && !field->albedo) scale *= 1.0f - source.albedo.at(seconds);
         }

@@ -105,6 +105,15 @@ Snapshot& Snapshot::operator=(const Snapshot&) = default;
 Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
 Snapshot::~Snapshot() = default;
 
+bool is_chromatic(const Snapshot& snapshot) { return !snapshot.channel_media[0].empty(); }
+
+Snapshot channel_of(const Snapshot& snapshot, int channel) {
+    Snapshot result = snapshot;
+    result.media = snapshot.channel_media[static_cast<size_t>(channel)];
+    result.channel_media = {};
+    return result;
+}
+
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing,
                        std::shared_ptr<CacheFolder> files) {
     Snapshot snapshot;

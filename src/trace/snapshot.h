@@ -5,6 +5,7 @@
 #include "trace/moment.h"
 #include "volume/vdb/sequence.h"
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -51,7 +52,10 @@ struct Snapshot {
     double seconds = 0;
     int frame = 0;
     std::vector<Light> lights; // of non-zero intensity
-    std::vector<Medium> media; // that dim light or emit it; of non-zero extinction
+    std::vector<Medium> media; // that dim light or emit it; of non-zero extinction, the same in all channels
+    // Where channels differ, which `media` is the mean of: the media as red, green and blue light meet them. Else
+    // empty.
+    std::array<std::vector<Medium>, 3> channel_media;
     vec3 ambient{0};
     BackgroundNow background;
     std::shared_ptr<const Environment> environment; // light from all around; null = none
@@ -81,6 +85,10 @@ struct Snapshot {
 // outlive it. What `files` holds is taken from there. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
+
+// Whether fog dims the channels differently, and the scene as one of them, 0 to 2, meets it.
+bool is_chromatic(const Snapshot& snapshot);
+Snapshot channel_of(const Snapshot& snapshot, int channel);
 
 // The surfaces that shadow the light; null = none does.
 const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot);

@@ -64,11 +64,20 @@ Json lights_json(const Scene& scene) {
 // What most programs call g: of tables and mixtures too.
 float mean_cosine_of(const MediumSource& medium) { return mean_cosine(phase_at(medium.phase, medium.g.at(0), 0)); }
 
+Json extinction_json(const MediumSource& medium) {
+    return medium.channel_extinction ? Json(medium.channel_extinction->at(0)) : Json(medium.extinction.at(0));
+}
+
+std::string extinction_text(const MediumSource& medium) {
+    return medium.channel_extinction ? vector_text(medium.channel_extinction->at(0))
+                                     : formatted("%g", double{medium.extinction.at(0)});
+}
+
 Json media_json(const Scene& scene) {
     return json_list(scene.media, [](const MediumSource& medium) {
         return json_object({{"name", medium.name},
                             {"kind", medium_names[static_cast<int>(medium.kind)]},
-                            {"extinction", medium.extinction.at(0)},
+                            {"extinction", extinction_json(medium)},
                             {"albedo", medium.albedo.at(0)},
                             {"phase", traits_of(medium.phase.kind).name},
                             {"g", mean_cosine_of(medium)},
@@ -136,9 +145,9 @@ std::string content_text(const Scene& scene) {
     if (!hint.empty()) text += "  light units   " + hint + "\n";
     for (const MediumSource& medium : scene.media)
         text +=
-            formatted("  fog           %s, %s, extinction %g /m, albedo %s, %s, g %.4g%s%s%s\n",
+            formatted("  fog           %s, %s, extinction %s /m, albedo %s, %s, g %.4g%s%s%s\n",
                       printable(medium.name.empty() ? "(no name)" : medium.name, 80).c_str(),
-                      medium_names[static_cast<int>(medium.kind)], double{medium.extinction.at(0)},
+                      medium_names[static_cast<int>(medium.kind)], extinction_text(medium).c_str(),
                       vector_text(medium.albedo.at(0)).c_str(), std::string(traits_of(medium.phase.kind).name).c_str(),
                       double{mean_cosine_of(medium)}, medium.z_up ? ", Z up" : "",
                       medium.sequence.pattern.empty() ? "" : ", ", printable(medium.sequence.pattern).c_str());

@@ -124,6 +124,8 @@ void say_before(const Scene& scene, const Snapshot& first, const Limitations& li
     say_idle_settings(texts.settings, *one.plan.mode, globals);
     if (one.request.history > 0 && !one.plan.mode->remembers && !globals.quiet)
         say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
+    if (one.request.history > 0 && one.plan.mode->remembers && is_chromatic(first))
+        fail(ExitCode::usage, "--history", "does not go with fog whose extinction differs between the channels");
     say_limitations(scene, first, limitations, globals);
 }
 

@@ -9,6 +9,7 @@
 #include "integrate/march_steps.h"
 #include "render/adaptive/candidates.h"
 #include "render/frame/camera_paths.h"
+#include "render/frame/channels.h"
 #include "scene/scene.h"
 #include "trace/mattes.h"
 #include "volume/rays/fog_reach.h"
@@ -55,8 +56,8 @@ void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
     story.reference.samples = std::ranges::any_of(scene.snapshot.lights, is_soft) ? scene.truth.terms.light_points : 1;
 }
 
-// Fog light of one part by the reference, light by light.
-void add_reference(const Prepared& prepared, const RayPart& part, RayStory& story, float& transmittance) {
+// Fog light of one part by the reference, light by light; `through` arrives of it. What the fog lets through.
+vec3 add_reference(const Prepared& prepared, const RayPart& part, vec3 through, RayStory& story) {
     const size_t lights = story.lights.size();
     std::vector<vec3> of_lights(part_count(lights), vec3(0));
     RayBatch batch = part.batch;
@@ -65,12 +66,11 @@ void add_reference(const Prepared& prepared, const RayPart& part, RayStory& stor
     prepared.scatter(batch, {&scatter, 1});
 
     Answer& answer = story.reference;
-    const float through = static_cast<float>(part.through);
     answer.inscatter += through * scatter.radiance, answer.color += through * scatter.radiance;
     answer.steps += scatter.steps;
     answer.transmittance *= scatter.transmittance;
     for (size_t l = 0; l < lights; ++l) story.lights[l].fog += through * of_lights[l];
-    transmittance = scatter.transmittance;
+    return scatter.transmittance * scatter.tint;
 }
 
 // The surface the ray has come to.
@@ -85,7 +85,7 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     }
     SurfaceOnRay surface;
     std::vector<vec3> of_lights;
-    shade_surfaces(scene.snapshot, prepared.light_depths, {&point, 1}, u, {&surface.radiance, 1}, &of_lights);
+    shade(scene.snapshot, prepared, {&point, 1}, u, {&surface.radiance, 1}, &of_lights);
 
     const int instance = s.hits.instance[0];
     surface.distance = distance, surface.name = name_of_instance(scene.snapshot, instance);
@@ -94,9 +94,10 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
         whole.meshes[static_cast<size_t>(whole.instances[static_cast<size_t>(instance)].mesh)].material;
     if (material >= 0) surface.material = whole.materials[static_cast<size_t>(material)].name;
     if (is_matte(scene.snapshot, instance)) surface.radiance = vec3(0), of_lights.assign(of_lights.size(), vec3(0));
-    surface.alpha = point.alpha, surface.share = path.through * point.alpha;
-    story.reference.color += surface.share * surface.radiance;
-    for (size_t l = 0; l < story.lights.size(); ++l) story.lights[l].surfaces += surface.share * of_lights[l];
+    surface.alpha = point.alpha, surface.share = mean_component(path.through) * point.alpha;
+    const vec3 share = path.through * point.alpha;
+    story.reference.color += share * surface.radiance;
+    for (size_t l = 0; l < story.lights.size(); ++l) story.lights[l].surfaces += share * of_lights[l];
     story.surfaces.push_back(std::move(surface));
 }
 
@@ -121,16 +122,15 @@ void follow(const RayScene& scene, RayStory& story) {
                              .places = {numbers.places, 1},
                              .positions = {numbers.positions, 1},
                              .open = {&open, 1}};
-        const RayPart part{ray, batch, story.end, story.depth, path.through};
-        float transmittance = 1;
-        add_reference(prepared, part, story, transmittance);
+        const RayPart part{ray, batch, story.end, story.depth, mean_component(path.through)};
+        const vec3 transmittance = add_reference(prepared, part, path.through, story);
         append_fog(scene, part, story);
         path.through *= transmittance, story.end += length;
 
         const SurfacesMet met = surfaces_met(scene.snapshot, layer, s);
         if (met.count == 0) {
             story.background = background_radiance(scene.snapshot.background, path.ray.direction, path.screen);
-            story.background_share = path.through;
+            story.background_share = mean_component(path.through);
             story.reference.color += path.through * story.background;
             return;
         }

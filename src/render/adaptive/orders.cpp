@@ -86,7 +86,7 @@ struct Traced {
     Prepared prepared;
 
     FrameTracer tracer(const View& view) const {
-        return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
+        return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared};
     }
 };
 

@@ -67,7 +67,7 @@ constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
 FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                       const Prepared& prepared) {
-    return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared.light_depths};
+    return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared};
 }
 
 // Of a tile, those to follow: all, or one of each four.
@@ -113,8 +113,7 @@ Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
     std::atomic<int64_t> work = 0; // whole numbers: sums of them do not depend on their order
     View view = tracer.view;
     if (pass > 0) view.seed = hash(view.seed, static_cast<uint32_t>(pass));
-    const FrameTracer own{
-        view, tracer.snapshot, tracer.scatter, tracer.surfaces, tracer.light_points, tracer.light_depths};
+    const FrameTracer own{view, tracer.snapshot, tracer.scatter, tracer.surfaces, tracer.light_points, tracer.prepared};
     result.resize(std::max(result.size(), end * pilot_values));
     parallel_for(static_cast<int64_t>(end - begin), [&](int64_t i) {
         if (pilot.cancel && *pilot.cancel) fail(ExitCode::internal, "render", "cancelled");

@@ -136,7 +136,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
         result.transmittance = scatter[i].transmittance;
         result.validity = scatter[i].validity;
         result.steps = scatter[i].steps;
-        s.path[i].through = scatter[i].transmittance;
+        s.path[i].through = scatter[i].transmittance * scatter[i].tint;
     }
 }
 
@@ -145,7 +145,8 @@ void follow_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSa
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         for (int i = 0; i < s.count; ++i)
-            if (!s.hit(i)) samples[s.path[i].lane].alpha = 1 - s.path[i].through - samples[s.path[i].lane].held;
+            if (!s.hit(i))
+                samples[s.path[i].lane].alpha = 1 - mean_component(s.path[i].through) - samples[s.path[i].lane].held;
         const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
         if (!advance(tracer.view, met, s, samples)) return;
     }

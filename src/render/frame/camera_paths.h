@@ -14,7 +14,8 @@ enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
 struct Path {
     Ray ray;              // from the eye or the last BLEND surface
     float skip = 0;       // surfaces nearer than this are behind: the near plane, or the surface just left
-    float through = 1;    // share of light that gets through fog and BLEND surfaces so far
+    vec3 through{1};      // share of light that gets through fog and BLEND surfaces so far
+    vec3 fog{1};          // the same through fog alone
     uint32_t seed = 0;    // of the pixel and batch in this frame
     uint32_t shift = 0;   // of its jitter
     SamplePlace place;    // in the batch

@@ -29,7 +29,7 @@ Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats
     centers.pixel_samples = centers.batches = 1, centers.lamps.clear(), centers.filter = PixelFilter::center;
     centers.background = true; // left out or not, the other layers are the same
     const FrameTracer prober{centers,         tracer.snapshot,     tracer.scatter,
-                             tracer.surfaces, tracer.light_points, tracer.light_depths};
+                             tracer.surfaces, tracer.light_points, tracer.prepared};
     Probes probes{low, Image<vec2>(high - low)};
     std::mutex counting;
     parallel_for((high.y - low.y + tile_side - 1) / tile_side, [&](int64_t row) {

@@ -13,6 +13,8 @@
 #pragma once
 #include "integrate/ray_batch.h"
 #include "render/frame/layers.h"
+#include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
 
 #include <atomic>
 #include <functional>
@@ -21,17 +23,23 @@
 
 namespace tyndall {
 struct History;
-struct LightDepth;
 struct Mode;
 struct Settings;
-struct Snapshot;
 struct View;
+
+// A channel of a frame whose fog dims them differently.
+struct PreparedChannel {
+    Snapshot snapshot;
+    ScatterFunction scatter;
+    std::vector<LightDepth> light_depths;
+};
 
 // What a frame needs before its first ray.
 struct Prepared {
     ScatterFunction scatter;
     std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
-    double mode_seconds = 0;              // what the mode took
+    std::shared_ptr<const std::vector<PreparedChannel>> channels{}; // red, green, blue; null where fog is grey
+    double mode_seconds = 0;                                        // what the mode took
 };
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history);

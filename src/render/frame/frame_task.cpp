@@ -88,8 +88,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     auto scatter_seconds = std::make_shared<std::atomic<double>>(0);
     FrameTask task{prepared,
                    {view, snapshot, timed(prepared->scatter, scatter_seconds), mode.surfaces,
-                    settings.terms.light_points, prepared->light_depths,
-                    view.background && view.covered && counts_held(snapshot)},
+                    settings.terms.light_points, *prepared, view.background && view.covered && counts_held(snapshot)},
                    options.prepared ? 0 : prepared->mode_seconds,
                    scatter_seconds,
                    std::move(layers),
@@ -101,18 +100,6 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
         for (const SettingRow& row : setting_rows()) task.made_by += " " + row.name + "=" + row.get(settings);
     }
     return task;
-}
-
-Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                       History* history) {
-    const double start = steady_seconds();
-    Prepared result{mode.prepare(view, snapshot, settings, history), {}, 0};
-    result.mode_seconds = steady_seconds() - start;
-    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
-        for (const Light& light : snapshot.lights)
-            result.light_depths.push_back(
-                make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
-    return result;
 }
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "render/frame/camera_paths.h"
+#include "render/frame/channels.h"
 #include "scene/light.h"
 #include "trace/mattes.h"
 #include "trace/snapshot.h"
@@ -12,6 +13,14 @@
 
 namespace tyndall {
 namespace {
+// How far there is fog to ask for, in any channel.
+float reach_of(const FrameTracer& tracer, const Ray& ray) {
+    float reach = fog_reach(tracer.snapshot.media, ray);
+    for (const std::vector<Medium>& media : tracer.snapshot.channel_media)
+        reach = std::max(reach, fog_reach(media, ray));
+    return reach;
+}
+
 void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<PixelSample> samples,
              std::span<vec3> parts) {
     const size_t part_count = parts.size() / samples.size();
@@ -21,7 +30,7 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
     for (int i = 0; i < s.count; ++i) {
         const Ray& ray = s.path[i].ray;
         open[i] = !s.hit(i);
-        rays[i] = {ray.origin, ray.direction, open[i] ? fog_reach(tracer.snapshot.media, ray) : s.length[i]};
+        rays[i] = {ray.origin, ray.direction, open[i] ? reach_of(tracer, ray) : s.length[i]};
     }
 
     const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
@@ -40,12 +49,13 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
         Path& path = s.path[i];
         PixelSample& result = samples[path.lane];
         result.inscatter += path.through * scatter[i].radiance;
-        result.transmittance *= scatter[i].transmittance;
+        path.fog *= scatter[i].transmittance * scatter[i].tint;
+        result.transmittance = mean_component(path.fog);
         result.validity = std::min(result.validity, scatter[i].validity);
         result.steps += scatter[i].steps;
         for (size_t p = 0; p < part_count; ++p)
             parts[static_cast<size_t>(path.lane) * part_count + p] += path.through * fog_parts[i * part_count + p];
-        path.through *= scatter[i].transmittance;
+        path.through *= scatter[i].transmittance * scatter[i].tint;
     }
 }
 
@@ -64,12 +74,12 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
             u[k * points + p] = {random.x, random.y};
         }
     }
-    shade_surfaces(tracer.snapshot, tracer.light_depths, {met.points, met.count}, u, {radiance, met.count});
+    shade(tracer.snapshot, tracer.prepared, {met.points, met.count}, u, {radiance, met.count});
 
     for (size_t k = 0; k < met.count; ++k) {
         const Path& path = s.path[met.which[k]];
         if (is_matte(tracer.snapshot, met.points[k].instance))
-            samples[path.lane].held += path.through * met.points[k].alpha;
+            samples[path.lane].held += mean_component(path.through) * met.points[k].alpha;
         else
             samples[path.lane].surface += path.through * met.points[k].alpha * radiance[k];
     }
@@ -78,7 +88,7 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
     result.background +=
         path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
-    result.alpha = 1 - path.through - result.held;
+    result.alpha = 1 - mean_component(path.through) - result.held;
 }
 }
 

@@ -27,9 +27,9 @@ struct FrameTracer {
     const View& view;
     const Snapshot& snapshot;
     ScatterFunction scatter;
-    Surfaces surfaces;                        // shared or own: who shades them
-    int light_points;                         // of a soft light, for shared surfaces
-    std::span<const LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+    Surfaces surfaces;        // shared or own: who shades them
+    int light_points;         // of a soft light, for shared surfaces
+    const Prepared& prepared; // for shared surfaces
     bool covered = false; // whether alpha counts a background that mattes hold out in part (else see cover_background)
 };
 

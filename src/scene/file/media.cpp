@@ -37,9 +37,20 @@ void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
             refuse(bounds.member("high").item(axis), "must be greater than low");
 }
 
+// A number or a color, of which grey is a number.
+void read_extinction(const Field& field, MediumSource& medium) {
+    const Keyed<vec3> channels = keyed_color(field);
+    medium.extinction.times = channels.times, medium.extinction.interpolation = channels.interpolation;
+    medium.extinction.loop = channels.loop, medium.extinction.values.clear();
+    for (const vec3 value : channels.values) medium.extinction.values.push_back(mean_component(value));
+    const auto grey = [](vec3 value) { return value.x == value.y && value.x == value.z; };
+    medium.channel_extinction.reset();
+    if (!std::ranges::all_of(channels.values, grey)) medium.channel_extinction = channels;
+}
+
 // What the file does not say stays what it was: the defaults of the recipe or the volume.
 void read_optics(const Field& field, MediumSource& medium, Scene& scene) {
-    if (const Field extinction = field.member("extinction")) medium.extinction = keyed_number(extinction);
+    if (const Field extinction = field.member("extinction")) read_extinction(extinction, medium);
     if (const Field albedo = field.member("albedo")) medium.albedo = keyed_color(albedo);
     if (const Field g = field.member("g")) medium.g = keyed_number(g);
     if (const Field emission = field.member("emission")) medium.emission = keyed_color(emission);

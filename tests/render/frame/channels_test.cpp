@@ -1,0 +1,130 @@
+// Fog that dims red, green and blue differently, against closed forms and against grey fog of each channel's
+// extinction.
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "render/fixtures.h"
+#include "render/frame/frame.h"
+#include "scene/scene.h"
+#include "support/expect.h"
+#include "support/scratch.h"
+#include "trace/small_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+const vec3 extinction(1.5f, 0.5f, 0.125f);
+
+std::string text(vec3 v) {
+    return "[" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + "]";
+}
+
+// A box of fog 2 m thick, lit by a sun, before a background.
+std::string scene_text(const std::string& fog, const std::string& more = {}) {
+    return R"({"tyndall": 1, "camera": {"position": [0, 0, 3], "target": [0, 0, 0], "vertical_fov": 20},
+        "lights": [{"name": "sun", "type": "sun", "direction": [0, -1, 0], "intensity": 3}], "ambient": [0.1, 0.2, 0.3],
+        "media": [{"type": "homogeneous", "extinction": )" +
+           fog + R"(, "albedo": 0.8, "g": 0.3, "bounds": {"low": [-5, -1, -1], "high": [5, 1, 1]}}],
+        "background": {"color": [1, 0.5, 2]})" +
+           more + "}";
+}
+
+struct Seen {
+    Scene scene;
+    Snapshot snapshot;
+    Layers layers;
+};
+
+void see(const std::string& text, std::string_view mode, Seen& seen, bool background = true) {
+    const Scratch folder;
+    seen.scene = load_scene(folder.put("scene.json", text));
+    seen.snapshot = make_snapshot(seen.scene, moment_of(seen.scene, 1));
+    View view = plain_view({8, 8}, 2);
+    view.camera = camera_at(seen.scene, 0, 0);
+    view.background = background, view.fog_parts = true;
+    FrameStats stats;
+    seen.layers = render_frame(find_mode(mode), view, seen.snapshot, settings_for(Quality::preview), {}, stats);
+}
+
+TEST(Channels, ABackgroundComesThroughByItsColor) {
+    for (const char* mode : {"march", "path", "froxel"}) {
+        Seen seen;
+        see(scene_text(text(extinction)), mode, seen);
+        ASSERT_TRUE(is_chromatic(seen.snapshot));
+        for (const ivec2 p : {ivec2(3, 3), ivec2(4, 4)}) { // rays through the middle are 2 m long in it, within .2 %
+            const vec3 through = glm::exp(-2.0f * extinction);
+            expect_near(seen.layers.background.at(p.x, p.y) / (through * vec3(1, 0.5f, 2)), vec3(1),
+                        std::string_view(mode) == "path" ? 0.5f : 0.01f);
+            if (std::string_view(mode) != "path")
+                EXPECT_NEAR(seen.layers.transmittance.at(p.x, p.y), mean_component(through), 0.005f);
+        }
+    }
+}
+
+TEST(Channels, AlphaIsOneMinusTheMean) {
+    Seen seen;
+    see(scene_text(text(extinction)), "march", seen, false);
+    EXPECT_NEAR(seen.layers.alpha.at(4, 4), 1 - mean_component(glm::exp(-2.0f * extinction)), 0.005f);
+}
+
+// Each channel is what grey fog would show.
+TEST(Channels, EachIsThatOfGreyFog) {
+    for (const Mode& mode : modes()) {
+        if (mode.surfaces == Surfaces::post) continue;
+        Seen all;
+        see(scene_text(text(extinction)), mode.name, all);
+        for (int c = 0; c < 3; ++c) {
+            Seen grey;
+            see(scene_text(std::to_string(extinction[c])), mode.name, grey);
+            EXPECT_FALSE(is_chromatic(grey.snapshot));
+            for (size_t i = 0; i < all.layers.color.pixels.size(); ++i) {
+                EXPECT_NEAR(all.layers.inscatter.pixels[i][c], grey.layers.inscatter.pixels[i][c], 1e-6f) << mode.name;
+                EXPECT_NEAR(all.layers.ambient.pixels[i][c], grey.layers.ambient.pixels[i][c], 1e-6f) << mode.name;
+                EXPECT_NEAR(all.layers.background.pixels[i][c], grey.layers.background.pixels[i][c], 1e-6f)
+                    << mode.name;
+            }
+        }
+    }
+}
+
+TEST(Channels, ThatFogDoesNotDimStayClear) {
+    Seen seen;
+    see(scene_text("[0.7, 0, 0]"), "march", seen);
+    for (const vec3& pixel : seen.layers.background.pixels) {
+        EXPECT_EQ(pixel.y, 0.5f);
+        EXPECT_EQ(pixel.z, 2);
+        EXPECT_LT(pixel.x, 0.3f);
+    }
+    for (const vec3& pixel : seen.layers.inscatter.pixels) expect_near(pixel * vec3(0, 1, 1), vec3(0), 1e-12f);
+}
+
+TEST(Channels, OfEqualExtinctionAreGrey) {
+    Seen color, number;
+    see(scene_text("[0.4, 0.4, 0.4]"), "march", color);
+    see(scene_text("0.4"), "march", number);
+    EXPECT_FALSE(is_chromatic(color.snapshot));
+    EXPECT_TRUE(same_bits(color.layers.color, number.layers.color));
+}
+
+// A white plane 4 m deep in the fog, lit along the way that the eye looks.
+TEST(Channels, SurfacesAreLitThroughTheFog) {
+    Scene scene;
+    add_plane(scene, -4, 50, vec3(0));
+    scene.materials.back().base_color = vec3(1);
+    Snapshot snapshot = snapshot_of(scene);
+    snapshot.lights = {sun_light({0, 0, -1}, 2)};
+    for (int c = 0; c < 3; ++c)
+        snapshot.channel_media[c] = {homogeneous_medium(extinction[c], {vec3(-50, -50, -9), vec3(50, 50, 0)})};
+    snapshot.media = {homogeneous_medium(mean_component(extinction), {vec3(-50, -50, -9), vec3(50, 50, 0)})};
+    View view = plain_view({8, 8}, 1, 2.0f);
+    view.surface_parts = true;
+    FrameStats stats;
+    const Layers layers = render_frame(find_mode("march"), view, snapshot, settings_for(Quality::preview), {}, stats);
+    const vec3 lit = 2 / pi * glm::exp(-8.0f * extinction);
+    for (const vec3& pixel : layers.surface.pixels) expect_near(pixel / lit, vec3(1), 2e-3f);
+}
+}
+}
