@@ -32,7 +32,15 @@ struct Prepared {
     ScatterFunction scatter;
     std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
     double mode_seconds = 0;              // what the mode took
+    // Of each moment while the shutter is open; then the frame itself has neither fog nor depths, and lights of a
+    // moment go into these of the frame's layers.
+    std::vector<Prepared> moments{};
+    std::vector<int> layer_of_light{};
 };
+
+// Whether a frame is made of several moments: the view has a camera for each, and the snapshot a scene.
+bool has_moments(const View& view, const Snapshot& snapshot);
+
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history);
 
