@@ -44,7 +44,7 @@ class ShutterTest(ProgramTest):
     def test_a_curve_weighs_the_moments(self):
         """Light that comes in late shows more of the flash, which grows."""
         early, even, late = (sum(self.render(self.scene(f"{i}.json", {**HALF_FRAME, "curve": curve}), f"{i}.exr",
-                                             "--aov", "lights")["flash.R"])
+                                             "--aov", "lights")["light_flash.R"])
                              for i, curve in enumerate(([1, 0], "box", [0, 1])))
         self.assertLess(early, even)
         self.assertLess(even, late)
@@ -64,12 +64,12 @@ class ShutterTest(ProgramTest):
                          "--aov", layers, "--float", "--frames", "3", "--shutter", "-0.5,0.5", "--time-samples", 6)
             self.succeed("render", "--plan", plan, "-o", self.path("one.exr"), "-q", "--threads", 1)
             if name in ("march", "froxel"):
-                self.succeed("prepare", plan, "-q")
+                self.succeed("prepare", "--plan", plan, "-q")
             for part in (3, 1, 2):
                 self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", f"{part}/3", "-q", "--threads", 2)
             self.succeed("merge", *sorted(self.directory.glob("frame.part-*")), "-o", self.path("merged.exr"), "-q")
             self.assertEqual(read_channels(self.path("one.exr")), read_channels(self.path("merged.exr")), name)
-            self.succeed("prepare", plan, "--clean", "-q")
+            self.succeed("prepare", "--plan", plan, "--clean-all", "-q")
             for file in (plan, *self.directory.glob("*.exr")):
                 file.unlink()
 
@@ -90,7 +90,7 @@ class ShutterTest(ProgramTest):
             self.refuse(2, ["--shutter", why], "render", scene, "-o", self.path("a.exr"), "--shutter", text)
         self.refuse(2, ["--time-samples"], "render", scene, "-o", self.path("a.exr"), "--time-samples", "0")
         self.refuse(2, ["--history", "shutter"], "render", self.scene(shutter=HALF_FRAME), "-o", self.path("a.exr"),
-                    "--mode", "froxel", "--history", 4)
+                    "--mode", "froxel", "--history", 4, "-q")
         for shutter, why in (({"open": 1, "close": 0}, "runs backwards"), ({"open": 0}, "close"),
                              ({"close": 1e9}, "100"), ({"close": 1, "curve": [0, 0]}, "no light"),
                              ({"close": 1, "curve": "gauss"}, "curve")):

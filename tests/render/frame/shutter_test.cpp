@@ -131,7 +131,7 @@ TEST_P(ShutterFrame, ConstantVelocityBlursToATrapezoid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Moves, ShutterFrame, testing::Bool(),
-                         [](const auto& info) { return info.param ? "Plate" : "Camera"; });
+                         [](const auto& one) { return one.param ? "Plate" : "Camera"; });
 
 TEST(ShutterDepth, IsThatOfTheMiddle) {
     Moving moving;
@@ -195,7 +195,7 @@ TEST(ShutterFog, IsTheMeanOfItsMoments) {
     put(moving, true), add_lamps(moving);
     moving.request.time_samples = 8;
     Settings& settings = moving.request.settings;
-    settings.pixel.samples = 16;
+    settings.pixel.samples = 8, settings.pixel.filter = PixelFilter::center; // each moment once, at the same places
     for (const char* mode : {"march", "froxel", "shadow-volume", "cone"}) {
         SCOPED_TRACE(mode);
         const Layers blurred = rendered(moving.scene, moving.request, mode), mean = mean_of_stills(moving, mode);
@@ -206,7 +206,7 @@ TEST(ShutterFog, IsTheMeanOfItsMoments) {
         }
         const double count = static_cast<double>(mean.inscatter.pixels.size());
         EXPECT_GT(sum, 0);
-        EXPECT_LT(std::sqrt(squares / count) / (sum / count), 0.03); // two samples of each moment, of a lamp's glow
+        EXPECT_LT(std::sqrt(squares / count) / (sum / count), 0.01); // jitter of steps
     }
 }
 
