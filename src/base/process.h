@@ -1,8 +1,10 @@
 // What this process has taken.
 #pragma once
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cstdint>
+#include <fstream>
 
 namespace tyndall {
 // The most memory it ever held, bytes.
@@ -10,5 +12,16 @@ inline uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+// What it holds now, and what the machine has, bytes; 0 where that is not known.
+inline uint64_t held_memory() {
+    uint64_t all = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> all >> resident;
+    return resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+}
+inline uint64_t machine_memory() {
+    const long pages = sysconf(_SC_PHYS_PAGES);
+    return pages > 0 ? static_cast<uint64_t>(pages) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 }

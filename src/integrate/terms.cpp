@@ -13,6 +13,11 @@ Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
         if (!terms.emission) medium.optics.emission.radiance = vec3(0);
     }
     if (!terms.ambient) snapshot.ambient = vec3(0), snapshot.environment = nullptr;
+    if (snapshot.moments) {
+        auto moments = std::make_shared<std::vector<Snapshot>>();
+        for (const Snapshot& moment : *snapshot.moments) moments->push_back(with_terms(moment, terms));
+        snapshot.moments = std::move(moments);
+    }
     return snapshot;
 }
 

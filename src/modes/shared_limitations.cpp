@@ -2,6 +2,7 @@
 
 #include "modes/settings.h"
 #include "scene/light.h"
+#include "scene/scene.h"
 #include "trace/environment.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/occlusion/occluders.h"
@@ -165,6 +166,22 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     add(limitation::fog_scatters_alone, "fluence.orders", 0, surfaces ? Severity::degraded : Severity::info);
     if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
+}
+
+void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
+    constexpr double separate = 2; // pixels: then edges show as steps
+    if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
+    const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
+    limitations.push_back({between > separate ? Severity::degraded : Severity::info,
+                           &limitation::shutter_moments,
+                           Subject::camera,
+                           view.camera.name,
+                           {between, moments}});
+    const double open = snapshot.moments->back().seconds - snapshot.moments->front().seconds;
+    for (const MediumSource& medium : snapshot.scene->media)
+        if (medium.kind == MediumKind::vdb && medium.sequence.files.size() > 1)
+            limitations.push_back(
+                {Severity::degraded, &limitation::still_volumes, Subject::medium, medium.name, {open}});
 }
 
 namespace {

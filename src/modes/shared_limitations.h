@@ -55,6 +55,11 @@ inline constexpr LimitationKind out_of_gamut{
 inline constexpr LimitationKind unscattered_emission{
     "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
 inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
+inline constexpr LimitationKind shutter_moments{
+    "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
+                       "made of (--time-samples)"};
+inline constexpr LimitationKind still_volumes{
+    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
@@ -85,6 +90,9 @@ void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light,
 
 // What a grid of light that has been scattered before cannot show; ambient light too.
 void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
+
+// What motion blur is made of, and what does not move in it.
+void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Where colors of grids count with their mean: of what scatters, and of what emits.
 void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);

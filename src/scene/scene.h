@@ -7,6 +7,7 @@
 #include "scene/load_options.h"
 #include "scene/mesh.h"
 #include "scene/phase_source.h"
+#include "scene/shutter.h"
 #include "volume/emission/blackbody.h"
 #include "volume/recipe/recipe.h"
 #include "volume/value_map.h"
@@ -48,7 +49,8 @@ struct CameraSource {
     std::optional<Keyed<float>> focus; // metres along the viewing direction; none: as far as the target
     int blades = 0;
     Keyed<float> blade_turn{0.0f}; // radians
-    std::string entry;             // JSON pointer of what the scene file says of it; empty = nothing
+    Shutter shutter;
+    std::string entry; // JSON pointer of what the scene file says of it; empty = nothing
 };
 
 // What the number of a light's intensity means.

@@ -13,6 +13,11 @@
 #include <algorithm>
 
 namespace tyndall {
+float recipe_speed(const FogRecipe& recipe) {
+    return glm::length(recipe.wind) + std::abs(recipe.noise.evolve) * recipe.noise.scale +
+           2 * pi * std::abs(recipe.swirl * recipe.swirl_speed);
+}
+
 namespace {
 mat4 checked_matrix(const Scene& scene, const MediumSource& source, double seconds) {
     const mat4 matrix = medium_matrix(source, seconds);
@@ -25,11 +30,6 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
 Optics optics_at(const MediumSource& source, double seconds) {
     return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds),
             phase_at(source.phase, source.g.at(seconds), seconds), source.emission.at(seconds)};
-}
-
-// Fog that stands still is grown once.
-bool changes(const FogRecipe& recipe) {
-    return recipe.wind != vec3(0) || recipe.noise.evolve != 0 || (recipe.swirl != 0 && recipe.swirl_speed != 0);
 }
 
 std::string number_key(double value) { return formatted("%a", value); }
@@ -66,7 +66,7 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
     FogRecipe recipe = *source.recipe;
     if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
     std::string key = "recipe " + recipe_hash(recipe);
-    if (changes(recipe)) key.append(" at ").append(number_key(seconds));
+    if (recipe_speed(recipe) > 0) key.append(" at ").append(number_key(seconds));
     if (key == before.key) return before;
     const auto grow_fog = [&] { return stored_fog(grow(recipe, seconds), {}); };
     return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
@@ -107,7 +107,7 @@ FogSource fog_source(const Scene& scene, const MediumSource& source, Moment mome
                      const FogSource& before, Snapshot& snapshot) {
     CacheFolder* files = snapshot.files.get();
     FogSource result = source.kind == MediumKind::noise
-                           ? grown(source, moment.seconds, files, before)
+                           ? grown(source, moment.grown.value_or(moment.seconds), files, before)
                            : read(source, moment.frame, missing, files, before, snapshot.notes);
     const mat4 matrix = checked_matrix(scene, source, moment.seconds);
     if (!result.bricks || (result.placed && result.matrix == matrix)) return result;

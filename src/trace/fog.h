@@ -3,6 +3,8 @@
 #include "trace/snapshot.h"
 
 namespace tyndall {
+struct FogRecipe;
+
 // Of fog that emits and dims nothing, 1/m. Kernels divide emission by extinction, and multiply by it again: any value
 // does that is nothing over the longest way.
 inline constexpr float min_extinction = 1e-20f;
@@ -10,6 +12,10 @@ inline constexpr float min_extinction = 1e-20f;
 // Fills media, fog_sources and notes of `snapshot`. Media without extinction are left out. `previous` (may be null)
 // lends bricks made from the same file or recipe. Throws Error.
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot);
+
+// How fast fog of a recipe changes, metres per second, about: by wind, by swirls around their middle, and by gradients
+// that evolve through a cell a turn. 0 where it stands still: it is grown once.
+float recipe_speed(const FogRecipe& recipe);
 
 // The smallest box around an affinely moved box; unbounded directions stay so.
 Box moved_box(const mat4& matrix, const Box& box);

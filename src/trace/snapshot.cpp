@@ -12,7 +12,10 @@
 #include "trace/light_filters.h"
 #include "trace/light_links.h"
 #include "trace/occlusion/occluders.h"
+#include "volume/bricks/bricks.h"
 #include "volume/medium.h"
+
+#include <algorithm>
 
 namespace tyndall {
 namespace {
@@ -154,6 +157,72 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
 }
 
 namespace {
+// How often fog of recipes has to be grown: once, and whenever it has moved half a voxel.
+double growths_wanted(const Scene& scene, double seconds) {
+    double most = 1;
+    for (const MediumSource& medium : scene.media)
+        if (medium.kind == MediumKind::noise) {
+            const double voxel = medium.voxel_size > 0 ? double{medium.voxel_size} : medium.recipe->voxel_size;
+            most = std::max(most, std::ceil(2 * double{recipe_speed(*medium.recipe)} * seconds / voxel));
+        }
+    return most;
+}
+
+double growths_affordable(const Scene& scene, const Snapshot& snapshot) {
+    constexpr double max_bytes = 1 << 30;
+    double bytes = 1;
+    for (size_t i = 0; i < scene.media.size(); ++i)
+        if (const auto& bricks = snapshot.fog_sources[i].bricks; bricks && scene.media[i].kind == MediumKind::noise)
+            bytes += static_cast<double>(bricks->bytes());
+    return std::max(max_bytes / bytes, 1.0);
+}
+
+// Moments in so many runs of neighbours, each with the fog of its middle.
+std::vector<Moment> with_growths(std::vector<Moment> moments, double growths) {
+    const size_t count = moments.size();
+    const size_t run = static_cast<size_t>(std::ceil(static_cast<double>(count) / std::min(growths, 1.0 * count)));
+    for (size_t first = 0; first < count; first += run) {
+        const size_t last = std::min(first + run, count) - 1;
+        const double middle = 0.5 * (moments[first].seconds + moments[last].seconds);
+        for (size_t i = first; i <= last; ++i) moments[i].grown = middle;
+    }
+    return moments;
+}
+}
+
+Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snapshot* previous, MissingFrame missing,
+                       std::shared_ptr<CacheFolder> files) {
+    if (frame.moments.empty()) return make_snapshot(scene, frame.middle, previous, missing, std::move(files));
+    if (previous && previous->moments) previous = &previous->moments->back();
+    const double wanted = growths_wanted(scene, frame.moments.back().seconds - frame.moments.front().seconds);
+    std::vector<Moment> moments = with_growths(frame.moments, wanted);
+    auto all = std::make_shared<std::vector<Snapshot>>();
+    all->reserve(moments.size());
+    for (size_t i = 0; i < moments.size(); ++i) {
+        all->push_back(make_snapshot(scene, moments[i], i == 0 ? previous : &all->back(), missing, files));
+        if (i > 0) continue;
+        if (const double most = growths_affordable(scene, all->front()); most < wanted)
+            moments = with_growths(frame.moments, most);
+    }
+    Moment middle_moment = frame.middle;
+    middle_moment.grown = moments[moments.size() / 2].grown;
+    Snapshot middle = make_snapshot(scene, middle_moment, &(*all)[moments.size() / 2], missing, std::move(files));
+    for (const Snapshot& moment : *all)
+        for (const std::string& note : moment.notes)
+            if (!std::ranges::count(middle.notes, note)) middle.notes.push_back(note);
+    middle.moments = std::move(all);
+    return middle;
+}
+
+FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter, int count) {
+    FrameMoments result{{frame, (frame + shutter.middle()) / scene.frame_rate}, {}};
+    if (!shutter || count < 2) return result;
+    for (const double time : shutter_times(shutter, count))
+        result.moments.push_back({frame, (frame + time) / scene.frame_rate});
+    return result;
+}
+
+namespace {
 void set_lens(const Scene& scene, const CameraSource& source, double seconds, Camera& camera) {
     camera.lens = {source.aperture.at(seconds), infinity, source.blades, source.blade_turn.at(seconds)};
     if (!camera.lens) return;
@@ -194,5 +263,5 @@ int find_camera(const Scene& scene, const std::string& name) {
     fail(ExitCode::usage, "camera", unknown_name("camera", name, names));
 }
 
-Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate}; }
+Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate, {}}; }
 }

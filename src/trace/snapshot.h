@@ -70,6 +70,7 @@ struct Snapshot {
     std::shared_ptr<FrameCache> cache;              // made for this frame so far; null in snapshots made by hand
     std::shared_ptr<FrameCache> cache_before;       // for the frame before; null of the first
     std::shared_ptr<CacheFolder> files;             // with things of a plan that was prepared; else null
+    std::shared_ptr<const std::vector<Snapshot>> moments; // of a frame with an open shutter, whose middle this is
 
     // Not inline: who only holds a snapshot needs neither lights nor media.
     Snapshot();
@@ -84,6 +85,11 @@ struct Snapshot {
 // `previous` (of the same, unchanged Scene) is shared with it, and the result is the same without. The Scene must
 // outlive it. What `files` holds is taken from there. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
+                       MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
+
+// All moments of a frame, each sharing with the one before it. Neighbouring moments share the fog of recipes, which is
+// grown anew where it has moved half a voxel, and less often where that would take more than some 1 GiB.
+Snapshot make_snapshot(const Scene& scene, const FrameMoments& moments, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
 
 // Whether fog dims the channels differently, and the scene as one of them, 0 to 2, meets it.

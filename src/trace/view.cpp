@@ -5,11 +5,12 @@
 #include "trace/sampling/lamp_samples.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
-constexpr uint32_t use_lens = 0x1e45u;
+constexpr uint32_t use_lens = 0x1e45u, use_shutter = 0x5477u;
 
 int lamp_factor(const View& view, ivec2 tile) {
     if (view.lamps.empty()) return 1;
@@ -50,8 +51,24 @@ SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
     return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};
 }
 
-Ray sample_ray(const View& view, vec2 position, SamplePlace place) {
-    const Camera& camera = view.camera;
+int moment_at(const View& view, ivec2 pixel, int sample) {
+    const uint32_t size = static_cast<uint32_t>(samples_of(view, pixel) / batches_of(view, pixel));
+    const uint32_t number = static_cast<uint32_t>(sample), batch = number / size;
+    const ivec2 tile = pixel / tile_side;
+    const uint32_t key = hash(static_cast<uint32_t>(tile.x), static_cast<uint32_t>(tile.y), view.seed,
+                              static_cast<uint32_t>(view.frame), use_shutter, batch);
+    // The samples of all pixels of a tile take the same places in a scrambled sequence of their own ...
+    const uint32_t shuffled = owen_scramble(number % size, hash(key, 0u));
+    uint32_t time = owen_scramble(reverse_bits(shuffled), hash(key, 1u));
+    // ... but that each pixel of 2×2 has its own quarter of what lies between two of them.
+    const uint32_t quarter = static_cast<uint32_t>(pixel.x & 1) | static_cast<uint32_t>(pixel.y & 1) << 1;
+    const int bits = std::bit_width(std::bit_ceil(size)) - 1;
+    time ^= quarter << 30 >> bits;
+    const uint64_t moments = view.shutter->cameras.size();
+    return static_cast<int>(time * moments >> 32);
+}
+
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlace place) {
     if (!camera.lens) return camera_ray(camera, view.size, position);
     const Sample2 u = sample2(place.index, hash(place.sequence, use_lens));
     return lens_ray(camera, view.size, position, aperture_point(camera.lens, {u.x, u.y}));

@@ -29,6 +29,12 @@ template<class Visit> void fields(TileFactors& tiles, Visit& visit) {
     visit(tiles.low), visit(tiles.factors.size), visit(tiles.factors.pixels);
 }
 
+// While the shutter is open.
+struct OpenShutter {
+    std::vector<Camera> cameras; // at each moment
+    float motion = 0;            // pixels that the fastest thing travels on the picture
+};
+
 struct View {
     Camera camera;
     ivec2 size{640, 360};            // the full picture (display window)
@@ -58,6 +64,7 @@ struct View {
     };
     std::vector<Lamp> lamps;
     std::shared_ptr<const TileFactors> edges{};    // found for the picture; null = none
+    std::shared_ptr<const OpenShutter> shutter{};  // null = the picture is one moment
     std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take; 0 = the tile is left out
 };
 
@@ -78,9 +85,17 @@ struct SamplePoint {
     float weight = 1;
 };
 
+// Which of the shutter's moments a sample shows. Those of a pixel and batch are spread evenly over them, and so are
+// those of each 2×2 pixels at one sample; a tile of 4×4 holds four moments at most at one sample, so that its rays
+// still go together. Many samples: all pixels of a tile show the same moment.
+int moment_at(const View& view, ivec2 pixel, int sample);
+
 // The ray of a sample that lies at a position: through the lens, where the camera has one. Points of the lens follow a
 // scrambled (0,2)-sequence of their own.
-Ray sample_ray(const View& view, vec2 position, SamplePlace place);
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlace place);
+inline Ray sample_ray(const View& view, vec2 position, SamplePlace place) {
+    return sample_ray(view, view.camera, position, place);
+}
 
 // Importance sampled by the filter, so that weights are one, or by filter and glow where a lamp is seen.
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample);

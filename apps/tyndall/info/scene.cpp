@@ -117,6 +117,10 @@ std::string lens_text(const CameraSource& camera) {
     return radius > 0 ? formatted(", lens of %g m in radius", radius) : "";
 }
 
+std::string shutter_text(const Shutter& shutter) {
+    return shutter ? formatted(", shutter open from %g to %g frames", shutter.open, shutter.close) : "";
+}
+
 std::string content_text(const Scene& scene) {
     const Totals totals = totals_of(scene);
     std::string text = "  geometry      " + count_text(totals.triangles, "triangle") + " in " +
@@ -134,7 +138,7 @@ std::string content_text(const Scene& scene) {
                 (camera.ortho_height > 0 ? ", orthographic"
                                          : formatted(", vertical field of view %.1f degrees",
                                                      glm::degrees(double{camera.vertical_fov.at(0)}))) +
-                lens_text(camera) + "\n";
+                lens_text(camera) + shutter_text(camera.shutter) + "\n";
     for (const LightSource& light : scene.lights)
         text += formatted("  light         %s, %s, %g %s%s%s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),

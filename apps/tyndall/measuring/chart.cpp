@@ -36,7 +36,7 @@ ChartJob make_job(const Options& texts) {
     job.render.scene_file = texts.scene;
     job.render.settings = settings_for(Quality::preview);
     for (const std::string& assignment : texts.settings) apply_setting(job.render.settings, assignment);
-    job.render.camera = texts.camera;
+    job.render.camera = texts.camera, job.render.shutter = Shutter{}; // stills are measured
     job.render.isa = isa_name();
     job.modes = asked_modes("--modes", texts.modes);
     job.directory = texts.output;

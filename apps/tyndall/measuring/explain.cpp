@@ -47,7 +47,7 @@ RenderRequest make_request(const Options& texts) {
     request.quality = quality_named(texts.quality);
     request.settings = settings_for(request.quality);
     for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
-    request.camera = texts.camera;
+    request.camera = texts.camera, request.shutter = Shutter{}; // a ray has one moment
     if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
     if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     return request;

@@ -41,6 +41,7 @@ Limitations limitations_of(const Scene& scene, const RenderRequest& request, con
                            const Snapshot& snapshot) {
     View view;
     view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
+    view.shutter = view_of(scene, request, plan.settings, snapshot.frame).shutter;
     view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     return plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
 }

@@ -67,6 +67,14 @@ void add_how(const Command& command, RenderOptions& texts) {
            "frames before each that modes with a memory (tyndall modes) look at first,\n"
            "to smooth their noise (default: 0)",
            "N");
+    option("--shutter", texts.shutter,
+           "when the shutter opens and closes, in frames counted from the frame, instead of the\n"
+           "camera's: --shutter=-0.25,0.25 is film's half frame; 0,0 switches motion blur off",
+           "OPEN,CLOSE");
+    option("--time-samples", texts.time_samples,
+           "moments that a frame with an open shutter is made of: each is prepared by itself.\n"
+           "Default: 4 to 32, by how far things move on the image meanwhile",
+           "N");
     command
         .options("--set", texts.settings,
                  "one setting, for instance march.step_depth=0.1; may be repeated;\n"
@@ -190,6 +198,7 @@ std::vector<std::string> planned_words(const RenderOptions& texts) {
     add("--light-units", &RenderOptions::light_units), add("--quality", &RenderOptions::quality);
     add("--samples", &RenderOptions::samples), add("--target-error", &RenderOptions::target_error);
     add("--orders", &RenderOptions::orders), add("--seed", &RenderOptions::seed), add("--isa", &RenderOptions::isa);
+    add("--shutter", &RenderOptions::shutter), add("--time-samples", &RenderOptions::time_samples);
     add("--aov", &RenderOptions::aov), add("--background", &RenderOptions::background);
     for (const std::string& setting : texts.settings) words.insert(words.end(), {"--set", setting});
     if (texts.full_float) words.emplace_back("--float");

@@ -10,7 +10,7 @@ struct SavedPlan;
 struct RenderOptions {
     std::string scene, output, frames, mode = main_mode_name(), quality = "preview", camera, resolution, crop, samples;
     std::string exposure, view_transform, light_units = "spec", missing = "error", aov, seed, isa = "auto", stats;
-    std::string orders, target_error, time_budget, history, background = "on", sheet_reference;
+    std::string orders, target_error, time_budget, history, shutter, time_samples, background = "on", sheet_reference;
     std::string plan, part, more, checkpoint, cache_local, order = "listed";
     std::vector<std::string> settings;
     bool png = false, resume = false, full_float = false;

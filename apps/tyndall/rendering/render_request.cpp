@@ -7,6 +7,7 @@
 #include "render/parts/plan_file.h"
 #include "rendering/automatic.h"
 #include "rendering/render_options.h"
+#include "trace/shutter_motion.h"
 
 #include <algorithm>
 #include <tuple>
@@ -56,6 +57,20 @@ void check_samples(const RenderRequest& request, const Mode& mode) {
         fail(ExitCode::usage, "--samples",
              std::string(request.time_budget > 0 ? "--time-budget" : "--target-error") +
                  " decides how many rays a pixel takes");
+}
+}
+
+namespace {
+Shutter shutter_option(const std::string& text) {
+    constexpr double most = 100; // frames, as in the scene file
+    const std::vector<std::string> times = comma_list(text);
+    if (times.size() != 2)
+        fail(ExitCode::usage, "--shutter", "expected OPEN,CLOSE in frames; got '" + printable(text, 40) + "'");
+    const Shutter shutter{
+        number_option("--shutter", times[0], -most, most), number_option("--shutter", times[1], -most, most), {}};
+    if (shutter.close < shutter.open)
+        fail(ExitCode::usage, "--shutter", "runs backwards: it closes before it opens: '" + printable(text, 40) + "'");
+    return shutter;
 }
 }
 
@@ -123,6 +138,9 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
         fail(ExitCode::usage, "--history",
              "does not go with --target-error and --time-budget: they measure single frames");
     if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
+    if (!texts.shutter.empty()) request.shutter = shutter_option(texts.shutter);
+    if (!texts.time_samples.empty())
+        request.time_samples = static_cast<int>(integer_option("--time-samples", texts.time_samples, 1, max_moments));
     request.camera = texts.camera;
     if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
     if (!texts.crop.empty()) read_crop(texts.crop, request);
@@ -169,6 +187,8 @@ void check_planned(const RenderOptions& texts) {
                                                      {"--target-error", !texts.target_error.empty()},
                                                      {"--time-budget", !texts.time_budget.empty()},
                                                      {"--history", !texts.history.empty()},
+                                                     {"--shutter", !texts.shutter.empty()},
+                                                     {"--time-samples", !texts.time_samples.empty()},
                                                      {"--background", texts.background != usual.background},
                                                      {"--set", !texts.settings.empty()},
                                                      {"--float", texts.full_float}};

@@ -106,7 +106,7 @@ void follow(const RayScene& scene, RayStory& story) {
     const Prepared prepared = prepare_frame(main_mode(), scene.view, scene.snapshot, scene.truth, nullptr);
     PathPacket s;
     PixelSample sample;
-    start_paths(scene.view, {&story.pixel, 1}, 0, s, {&sample, 1});
+    start_paths(scene.view, false, {&story.pixel, 1}, 0, s, {&sample, 1});
     story.origin = s.path[0].ray.origin, story.direction = s.path[0].ray.direction;
     if (scene.snapshot.scene) story.world_origin = scene.snapshot.scene->origin;
     for (int layer = 0; layer < max_layers; ++layer) {

@@ -16,7 +16,7 @@ constexpr int noisy_batches = 32;
 constexpr int largest_picture = 1 << 20; // pixels that a mode of whole pictures is asked for
 
 FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view, const Prepared& prepared) {
-    return {view, scene.snapshot, prepared.scatter, mode.surfaces, scene.settings.terms.light_points, prepared};
+    return frame_tracer(mode, view, scene.snapshot, scene.settings, prepared);
 }
 
 void take(const PixelSample& sample, Answer& answer) {

@@ -61,6 +61,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
             if (max_component(material.emission) > 0)
                 limitations.push_back(
                     {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    add_shutter(view, snapshot, limitations);
     return limitations;
 }
 }

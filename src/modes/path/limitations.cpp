@@ -6,7 +6,7 @@
 #include "volume/medium.h"
 
 namespace tyndall {
-Limitations path_limitations(const View&, const Snapshot& snapshot, const Settings& settings) {
+Limitations path_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
     constexpr float hardly_absorbing = 0.995f; // albedo
     Limitations limitations;
     for (const Medium& medium : snapshot.media)
@@ -19,6 +19,7 @@ Limitations path_limitations(const View&, const Snapshot& snapshot, const Settin
                                Subject::setting,
                                "path.orders",
                                {static_cast<double>(settings.path.orders)}});
+    add_shutter(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -85,9 +85,7 @@ struct Traced {
     Settings settings;
     Prepared prepared;
 
-    FrameTracer tracer(const View& view) const {
-        return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared};
-    }
+    FrameTracer tracer(const View& view) const { return frame_tracer(mode, view, snapshot, settings, prepared); }
 };
 
 // A mode and path tracing, of as many orders as the mode's grid; and of both the light of lamps that scatters once.

@@ -65,11 +65,6 @@ constexpr size_t tiles_between_stops = 8;
 constexpr uint32_t use_pilot = 0x9170u;
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
-FrameTracer tracer_of(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                      const Prepared& prepared) {
-    return {view, snapshot, prepared.scatter, mode.surfaces, settings.terms.light_points, prepared};
-}
-
 // Of a tile, those to follow: all, or one of each four.
 size_t pixels_of(const Pilot& pilot, const DrawnTile& tile, std::span<ivec2> pixels, std::span<size_t> places) {
     const uint32_t shift = hash(static_cast<uint32_t>(tile.corner.x), static_cast<uint32_t>(tile.corner.y), pilot.seed);
@@ -113,7 +108,7 @@ Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
     std::atomic<int64_t> work = 0; // whole numbers: sums of them do not depend on their order
     View view = tracer.view;
     if (pass > 0) view.seed = hash(view.seed, static_cast<uint32_t>(pass));
-    const FrameTracer own{view, tracer.snapshot, tracer.scatter, tracer.surfaces, tracer.light_points, tracer.prepared};
+    const FrameTracer own = tracer.with(view);
     result.resize(std::max(result.size(), end * pilot_values));
     parallel_for(static_cast<int64_t>(end - begin), [&](int64_t i) {
         if (pilot.cancel && *pilot.cancel) fail(ExitCode::internal, "render", "cancelled");
@@ -249,7 +244,7 @@ void grow(Pilot& pilot, bool by_noise) {
     }
     if (!pilot.truth_settings) return;
     const FrameTracer tracer =
-        tracer_of(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared);
+        frame_tracer(*pilot.mode, pilot.view, *pilot.snapshot, *pilot.truth_settings, *pilot.prepared);
     if (seen == 0)
         follow_first(tracer, pilot);
     else
@@ -264,7 +259,7 @@ Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
     }
     const double prepared = clock();
     const View view = view_for(look.mode, pilot);
-    const Cost cost = follow_rest(tracer_of(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
+    const Cost cost = follow_rest(frame_tracer(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
                                   look.values.size() / pilot_values, look.passes, look.values);
     look.passes = pilot.passes, look.cost += Cost{clock() - prepared, cost.work};
     const std::vector<vec3>& truth = pilot.truth.empty() ? look.values : pilot.truth;
@@ -289,7 +284,7 @@ double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settin
     const auto variance_of_means = [&](int of) {
         view.pixel_samples = 2 * of;
         std::vector<vec3> own;
-        follow(tracer_of(mode, view, *pilot.snapshot, settings, prepared), pilot, 0, 0, pilot.tiles.size(), own);
+        follow(frame_tracer(mode, view, *pilot.snapshot, settings, prepared), pilot, 0, 0, pilot.tiles.size(), own);
         return error_of(pilot, own, own, of_sample).value;
     };
     const double one = variance_of_means(1), many = variance_of_means(samples);

@@ -14,16 +14,18 @@ float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(
 // random within half its stratum, so that regular steps do not beat with regular shadows.
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
 
-Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSample& result) {
+Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int lane, PixelSample& result) {
     const auto [position, weight] = sample_point(view, pixel, sample);
     const vec2 off = position - (vec2(pixel) + 0.5f);
     result.off_center = glm::dot(off, off), result.weight = weight;
 
     Path path;
     path.place = sample_place(view, pixel, sample);
-    path.ray = sample_ray(view, position, path.place);
-    const float along = std::max(glm::dot(path.ray.direction, view.camera.forward), 1e-6f);
-    path.skip = view.camera.near / along;
+    if (in_moments) path.moment = moment_at(view, pixel, sample);
+    const Camera& camera = in_moments ? view.shutter->cameras[static_cast<size_t>(path.moment)] : view.camera;
+    path.ray = sample_ray(view, camera, position, path.place);
+    const float along = std::max(glm::dot(path.ray.direction, camera.forward), 1e-6f);
+    path.skip = camera.near / along;
     path.screen = position / vec2(view.size), path.position = position;
     path.lane = lane;
 
@@ -41,12 +43,12 @@ Path camera_path(const View& view, ivec2 pixel, int sample, int lane, PixelSampl
 }
 }
 
-void start_paths(const View& view, std::span<const ivec2> pixels, int sample, PathPacket& s,
+void start_paths(const View& view, bool in_moments, std::span<const ivec2> pixels, int sample, PathPacket& s,
                  std::span<PixelSample> samples) {
     s.count = static_cast<int>(pixels.size());
     for (int i = 0; i < s.count; ++i) {
         samples[i] = {};
-        s.path[i] = camera_path(view, pixels[i], sample, i, samples[i]);
+        s.path[i] = camera_path(view, in_moments, pixels[i], sample, i, samples[i]);
     }
 }
 
@@ -120,14 +122,14 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     Scatter scatter[16];
     for (size_t i = 0; i < count; ++i) rays[i] = s.path[i].ray, near[i] = s.path[i].skip;
     const RayNumbers numbers = ray_numbers(tracer.view, 0, s);
-    tracer.scatter({.rays = {rays, count},
-                    .ids = {numbers.ids, count},
-                    .parts = parts,
-                    .jitter = {numbers.jitter, count},
-                    .places = {numbers.places, count},
-                    .clip_near = {near, count},
-                    .positions = {numbers.positions, count}},
-                   {scatter, count});
+    const RayBatch batch{.rays = {rays, count},
+                         .ids = {numbers.ids, count},
+                         .parts = parts,
+                         .jitter = {numbers.jitter, count},
+                         .places = {numbers.places, count},
+                         .clip_near = {near, count},
+                         .positions = {numbers.positions, count}};
+    tyndall::scatter(tracer, batch, {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {
         PixelSample& result = samples[i];
@@ -158,6 +160,10 @@ void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelS
     follow_surfaces(tracer, s, samples);
 }
 
+bool has_single_depths(const FrameTracer& tracer) {
+    return tracer.view.camera.lens || !tracer.prepared.moments.empty();
+}
+
 void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths) {
     View pinhole = tracer.view;
     pinhole.camera.lens = {}, pinhole.filter = PixelFilter::center;
@@ -165,7 +171,7 @@ void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pix
     pinhole.allotted = pinhole.edges = nullptr, pinhole.lamps.clear();
     PathPacket s;
     PixelSample samples[16];
-    start_paths(pinhole, pixels, 0, s, samples);
+    start_paths(pinhole, false, pixels, 0, s, samples);
     follow_surfaces(tracer, s, samples);
     for (size_t i = 0; i < pixels.size(); ++i) depths[i] = samples[i].depth;
 }

@@ -23,6 +23,7 @@ struct Path {
     vec2 screen{0};       // position in the picture, 0..1
     vec2 position{0};     // the same in pixels
     int lane = 0;
+    int moment = 0;                   // while the shutter is open
     int instance = -1, triangle = -1; // just left: at grazing angles rounding may hit it again
 };
 
@@ -54,9 +55,9 @@ struct RayNumbers {
     vec2 positions[16];
 };
 
-// Sample `sample` of up to 16 pixels, at the eye; clears the results and notes how far off centre they are and
-// how much they count.
-void start_paths(const View& view, std::span<const ivec2> pixels, int sample, PathPacket& s,
+// Sample `sample` of up to 16 pixels, at the eye, in the shutter's moments or in the middle of them; clears the results
+// and notes how far off centre they are and how much they count.
+void start_paths(const View& view, bool in_moments, std::span<const ivec2> pixels, int sample, PathPacket& s,
                  std::span<PixelSample> samples);
 
 // The first surface of each path. The 64th layer counts as opaque.
@@ -71,7 +72,10 @@ RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s);
 // Modes with Surfaces::own: one whole ray for each path.
 void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts);
 
-// Planar depths of the first opaque surfaces on the rays through the centres of up to 16 pixels and the middle of the
-// lens.
+// Whether depths are those of single rays: a mean over lens or shutter would be noise along edges.
+bool has_single_depths(const FrameTracer& tracer);
+
+// Planar depths of the first opaque surfaces on the rays through the centres of up to 16 pixels, the middle of the lens
+// and the middle of the time that the shutter is open.
 void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths);
 }

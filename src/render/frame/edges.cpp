@@ -28,8 +28,8 @@ Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats
     View centers = tracer.view;
     centers.pixel_samples = centers.batches = 1, centers.lamps.clear(), centers.filter = PixelFilter::center;
     centers.background = true; // left out or not, the other layers are the same
-    const FrameTracer prober{centers,         tracer.snapshot,     tracer.scatter,
-                             tracer.surfaces, tracer.light_points, tracer.prepared};
+    FrameTracer prober = tracer.with(centers);
+    prober.covered = false, prober.fog_seconds = nullptr;
     Probes probes{low, Image<vec2>(high - low)};
     std::mutex counting;
     parallel_for((high.y - low.y + tile_side - 1) / tile_side, [&](int64_t row) {
@@ -75,6 +75,12 @@ std::string edges_content(const FrameTask& task) {
     CacheKey key;
     key.add(tracer.view).add(tracer.view.frame).add(tracer.view.seed).add(tracer.view.edge_samples);
     key.add(task.layers.low).add(task.layers.size);
+    if (const OpenShutter* shutter = tracer.view.shutter.get())
+        for (const Camera& camera : shutter->cameras) {
+            View at_moment = tracer.view;
+            at_moment.camera = camera;
+            key.add(at_moment);
+        }
     for (const Medium& medium : tracer.snapshot.media)
         if (medium.density.bricks) key.add(medium.density.bricks);
     key.bits += task.made_by;

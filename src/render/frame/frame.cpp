@@ -46,7 +46,7 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
     }
 
-    if (view.camera.lens) { // through all of it depths of a blurred edge would be noise
+    if (has_single_depths(task.tracer)) {
         float depths[16];
         depths_through_middle(task.tracer, {tile.pixels, count}, depths);
         for (size_t i = 0; i < count; ++i) sums[i].depth = depths[i];
@@ -77,7 +77,7 @@ void FrameStats::add(const FrameStats& other) {
     camera_rays += other.camera_rays, steps += other.steps;
     const ivec2 a = other.first_non_finite, b = first_non_finite;
     if (other.non_finite && (non_finite == 0 || a.y < b.y || (a.y == b.y && a.x < b.x))) first_non_finite = a;
-    non_finite += other.non_finite, samples += other.samples;
+    non_finite += other.non_finite, samples += other.samples, moments = std::max(moments, other.moments);
 }
 
 std::optional<Noise> FrameStats::error() const {
@@ -104,10 +104,11 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     stats = for_each_tile(layers, options, [&](const PixelTile& tile, int64_t, FrameStats& block_stats) {
         render(task, tile, layers, block_stats);
     });
+    stats.moments = static_cast<int>(std::max<size_t>(task.prepared->moments.size(), 1));
     stats.samples = view.leaves > 0 ? mean_samples(stats.camera_rays, layers) : view.pixel_samples;
     stats.prepare_seconds = prepared - start;
     stats.render_seconds = steady_seconds() - prepared;
-    stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
+    stats.fog_seconds = task.mode_seconds + *task.fog_seconds / thread_count();
     stats.add(probed);
     add_up(layers);
     if (view.batches * view.sections > 1) stats.noise = noise_of(layers);
@@ -155,7 +156,7 @@ void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
         layers.validity.pixels[i] = std::min(layers.validity.pixels[i], addition.validity.pixels[i]);
     if (view.fog_parts) {
-        const std::vector<int> lights = light_layers(snapshot).of_light;
+        const std::vector<int> lights = layers_of_lights(light_layers(snapshot), snapshot);
         for (size_t l = 0; l < addition.per_light.size(); ++l)
             add(addition.per_light[l], layers.lights[static_cast<size_t>(lights[l])].second);
     }

@@ -13,8 +13,6 @@
 #pragma once
 #include "integrate/ray_batch.h"
 #include "render/frame/layers.h"
-#include "trace/snapshot.h"
-#include "trace/transmittance/light_depth.h"
 
 #include <atomic>
 #include <functional>
@@ -23,24 +21,29 @@
 
 namespace tyndall {
 struct History;
+struct LightDepth;
 struct Mode;
 struct Settings;
+struct Snapshot;
 struct View;
-
-// A channel of a frame whose fog dims them differently.
-struct PreparedChannel {
-    Snapshot snapshot;
-    ScatterFunction scatter;
-    std::vector<LightDepth> light_depths;
-};
 
 // What a frame needs before its first ray.
 struct Prepared {
     ScatterFunction scatter;
     std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
-    std::shared_ptr<const std::vector<PreparedChannel>> channels{}; // red, green, blue; null where fog is grey
-    double mode_seconds = 0;                                        // what the mode took
+    double mode_seconds = 0;              // what the mode took
+    // Of each moment while the shutter is open; then the frame itself has neither fog nor depths, and lights of a
+    // moment go into these of the frame's layers.
+    std::vector<Prepared> moments{};
+    std::vector<int> layer_of_light{};
+    // Red, green and blue where fog dims them differently, and of each of them the scene as it meets it.
+    std::vector<Prepared> channels{};
+    std::shared_ptr<const Snapshot> channel{};
 };
+
+// Whether a frame is made of several moments: the view has a camera for each, and the snapshot a scene.
+bool has_moments(const View& view, const Snapshot& snapshot);
+
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history);
 

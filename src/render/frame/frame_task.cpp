@@ -3,8 +3,11 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/process.h"
+#include "base/text.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "render/frame/channels.h"
 #include "scene/scene.h"
 #include "trace/mattes.h"
 #include "trace/occlusion/occluders.h"
@@ -14,6 +17,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace tyndall {
 Layers make_layers(const View& view, bool halves) {
@@ -47,6 +51,18 @@ LightLayers light_layers(const Snapshot& snapshot) {
     if (snapshot.scene)
         for (const LightSource& light : snapshot.scene->lights) find_or_add(light.name);
     for (const Light& light : snapshot.lights) result.of_light.push_back(find_or_add(light.name));
+    if (!snapshot.moments) return result;
+    for (const Snapshot& moment : *snapshot.moments)
+        for (const Light& light : moment.lights) find_or_add(light.name);
+    result.of_light.resize(result.names.size());
+    std::iota(result.of_light.begin(), result.of_light.end(), 0);
+    return result;
+}
+
+std::vector<int> layers_of_lights(const LightLayers& layers, const Snapshot& snapshot) {
+    std::vector<int> result;
+    for (const Light& light : snapshot.lights)
+        result.push_back(static_cast<int>(std::ranges::find(layers.names, light.name) - layers.names.begin()));
     return result;
 }
 
@@ -66,16 +82,6 @@ bool contains(const Layers& layers, ivec2 pixel) {
 namespace {
 // Whether alpha has to tell a background from what mattes hold out of it.
 bool counts_held(const Snapshot& snapshot) { return has_background(snapshot.background) && has_mattes(snapshot); }
-
-// Counts the time of every call.
-ScatterFunction timed(ScatterFunction scatter, std::shared_ptr<std::atomic<double>> seconds) {
-    return [scatter = std::move(scatter), seconds](const RayBatch& batch, std::span<Scatter> results) {
-        const double start = steady_seconds();
-        scatter(batch, results);
-        seconds->fetch_add(steady_seconds() - start, std::memory_order_relaxed);
-    };
-}
-
 }
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -85,21 +91,55 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     std::shared_ptr<const Prepared> prepared = options.prepared;
     if (!prepared)
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
-    auto scatter_seconds = std::make_shared<std::atomic<double>>(0);
-    FrameTask task{prepared,
-                   {view, snapshot, timed(prepared->scatter, scatter_seconds), mode.surfaces,
-                    settings.terms.light_points, *prepared, view.background && view.covered && counts_held(snapshot)},
-                   options.prepared ? 0 : prepared->mode_seconds,
-                   scatter_seconds,
-                   std::move(layers),
-                   {},
-                   {},
-                   options.cancel};
+    auto fog_seconds = std::make_shared<std::atomic<double>>(0);
+    FrameTracer tracer = frame_tracer(mode, view, snapshot, settings, *prepared);
+    tracer.covered = view.background && view.covered && counts_held(snapshot), tracer.fog_seconds = fog_seconds.get();
+    const double mode_seconds = options.prepared ? 0 : prepared->mode_seconds;
+    FrameTask task{prepared, fog_seconds, tracer, mode_seconds, std::move(layers), {}, {}, options.cancel};
     if (snapshot.files) {
         task.made_by = mode.name;
         for (const SettingRow& row : setting_rows()) task.made_by += " " + row.name + "=" + row.get(settings);
     }
     return task;
+}
+
+bool has_moments(const View& view, const Snapshot& snapshot) {
+    return view.shutter && snapshot.moments && view.shutter->cameras.size() == snapshot.moments->size();
+}
+
+namespace {
+// Refuses what a few moments show that all of them would take.
+void check_memory(double before, size_t prepared, size_t moments) {
+    constexpr double max_share = 0.8, gibibyte = 1 << 30;
+    const double machine = static_cast<double>(machine_memory());
+    const double one = (static_cast<double>(held_memory()) - before) / static_cast<double>(prepared);
+    const double all = before + static_cast<double>(moments) * one;
+    if (machine > 0 && all > max_share * machine)
+        fail(ExitCode::out_of_memory, "motion blur",
+             formatted("%zu moments would take about %.1f GiB in this mode, and the machine has %.1f: ask for fewer by "
+                       "--time-samples, or for smaller maps and grids",
+                       moments, all / gibibyte, machine / gibibyte));
+}
+}
+
+Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                       History* history) {
+    if (!has_moments(view, snapshot)) return prepare_moment(mode, view, snapshot, settings, history);
+    assert(!history); // it tells frames apart, not moments
+    Prepared result;
+    const LightLayers layers = light_layers(snapshot);
+    View at_moment = view;
+    at_moment.shutter = nullptr;
+    const double held = static_cast<double>(held_memory());
+    for (size_t i = 0; i < snapshot.moments->size(); ++i) {
+        const Snapshot& moment = (*snapshot.moments)[i];
+        at_moment.camera = view.shutter->cameras[i];
+        Prepared& prepared = result.moments.emplace_back(prepare_moment(mode, at_moment, moment, settings, nullptr));
+        prepared.layer_of_light = layers_of_lights(layers, moment);
+        result.mode_seconds += prepared.mode_seconds;
+        if (i == 1) check_memory(held, i + 1, snapshot.moments->size());
+    }
+    return result;
 }
 
 namespace {

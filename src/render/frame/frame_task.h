@@ -8,10 +8,10 @@ inline constexpr int tile_side = 4; // a tile's 16 rays are traced together
 
 // What all blocks of a frame share.
 struct FrameTask {
-    std::shared_ptr<const Prepared> prepared; // holds what the tracer points at
+    std::shared_ptr<const Prepared> prepared;         // held for the tracer
+    std::shared_ptr<std::atomic<double>> fog_seconds; // of the mode, of all threads; held for the tracer
     FrameTracer tracer;
-    double mode_seconds = 0;                              // its preparation
-    std::shared_ptr<std::atomic<double>> scatter_seconds; // then, of all threads
+    double mode_seconds = 0; // its preparation
     Layers layers;
     std::string made_by{};           // mode and settings, where the snapshot has files; else empty
     std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
@@ -24,7 +24,11 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
 // Black layers of the view's crop window.
 Layers make_layers(const View& view, bool halves);
 
+// With an open shutter parts of fog light come by layer, not by light: lights of its moments may differ.
 LightLayers light_layers(const Snapshot& snapshot);
+
+// Which of the layers each light of a snapshot goes into: the frame's, or of one of its moments.
+std::vector<int> layers_of_lights(const LightLayers& layers, const Snapshot& snapshot);
 
 // Adds the layers, black. Where the parts of fog light go: for each light, then ambient, emission and multiple.
 std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers);

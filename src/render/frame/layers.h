@@ -72,6 +72,7 @@ struct FrameStats {
     uint64_t non_finite = 0; // samples dropped: they count as black and not valid
     ivec2 first_non_finite{-1};
     int samples = 0;                      // per pixel
+    int moments = 1;                      // while the shutter was open
     std::optional<Noise> noise;           // for more than one batch
     std::optional<Integrator> integrator; // where it was measured
     std::optional<OrdersError> orders;    // where light of several orders is part of a goal

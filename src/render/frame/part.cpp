@@ -108,7 +108,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
         if (part.range.slices == 1 || holds(part.range, int64_t{node.section} * part.leaves + node.index, block))
             sums[n] = node_sums(sums_of, node);
     }
-    if (task.tracer.view.camera.lens) depths_through_middle(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
+    if (has_single_depths(task.tracer)) depths_through_middle(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
     store_tile(sums_of, sums, work);
     keep_in_time(work);
 }
@@ -190,7 +190,8 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     if (mode.surfaces == Surfaces::shared) view.edges = edge_factors(task, probed);
     stats = render_tiles(task, options, checkpoints, part);
     stats.prepare_seconds = prepared - start, stats.render_seconds = steady_seconds() - prepared;
-    stats.fog_seconds = task.mode_seconds + *task.scatter_seconds / thread_count();
+    stats.fog_seconds = task.mode_seconds + *task.fog_seconds / thread_count();
+    stats.moments = static_cast<int>(std::max<size_t>(task.prepared->moments.size(), 1));
     stats.add(probed);
     part.finished = {};
     return part;

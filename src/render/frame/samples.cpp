@@ -1,15 +1,20 @@
 // Front-to-back compositing of fog stretches and surfaces for sixteen camera rays at once.
 #include "render/frame/samples.h"
 
+#include "base/clock.h"
 #include "base/random.h"
 #include "render/frame/camera_paths.h"
 #include "render/frame/channels.h"
 #include "scene/light.h"
 #include "trace/mattes.h"
 #include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
+
+#include <algorithm>
+#include <atomic>
 
 namespace tyndall {
 namespace {
@@ -36,14 +41,14 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
     const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
     const size_t count = static_cast<size_t>(s.count);
     std::vector<vec3> fog_parts(part_count * count, vec3(0));
-    tracer.scatter({.rays = {rays, count},
-                    .ids = {numbers.ids, count},
-                    .parts = fog_parts,
-                    .jitter = {numbers.jitter, count},
-                    .places = {numbers.places, count},
-                    .positions = {numbers.positions, count},
-                    .open = {open, count}},
-                   {scatter, count});
+    const RayBatch batch{.rays = {rays, count},
+                         .ids = {numbers.ids, count},
+                         .parts = fog_parts,
+                         .jitter = {numbers.jitter, count},
+                         .places = {numbers.places, count},
+                         .positions = {numbers.positions, count},
+                         .open = {open, count}};
+    tyndall::scatter(tracer, batch, {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {
         Path& path = s.path[i];
@@ -112,15 +117,82 @@ void follow_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSampl
 }
 }
 
-void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
-                   std::span<vec3> parts) {
-    std::fill(parts.begin(), parts.end(), vec3(0));
-    PathPacket s;
-    start_paths(tracer.view, pixels, sample, s, samples);
+FrameTracer FrameTracer::with(const View& other) const {
+    return {other, snapshot, prepared, surfaces, light_points, covered, fog_seconds};
+}
+
+FrameTracer frame_tracer(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                         const Prepared& prepared) {
+    return {view, snapshot, prepared, mode.surfaces, settings.terms.light_points};
+}
+
+void scatter(const FrameTracer& tracer, const RayBatch& batch, std::span<Scatter> results) {
+    if (!tracer.fog_seconds) return tracer.prepared.scatter(batch, results);
+    const double start = steady_seconds();
+    tracer.prepared.scatter(batch, results);
+    tracer.fog_seconds->fetch_add(steady_seconds() - start, std::memory_order_relaxed);
+}
+
+namespace {
+void follow(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     if (tracer.surfaces == Surfaces::own)
         follow_own_paths(tracer, s, samples, parts);
     else
         follow_paths(tracer, s, samples, parts);
+}
+
+// The paths of a packet that show one moment, followed through its scene; their light goes where that of the frame's
+// lights does.
+void follow_moment(const FrameTracer& tracer, const PathPacket& all, int moment, std::span<PixelSample> samples,
+                   std::span<vec3> parts) {
+    const Prepared& prepared = tracer.prepared.moments[static_cast<size_t>(moment)];
+    const Snapshot& snapshot = (*tracer.snapshot.moments)[static_cast<size_t>(moment)];
+    PathPacket s;
+    PixelSample own[16];
+    int lanes[16];
+    for (int i = 0; i < all.count; ++i)
+        if (all.path[i].moment == moment) {
+            const int lane = all.path[i].lane;
+            s.path[s.count] = all.path[i], s.path[s.count].lane = s.count;
+            own[s.count] = samples[static_cast<size_t>(lane)], lanes[s.count++] = lane;
+        }
+    const size_t count = static_cast<size_t>(s.count), lights = prepared.layer_of_light.size();
+    const size_t part_count = parts.size() / samples.size(), own_count = part_count == 0 ? 0 : lights + other_lights;
+    std::vector<vec3> own_parts(count * own_count, vec3(0));
+    const FrameTracer at_moment{tracer.view,         snapshot,       prepared,          tracer.surfaces,
+                                tracer.light_points, tracer.covered, tracer.fog_seconds};
+    follow(at_moment, s, {own, count}, own_parts);
+
+    for (size_t i = 0; i < count; ++i) {
+        const size_t lane = static_cast<size_t>(lanes[i]);
+        samples[lane] = own[i];
+        for (size_t p = 0; p < own_count; ++p) {
+            const size_t layer =
+                p < lights ? static_cast<size_t>(prepared.layer_of_light[p]) : part_count - other_lights + (p - lights);
+            parts[lane * part_count + layer] += own_parts[i * own_count + p];
+        }
+    }
+}
+
+void follow_moments(const FrameTracer& tracer, const PathPacket& s, std::span<PixelSample> samples,
+                    std::span<vec3> parts) {
+    for (int i = 0; i < s.count; ++i) {
+        const int moment = s.path[i].moment;
+        const auto is_same = [&](const Path& path) { return path.moment == moment; };
+        if (std::none_of(s.path, s.path + i, is_same)) follow_moment(tracer, s, moment, samples, parts);
+    }
+}
+}
+
+void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,
+                   std::span<vec3> parts) {
+    std::fill(parts.begin(), parts.end(), vec3(0));
+    PathPacket s;
+    start_paths(tracer.view, !tracer.prepared.moments.empty(), pixels, sample, s, samples);
+    if (tracer.prepared.moments.empty())
+        follow(tracer, s, samples, parts);
+    else
+        follow_moments(tracer, s, samples, parts);
 
     const size_t part_count = parts.size() / pixels.size();
     for (size_t i = 0; i < pixels.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "render/frame/frame.h"
 #include "trace/surface.h"
 
+#include <atomic>
 #include <span>
 #include <vector>
 
@@ -26,12 +27,19 @@ struct PixelSample {
 struct FrameTracer {
     const View& view;
     const Snapshot& snapshot;
-    ScatterFunction scatter;
-    Surfaces surfaces;        // shared or own: who shades them
-    int light_points;         // of a soft light, for shared surfaces
-    const Prepared& prepared; // for shared surfaces
+    const Prepared& prepared;
+    Surfaces surfaces;    // shared or own: who shades them
+    int light_points;     // of a soft light, for shared surfaces
     bool covered = false; // whether alpha counts a background that mattes hold out in part (else see cover_background)
+    std::atomic<double>* fog_seconds = nullptr; // counts what the mode takes
+
+    FrameTracer with(const View& other) const;
 };
+FrameTracer frame_tracer(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                         const Prepared& prepared);
+
+// Asks the mode.
+void scatter(const FrameTracer& tracer, const RayBatch& batch, std::span<Scatter> results);
 
 // Traces sample `sample` of up to 16 pixels. `parts` is empty or receives pixels × part_count(lights).
 void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int sample, std::span<PixelSample> samples,

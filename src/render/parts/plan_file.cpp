@@ -109,6 +109,9 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     check_layer_names(request.exr);
     request.exr.full_float = json.boolean_or("float", false);
     request.background = json.boolean_or("background", true);
+    if (const Json* shutter = json.find("shutter"))
+        request.shutter = Shutter{shutter->items[0].number, shutter->items[1].number, {}};
+    request.time_samples = static_cast<int>(json.number_or("time_samples", 0));
     request.grouping.groups = static_cast<int>(json.number_or("groups", 1));
     request.grouping.sections = static_cast<int>(json.number_or("sections", 1));
     request.grouping.leaves = static_cast<int>(json.number_or("leaves", 1));
@@ -168,6 +171,9 @@ void save_plan(const std::filesystem::path& file, const Scene& scene, const Save
         members.emplace_back("orders", error_json(orders->pixels));
         members.emplace_back("orders_mean", orders->mean);
     }
+    if (const std::optional<Shutter>& shutter = plan.request.shutter)
+        members.emplace_back("shutter", std::vector{shutter->open, shutter->close});
+    if (plan.request.time_samples > 0) members.emplace_back("time_samples", plan.request.time_samples);
     if (!plan.plan.certificate.empty()) members.emplace_back("certificate", plan.plan.certificate);
     if (plan.request.grouping.counts) members.emplace_back("target", target_json(file, plan.request.grouping));
     write_file_atomically(file, json_line(std::move(members)));

@@ -85,7 +85,7 @@ std::vector<CacheCost> prepare_for_parts(const Scene& scene, const SavedPlan& pl
     if (!inputs.known.empty()) note_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
 
     // Shares nothing with other frames: what they have in common is found in the folder, and so in every manifest.
-    const Snapshot snapshot = make_snapshot(scene, moment_of(scene, frame), nullptr, request.missing, folder);
+    const Snapshot snapshot = make_snapshot(scene, moments_of(scene, request, frame), nullptr, request.missing, folder);
     prepare_files(*plan.plan.mode, view_of(scene, request, plan.plan.settings, frame), snapshot, plan.plan.settings);
     check_unchanged(*folder);
     save_manifest(request.grouping.plan_file, manifest_of(plan, frame, *folder));

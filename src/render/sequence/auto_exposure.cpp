@@ -38,6 +38,7 @@ RenderRequest small_request(const Scene& scene, const RenderRequest& request) {
     small.camera = request.camera, small.background = request.background;
     small.resolution = glm::max(ivec2(glm::round(scale * vec2(whole))), ivec2(8));
     small.exr.layers.clear();
+    small.shutter = Shutter{}; // a still is as bright
     return small;
 }
 

@@ -9,6 +9,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "trace/moment.h"
+#include "trace/shutter_motion.h"
 #include "trace/view.h"
 
 #include <algorithm>
@@ -70,6 +71,9 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
     if (mode.surfaces == Surfaces::post && measures_noise(request))
         fail(ExitCode::usage, "--aov",
              std::string(mode.name) + " works on the finished image: it has no variance and no halves");
+    if (request.history > 0 && shutter_of(scene, request))
+        fail(ExitCode::usage, "--history",
+             "does not go with an open shutter, whose moments it would mix: add --shutter 0,0");
     check_outputs(scene, request);
 }
 
@@ -110,10 +114,42 @@ bool wants_layer(const RenderRequest& request, std::string_view layer) {
     return std::ranges::count(request.exr.layers, layer) > 0;
 }
 
+Shutter shutter_of(const Scene& scene, const RenderRequest& request) {
+    Shutter shutter = scene.cameras[static_cast<size_t>(find_camera(scene, request.camera))].shutter;
+    if (!request.shutter) return shutter;
+    shutter.open = request.shutter->open, shutter.close = request.shutter->close;
+    if (!request.shutter->curve.empty()) shutter.curve = request.shutter->curve;
+    return shutter;
+}
+
+FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame) {
+    const Shutter shutter = shutter_of(scene, request);
+    const int camera = find_camera(scene, request.camera);
+    if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
+    const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    const int count =
+        request.time_samples > 0 ? request.time_samples : usual_moments(scene, camera, size, frame, shutter);
+    return frame_moments(scene, frame, shutter, count);
+}
+
+namespace {
+std::shared_ptr<const OpenShutter> open_shutter(const Scene& scene, const RenderRequest& request, int camera,
+                                                ivec2 size, int frame, const FrameMoments& moments) {
+    if (moments.moments.empty()) return nullptr;
+    auto shutter = std::make_shared<OpenShutter>();
+    for (const Moment& moment : moments.moments) shutter->cameras.push_back(camera_at(scene, camera, moment.seconds));
+    shutter->motion = motion_on_picture(scene, camera, size, frame, shutter_of(scene, request));
+    return shutter;
+}
+}
+
 View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame) {
     View view;
-    view.camera = camera_at(scene, find_camera(scene, request.camera), moment_of(scene, frame).seconds);
+    const FrameMoments moments = moments_of(scene, request, frame);
+    const int camera = find_camera(scene, request.camera);
+    view.camera = camera_at(scene, camera, moments.middle.seconds);
     view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    view.shutter = open_shutter(scene, request, camera, view.size, frame, moments);
     view.crop_low = request.crop_low, view.crop_high = request.crop_high;
     view.pixel_samples = settings.pixel.samples;
     view.filter = settings.pixel.filter, view.filter_radius = settings.pixel.filter_radius;

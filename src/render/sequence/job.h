@@ -6,6 +6,7 @@
 #include "render/image/exr.h"
 #include "render/image/view_transform.h"
 #include "scene/load_options.h"
+#include "scene/shutter.h"
 #include "volume/vdb/sequence.h"
 
 #include <filesystem>
@@ -21,6 +22,7 @@ struct Choice;
 struct Mode;
 struct Scene;
 struct TileFactors;
+struct FrameMoments;
 struct View;
 
 // Samples in groups, as a saved plan has them, and the part of them that is wanted.
@@ -60,7 +62,9 @@ struct RenderRequest {
     double time_budget = 0;  // seconds for each frame, all that is done for it counted; 0 = as many as it takes
     double started = 0;      // by steady_seconds, when the budget of the first frame began
     int history = 0;         // frames before each that a mode with a history looks at first
-    bool background = true;  // in the picture
+    std::optional<Shutter> shutter{}; // instead of the camera's; without a curve the camera's goes on
+    int time_samples = 0;             // moments while it is open; 0 = as many as the motion on the picture needs
+    bool background = true;           // in the picture
     bool png = false, resume = false;
     Grouping grouping{};
     double checkpoint_seconds = 600;      // of a part, between two
@@ -94,6 +98,12 @@ bool measures_noise(const RenderRequest& request);
 std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan& plan, RenderRequest& request);
 
 bool wants_layer(const RenderRequest& request, std::string_view layer);
+
+// The shutter of the camera asked for.
+Shutter shutter_of(const Scene& scene, const RenderRequest& request);
+
+// The moments that a frame shows. Throws Error for a camera that is not in the scene.
+FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame);
 
 // A frame as the camera sees it. Throws Error for a camera that is not in the scene.
 View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame);

@@ -48,7 +48,7 @@ LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;
     const double start = steady_seconds();
     if (!previous) previous = &first.snapshot;
-    Snapshot snapshot = make_snapshot(pipeline.scene, moment_of(pipeline.scene, frame), previous,
+    Snapshot snapshot = make_snapshot(pipeline.scene, moments_of(pipeline.scene, pipeline.request, frame), previous,
                                       pipeline.request.missing, pipeline.request.files);
     return {std::move(snapshot), steady_seconds() - start};
 }

@@ -77,6 +77,8 @@ std::string option_text(const RenderRequest& request, const Settings& settings) 
     if (request.target_error > 0) text += " --target-error " + number(request.target_error);
     if (request.time_budget > 0) text += " --time-budget " + number(request.time_budget);
     if (request.history > 0) text += " --history " + std::to_string(request.history);
+    if (request.shutter) text += " --shutter " + number(request.shutter->open) + "," + number(request.shutter->close);
+    if (request.time_samples > 0) text += " --time-samples " + std::to_string(request.time_samples);
     if (!request.isa.empty()) text += " --isa " + request.isa;
     if (!request.camera.empty()) text += " --camera " + quoted_for_shell(request.camera);
     if (request.crop_low != request.crop_high)
@@ -184,6 +186,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
     if (is_stylised(plan.settings.style) && honours_style(*plan.mode)) attributes["stylised"] = "1";
+    if (view.shutter) attributes["tyndall:timeSamples"] = std::to_string(view.shutter->cameras.size());
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);
         attributes["tyndall:achievedError"] = number(stats.error()->error);

@@ -84,6 +84,7 @@ void write(Pipeline& pipeline, Work& work) {
     report_frame(pipeline, work);
 
     std::string text = formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request);
+    if (report.stats.moments > 1) text += formatted(", motion blur of %d moments", report.stats.moments);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
     say(pipeline, work, text);
 }
@@ -140,7 +141,7 @@ LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, c
     auto files = request.files ? request.files->inputs : std::make_shared<FileHashes>();
     hash_fog(scene, request, request.frames[0], *files);
     Snapshot snapshot =
-        make_snapshot(scene, moment_of(scene, request.frames[0]), previous, request.missing, request.files);
+        make_snapshot(scene, moments_of(scene, request, request.frames[0]), previous, request.missing, request.files);
     return {std::move(snapshot), steady_seconds() - start, std::move(files)};
 }
 

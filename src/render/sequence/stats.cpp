@@ -18,6 +18,7 @@ Json frame_json(const FrameReport& frame) {
                              {"steps", frame.stats.steps},
                              {"non_finite", frame.stats.non_finite}});
     if (!frame.mode.empty()) json.members.emplace_back("mode", frame.mode);
+    if (frame.stats.moments > 1) json.members.emplace_back("time_samples", frame.stats.moments);
     if (frame.exposure) json.members.emplace_back("exposure", *frame.exposure);
     if (frame.stats.noise) {
         json.members.emplace_back("samples", frame.stats.samples);

@@ -1,7 +1,8 @@
-// The cameras of a scene file, lenses on those of the glTF, and which one is the default.
+// The cameras of a scene file, lenses and shutters on those of the glTF, and which one is the default.
 #include "base/text.h"
 #include "scene/file/scene_file.h"
 
+#include <algorithm>
 #include <array>
 
 namespace tyndall {
@@ -29,6 +30,32 @@ void read_lens(const Field& field, CameraSource& camera) {
     if (turn) camera.blade_turn = keyed_degrees(turn);
 }
 
+// Named curves, or the light that gets through at even times.
+std::vector<float> shutter_curve(const Field& field) {
+    if (field.json->kind == Json::Kind::string)
+        return field.json->string == "triangle" ? std::vector<float>{0, 1, 0} : std::vector<float>{};
+    std::vector<float> curve;
+    for (size_t i = 0; i < field.json->items.size(); ++i) curve.push_back(read_number(field.item(i)));
+    if (std::ranges::all_of(curve, [](float value) { return value == 0; })) refuse(field, "lets no light in");
+    return curve;
+}
+
+void read_shutter(const Field& field, CameraSource& camera) {
+    if (!field) return;
+    Shutter& shutter = camera.shutter;
+    shutter.open = field.member("open") ? field.member("open").json->number : 0;
+    shutter.close = field.member("close").json->number;
+    if (shutter.close < shutter.open)
+        refuse(field, formatted("runs backwards: it opens at %g and closes at %g", shutter.open, shutter.close));
+    if (const Field curve = field.member("curve")) shutter.curve = shutter_curve(curve);
+}
+
+// What a camera of the glTF may be given too.
+void read_exposing(const Field& field, CameraSource& camera) {
+    read_lens(field, camera);
+    read_shutter(field.member("shutter"), camera);
+}
+
 CameraSource camera_source(const Field& field, std::string_view default_name, dvec3 origin) {
     CameraSource camera;
     for (const char* key : {"position", "target"})
@@ -50,7 +77,7 @@ CameraSource camera_source(const Field& field, std::string_view default_name, dv
         camera.far = read_number(far);
         if (camera.far <= camera.near) refuse(far, "must be greater than near");
     }
-    read_lens(field, camera);
+    read_exposing(field, camera);
     return camera;
 }
 
@@ -66,14 +93,14 @@ int index_of(const Scene& scene, std::string_view name) {
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-// The camera of the glTF that an entry puts a lens on: it has that name, and the entry says nothing else.
+// The camera of the glTF that an entry puts a lens or a shutter on: it has that name, and the entry says nothing else.
 CameraSource* under_lens(const Field& field, Scene& scene) {
     const int known = index_of(scene, field.json->string_or("name", ""));
     if (known < 0 || scene.cameras[static_cast<size_t>(known)].node < 0) return nullptr;
     const auto of_lens = [](const auto& member) {
-        return std::ranges::count(
-                   std::array{"name", "aperture_radius", "focus_distance", "aperture_blades", "blade_rotation"},
-                   member.first) > 0;
+        return std::ranges::count(std::array{"name", "aperture_radius", "focus_distance", "aperture_blades",
+                                             "blade_rotation", "shutter"},
+                                  member.first) > 0;
     };
     return std::ranges::all_of(field.json->members, of_lens) ? &scene.cameras[static_cast<size_t>(known)] : nullptr;
 }
@@ -93,7 +120,7 @@ void read_cameras(const Field& root, Scene& scene) {
             const Field field = cameras.item(i);
             if (!field.member("name")) refuse(field, "a camera in a list needs a name");
             if (CameraSource* known = under_lens(field, scene))
-                read_lens(field, *known);
+                read_exposing(field, *known);
             else
                 add(camera_source(field, "", scene.origin), field, scene);
         }
@@ -103,7 +130,7 @@ void read_cameras(const Field& root, Scene& scene) {
     if (!chosen) return;
     if (chosen.json->kind == Json::Kind::object) {
         if (CameraSource* known = under_lens(chosen, scene)) {
-            read_lens(chosen, *known);
+            read_exposing(chosen, *known);
             scene.camera = static_cast<int>(known - scene.cameras.data());
             return;
         }

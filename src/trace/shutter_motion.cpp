@@ -1,0 +1,162 @@
+#include "trace/shutter_motion.h"
+
+#include "scene/camera.h"
+#include "scene/scene.h"
+#include "trace/fog.h"
+#include "trace/moment.h"
+
+#include <algorithm>
+#include <bit>
+#include <ranges>
+
+namespace tyndall {
+namespace {
+constexpr int looks = 5;          // moments at which places are compared
+constexpr float spacing = 1.5f;   // pixels between neighbouring moments
+constexpr int fewest_moments = 4; // of what changes at all
+constexpr double max_bytes = 1.0 * (1 << 30), bytes_per_triangle = 200;
+
+using Points = std::vector<vec3>;
+
+void add_corners(const mat4& matrix, const Box& box, Points& points) {
+    if (box.empty() || !is_finite(box.low) || !is_finite(box.high)) return;
+    for (int i = 0; i < 8; ++i) {
+        const vec3 corner(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
+                          i & 4 ? box.high.z : box.low.z);
+        points.push_back(vec3(matrix * glm::vec4(corner, 1)));
+    }
+}
+
+// The lamp, and points along its beam: of what it lights, and of its shadows.
+void add_light(const Scene& scene, const LightSource& light, double seconds, float extent, Points& points) {
+    const mat4 matrix = light.node >= 0 ? node_matrix(scene, light.node, seconds) : mat4(1);
+    const vec3 position = light.node >= 0 ? vec3(matrix[3]) : light.position.at(seconds);
+    const vec3 along = light.node >= 0 ? -vec3(matrix[2]) : light.direction.at(seconds);
+    const float length = glm::length(along), reach = std::min(light.range, extent);
+    const bool aimed = light.kind != LightKind::point && length > 0;
+    for (const float share : {0.0f, 0.25f, 0.5f, 1.0f})
+        points.push_back(aimed ? position + share * reach / length * along : position);
+}
+
+Box box_of(const Mesh& mesh) {
+    Box box;
+    for (const vec3& position : mesh.positions) box.grow(position);
+    return box;
+}
+
+// What moves on the picture, always the same points in the same order.
+Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seconds, float extent) {
+    Points points;
+    for (const LightSource& light : scene.lights) add_light(scene, light, seconds, extent, points);
+    for (const Instance& instance : scene.instances)
+        if (instance.mesh >= 0)
+            add_corners(node_matrix(scene, instance.node, seconds), meshes[static_cast<size_t>(instance.mesh)], points);
+    for (const MediumSource& medium : scene.media) {
+        const mat4 matrix = medium_matrix(medium, seconds);
+        points.push_back(vec3(matrix[3])); // of files, whose bounds only they know
+        add_corners(matrix, medium.recipe ? medium.recipe->bounds : medium.bounds, points);
+    }
+    return points;
+}
+
+float extent_of(const Scene& scene, double seconds) {
+    const Box box = scene_bounds(scene, seconds);
+    const float size = box.empty() ? 0 : glm::length(box.size());
+    return size > 0 && std::isfinite(size) ? size : 10.0f;
+}
+
+bool near_picture(vec2 at, ivec2 size) {
+    const vec2 margin = 0.25f * vec2(size);
+    return at.x > -margin.x && at.y > -margin.y && at.x < static_cast<float>(size.x) + margin.x &&
+           at.y < static_cast<float>(size.y) + margin.y;
+}
+
+bool changes(const Scene& scene, const CameraSource& camera) {
+    return !camera.position.constant() || !camera.target.constant() || !camera.up.constant() ||
+           !camera.vertical_fov.constant() || !camera.aperture.constant() ||
+           (camera.focus && !camera.focus->constant()) || !camera.blade_turn.constant() ||
+           is_moving(scene, camera.node);
+}
+
+bool changes(const Scene& scene, const LightSource& light) {
+    const auto all = [](const auto&... values) { return (values.constant() && ...); };
+    if (light.gobo && !all(light.gobo->turn, light.gobo->scale)) return true;
+    return is_moving(scene, light.node) ||
+           !all(light.position, light.direction, light.color, light.intensity, light.exposure, light.temperature,
+                light.up, light.profile_turn, light.volume_scale, light.surface_scale, light.inner_cone,
+                light.outer_cone, light.radius, light.angle);
+}
+
+bool changes(const MediumSource& medium) {
+    const auto all = [](const auto&... values) { return (values.constant() && ...); };
+    if (medium.recipe && recipe_speed(*medium.recipe) > 0) return true;
+    if (medium.blackbody && !all(medium.blackbody->scale, medium.blackbody->tint)) return true;
+    return !all(medium.extinction, medium.g, medium.albedo, medium.emission, medium.translation, medium.scale,
+                medium.rotate, medium.rotation, medium.height_base, medium.height_falloff);
+}
+
+bool changes(const Background& background) {
+    return !background.color.constant() || !background.zenith.constant() || !background.ground.constant() ||
+           !background.intensity.constant() || !background.exposure.constant();
+}
+
+bool changes(const EnvironmentSource& light) {
+    return changes(light.map) || !light.intensity.constant() || !light.exposure.constant() ||
+           !light.volume_scale.constant() || !light.surface_scale.constant();
+}
+
+double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float share) {
+    return (frame + shutter.open + share * (shutter.close - shutter.open)) / scene.frame_rate;
+}
+}
+
+float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
+    std::vector<Box> meshes;
+    for (const Mesh& mesh : scene.meshes) meshes.push_back(box_of(mesh));
+    const float extent = extent_of(scene, seconds_of(scene, frame, shutter, 0.5f));
+    std::vector<float> travelled;
+    std::vector<std::optional<vec2>> before;
+    for (int look = 0; look < looks; ++look) {
+        const double seconds = seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1));
+        const Camera now = camera_at(scene, camera, seconds);
+        const Points points = points_at(scene, meshes, seconds, extent);
+        travelled.resize(points.size(), 0), before.resize(points.size());
+        for (size_t i = 0; i < points.size(); ++i) {
+            const std::optional<vec2> at = pixel_of(now, size, points[i]);
+            if (at && before[i] && (near_picture(*at, size) || near_picture(*before[i], size)))
+                travelled[i] += glm::distance(*at, *before[i]);
+            before[i] = at;
+        }
+    }
+    // A camera that turns moves even what has no place: the background.
+    const Camera first = camera_at(scene, camera, seconds_of(scene, frame, shutter, 0));
+    const Camera last = camera_at(scene, camera, seconds_of(scene, frame, shutter, 1));
+    const std::optional<vec2> turned = pixel_of(last, size, last.position + extent * first.forward);
+    float most = turned ? glm::distance(*turned, 0.5f * vec2(size)) : glm::length(vec2(size));
+    for (const float way : travelled)
+        if (std::isfinite(way)) most = std::max(most, way);
+    return most;
+}
+
+bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) {
+    if (!shutter) return false;
+    return changes(scene, scene.cameras[static_cast<size_t>(camera)]) || !scene.ambient.constant() ||
+           changes(scene.background) || (scene.environment && changes(*scene.environment)) ||
+           std::ranges::any_of(scene.lights, [&](const LightSource& light) { return changes(scene, light); }) ||
+           std::ranges::any_of(scene.media, [](const MediumSource& medium) { return changes(medium); }) ||
+           std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one.node); });
+}
+
+int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
+    if (!changes_while_open(scene, camera, shutter)) return 1;
+    const float motion = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
+    const unsigned wanted = std::bit_ceil(static_cast<unsigned>(std::min(motion, float(max_usual_moments)) + 0.999f));
+    double triangles = 0;
+    for (const Instance& instance : scene.instances)
+        if (instance.mesh >= 0 && is_moving(scene, instance.node))
+            triangles += static_cast<double>(scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size());
+    const double affordable = max_bytes / std::max(triangles * bytes_per_triangle, 1.0);
+    const int most = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(affordable, 1.0, 32.0))));
+    return std::min(std::clamp(static_cast<int>(wanted), fewest_moments, max_usual_moments), most);
+}
+}
