@@ -210,6 +210,33 @@ TEST(ShutterFog, IsTheMeanOfItsMoments) {
     }
 }
 
+// Of the fog's light over the image, and its standard error.
+std::pair<double, double> mean_light(const Layers& layers) {
+    double sum = 0, variance = 0;
+    for (size_t i = 0; i < layers.inscatter.pixels.size(); ++i) {
+        sum += double{layers.inscatter.pixels[i].x};
+        if (!layers.inscatter_variance.empty()) variance += double{layers.inscatter_variance.pixels[i].x};
+    }
+    const double count = static_cast<double>(layers.inscatter.pixels.size());
+    return {sum / count, std::sqrt(variance) / count};
+}
+
+TEST(ShutterFog, MarchAgreesWithPath) {
+    Moving moving;
+    put(moving, true), add_lamps(moving);
+    moving.scene.materials[0].emission = vec3(0); // in path it lights the fog
+    moving.request.time_samples = 32;
+    moving.request.exr.layers = {"variance"};
+    Settings& settings = moving.request.settings;
+    settings.path.orders = settings.fluence.orders = 1;
+    settings.pixel.samples = 64;
+    const auto [marched, march_error] = mean_light(rendered(moving.scene, moving.request, "march"));
+    settings.pixel.samples = 1024;
+    const auto [traced, path_error] = mean_light(rendered(moving.scene, moving.request, "path"));
+    EXPECT_LT(path_error, 0.02 * traced);
+    EXPECT_NEAR(marched, traced, 3.5 * std::hypot(path_error, march_error));
+}
+
 TEST(ShutterFog, LightsHaveLayersOfTheirOwnWhateverTheMoment) {
     Moving moving;
     put(moving, true), add_lamps(moving);
