@@ -125,6 +125,8 @@ void say_before(const Scene& scene, const Snapshot& first, const Limitations& li
     say_idle_settings(texts.settings, *one.plan.mode, globals);
     if (one.request.history > 0 && !one.plan.mode->remembers && !globals.quiet)
         say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
+    if (one.request.time_samples > 0 && !first.moments && !globals.quiet)
+        say("note: --time-samples changes nothing: the shutter is closed, or nothing moves while it is open");
     say_limitations(scene, first, limitations, globals);
 }
 

@@ -277,6 +277,26 @@ TEST(UsualMoments, NothingThatMovesNeedsOne) {
     EXPECT_EQ(view_of(moving.scene, moving.request, moving.request.settings, 0).shutter, nullptr);
 }
 
+TEST(ShutterLimitations, SayInEveryModeHowFarMomentsLieApart) {
+    Moving moving;
+    put(moving, true);
+    for (const auto& [count, severity] : {std::pair{4, Severity::degraded}, {16, Severity::info}}) {
+        moving.request.time_samples = count;
+        const Snapshot snapshot = make_snapshot(moving.scene, moments_of(moving.scene, moving.request, 0));
+        const View view = view_of(moving.scene, moving.request, moving.request.settings, 0);
+        for (const Mode& mode : modes()) {
+            SCOPED_TRACE(mode.name);
+            const Limitations said = mode.limitations(view, snapshot, moving.request.settings);
+            const auto found = std::ranges::find_if(
+                said, [](const Limitation& one) { return one.kind->id == std::string_view("shutter_moments"); });
+            ASSERT_NE(found, said.end());
+            EXPECT_EQ(found->severity, severity);
+            EXPECT_NEAR(found->amounts[0], 0.2 * 64 / count, 0.05); // the plate crosses a fifth of the picture
+            EXPECT_EQ(found->amounts[1], count);
+        }
+    }
+}
+
 TEST(ShutterSnapshots, ShareWhatStandsStill) {
     Moving moving;
     put(moving, true);
