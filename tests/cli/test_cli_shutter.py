@@ -41,6 +41,12 @@ class ShutterTest(ProgramTest):
         said = self.succeed("render", scene, "-o", self.path("a.exr"), "-v")
         self.assertIn(f"motion blur of {usual} moments", said.stdout + said.stderr)
 
+    def test_moments_of_a_still_are_said_to_change_nothing(self):
+        said = self.succeed("render", self.scene(), "-o", self.path("a.exr"), "--frames", "3", "--time-samples", 8)
+        self.assertIn("--time-samples changes nothing", said.stderr)
+        blurred = self.succeed("render", self.scene(shutter=HALF_FRAME), "-o", self.path("a.exr"), "--frames", "3", "--time-samples", 8)
+        self.assertNotIn("changes nothing", blurred.stderr)
+
     def test_a_curve_weighs_the_moments(self):
         """Light that comes in late shows more of the flash, which grows."""
         early, even, late = (sum(self.render(self.scene(f"{i}.json", {**HALF_FRAME, "curve": curve}), f"{i}.exr",

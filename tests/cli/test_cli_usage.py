@@ -149,7 +149,7 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["--view-transform", "--png"], *self.render("--view-transform", "srgb"))
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
-        self.refuse(2, ["--time-samples"], *self.render("--time-samples", "1"))
+        self.refuse(2, ["--motion-samples"], *self.render("--motion-samples", "1"))
         for mode, why in [("march,march", "march is named twice"), ("march,auto", "name it alone")]:
             self.refuse(2, [why], *self.render("--mode", mode))
 

@@ -30,7 +30,7 @@ TEST(Emission, NeedsNoExtinction) {
     for (const Mode& mode : modes()) {
         if (!reads(mode, "terms.emission") || mode.name == "path") continue; // path_test.cpp has its own
         for (const Scene* scene : {&alone, &beside_fog}) {
-            const Snapshot snapshot = make_snapshot(*scene, {0, 0});
+            const Snapshot snapshot = make_snapshot(*scene, Moment{0, 0});
             const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
             std::vector<Scatter> expected;
             for (const Ray& ray : rays) {
@@ -50,11 +50,11 @@ TEST(Emission, NeedsNoExtinction) {
 TEST(Emission, WithoutEndIsRefused) {
     Scene scene;
     scene.media = {flame(0, everywhere())};
-    const Error error = error_of([&] { make_snapshot(scene, {0, 0}); });
+    const Error error = error_of([&] { make_snapshot(scene, Moment{0, 0}); });
     EXPECT_EQ(error.code, ExitCode::refused);
     EXPECT_THAT(error.what(), HasSubstr("medium flame: emits without end"));
     scene.media = {flame(1e-9f, everywhere())};
-    EXPECT_EQ(make_snapshot(scene, {0, 0}).media.size(), 1u);
+    EXPECT_EQ(make_snapshot(scene, Moment{0, 0}).media.size(), 1u);
 }
 }
 }

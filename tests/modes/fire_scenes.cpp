@@ -35,6 +35,6 @@ GridSource property(const Scratch& scratch, const std::string& name, const Spars
 
 Snapshot snapshot_with(Scene& scene, const MediumSource& medium) {
     scene.media = {medium};
-    return make_snapshot(scene, {0, 0});
+    return make_snapshot(scene, Moment{0, 0});
 }
 }

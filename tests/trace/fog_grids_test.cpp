@@ -42,15 +42,15 @@ TEST(FogGrids, AreSharedUntilSomethingChanges) {
     Scene scene;
     scene.media = {fire_source(scratch)};
     scene.media[0].blackbody->scale.times = {0, 1}, scene.media[0].blackbody->scale.values = {1, 3};
-    const Snapshot first = make_snapshot(scene, {1, 0});
+    const Snapshot first = make_snapshot(scene, Moment{1, 0});
     ASSERT_EQ(first.media.size(), 2u);
     EXPECT_EQ(first.media[1].name, "fire (blackbody)");
-    const Snapshot second = make_snapshot(scene, {2, 1}, &first);
+    const Snapshot second = make_snapshot(scene, Moment{2, 1}, &first);
     EXPECT_EQ(second.media[1].density.bricks, first.media[1].density.bricks);
     EXPECT_EQ(second.media[1].optics.emission.field, first.media[1].optics.emission.field);
     expect_near(second.media[1].optics.emission.radiance, 3.0f * first.media[1].optics.emission.radiance, 1e-2f);
     scene.media[0].temperature = GridSource{file_of(scratch, "hotter", constant_box(16, 1800)), {"hotter"}, {}};
-    const Snapshot hotter = make_snapshot(scene, {3, 0}, &second);
+    const Snapshot hotter = make_snapshot(scene, Moment{3, 0}, &second);
     EXPECT_NE(hotter.media[1].density.bricks, first.media[1].density.bricks);
     EXPECT_EQ(hotter.media[0].density.bricks, first.media[0].density.bricks);
     EXPECT_GT(hotter.media[1].optics.emission.radiance.x, 5 * first.media[1].optics.emission.radiance.x);
@@ -62,9 +62,9 @@ TEST(FogGrids, MoveWithTheirMedium) {
     scene.media = {fire_source(scratch)};
     scene.media[0].blackbody->by_absorption = true;
     scene.media[0].albedo_grid = GridSource{file_of(scratch, "Cd", constant_box(16, 0.5f)), {"Cd"}, {}};
-    const Snapshot still = make_snapshot(scene, {1, 0});
+    const Snapshot still = make_snapshot(scene, Moment{1, 0});
     scene.media[0].translation = vec3(100, 0, 0), scene.media[0].scale = vec3(2);
-    const Snapshot moved = make_snapshot(scene, {2, 1}, &still);
+    const Snapshot moved = make_snapshot(scene, Moment{2, 1}, &still);
     const auto there = [](vec3 point) { return vec3(100, 0, 0) + 2.0f * point; };
     for (const vec3 point : {vec3(3, 4, 5), vec3(0.5f, 15.3f, 7)}) {
         expect_near(emission_at(moved.media[1], there(point)), emission_at(still.media[1], point), 1e-2f);
@@ -82,15 +82,15 @@ TEST(FogGrids, LightNeedsNoDensity) {
     scene.media = {fire_source(scratch)};
     scene.media[0].extinction = 0.0f;
     std::filesystem::remove(scratch / "density.vdb"); // is not read
-    const Snapshot snapshot = make_snapshot(scene, {1, 0});
+    const Snapshot snapshot = make_snapshot(scene, Moment{1, 0});
     ASSERT_EQ(snapshot.media.size(), 1u);
     EXPECT_EQ(snapshot.media[0].optics.albedo, vec3(0));
     scene.media[0].blackbody->by_absorption = true;
-    EXPECT_TRUE(make_snapshot(scene, {1, 0}).media.empty());
+    EXPECT_TRUE(make_snapshot(scene, Moment{1, 0}).media.empty());
     scene.media[0].blackbody->by_absorption = false, scene.media[0].blackbody->scale = 0.0f;
-    EXPECT_TRUE(make_snapshot(scene, {1, 0}).media.empty());
+    EXPECT_TRUE(make_snapshot(scene, Moment{1, 0}).media.empty());
     scene.media[0] = fire_source(scratch, 0);
-    EXPECT_EQ(make_snapshot(scene, {1, 0}).media.size(), 1u) << "cold smoke";
+    EXPECT_EQ(make_snapshot(scene, Moment{1, 0}).media.size(), 1u) << "cold smoke";
 }
 
 TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
@@ -100,7 +100,7 @@ TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
     volume.leaves[0].values[9] = 1e9f, volume.leaves[0].values[10] = -5;
     scene.media = {fire_source(scratch)};
     scene.media[0].temperature = GridSource{file_of(scratch, "odd", volume), {"odd"}, {}};
-    const Snapshot snapshot = make_snapshot(scene, {1, 0});
+    const Snapshot snapshot = make_snapshot(scene, Moment{1, 0});
     EXPECT_THAT(snapshot.notes, Contains(HasSubstr("odd.vdb: grid \"odd\": 1 voxels above 65504 set to it")));
     for (const Medium& medium : snapshot.media) EXPECT_TRUE(is_finite(medium.optics.emission.radiance));
 }
@@ -112,7 +112,7 @@ TEST(FogGrids, AMissingGridIsOneLine) {
     scene.media[0].temperature->grids = {"heat"};
     EXPECT_THAT(error_text(ExitCode::refused,
                            [&] {
-                               make_snapshot(scene, {1, 0});
+                               make_snapshot(scene, Moment{1, 0});
                            }),
                 HasSubstr("has no grid \"heat\", it holds temperature (float)"));
 }
@@ -126,7 +126,7 @@ TEST(FogGrids, HugeTilesStayTiles) {
     volume.active_high = ivec3(799);
     scene.media = {fire_source(scratch)};
     scene.media[0].temperature = GridSource{file_of(scratch, "huge", volume), {"huge"}, {}};
-    const Snapshot snapshot = make_snapshot(scene, {1, 0});
+    const Snapshot snapshot = make_snapshot(scene, Moment{1, 0});
     ASSERT_EQ(snapshot.media.size(), 2u);
     EXPECT_LT(snapshot.media[1].density.bricks->bytes(), 1u << 28);
     const vec3 expected(blackbody_color(BlackbodyKind::kelvin, 1500));

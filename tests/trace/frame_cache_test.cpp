@@ -163,7 +163,7 @@ TEST(FrameCache, MemoryDoesNotGrowWithFrames) {
 
 TEST(FrameCache, SurfacesThatStandStillAreSharedWithAllMadeOfThem) {
     Scene scene = lamp_scene();
-    const Snapshot first = make_snapshot(scene, {0, 0}), second = make_snapshot(scene, {1, 0.5}, &first);
+    const Snapshot first = make_snapshot(scene, Moment{0, 0}), second = make_snapshot(scene, Moment{1, 0.5}, &first);
     EXPECT_EQ(second.occluders, first.occluders);
     EXPECT_EQ(&second.occluders->shadow_slices(), &first.occluders->shadow_slices());
     EXPECT_EQ(second.occluders->shadow_mesh(), first.occluders->shadow_mesh());
@@ -171,16 +171,16 @@ TEST(FrameCache, SurfacesThatStandStillAreSharedWithAllMadeOfThem) {
     EXPECT_EQ(first.occluders->shadow_mesh()->triangles.size(), 14u);
 
     scene.nodes[0].translation = from_to(vec3(0), vec3(1, 0, 0));
-    const Snapshot start = make_snapshot(scene, {0, 0}), end = make_snapshot(scene, {1, 1}, &start);
+    const Snapshot start = make_snapshot(scene, Moment{0, 0}), end = make_snapshot(scene, Moment{1, 1}, &start);
     EXPECT_NE(end.occluders, start.occluders);
     EXPECT_NE(end.occluders->shadow_mesh()->corners, start.occluders->shadow_mesh()->corners);
-    EXPECT_EQ(make_snapshot(scene, {2, 1}, &end).occluders, end.occluders);
+    EXPECT_EQ(make_snapshot(scene, Moment{2, 1}, &end).occluders, end.occluders);
 }
 
 TEST(FrameCache, LightDepthIsMadeOnceForFramesAndUsers) {
     Scene scene = lamp_scene();
     const View view = view_of({4, 2, 4}, {0, 1, 0}, {64, 48});
-    const Snapshot first = make_snapshot(scene, {0, 0}), second = make_snapshot(scene, {1, 0.5}, &first);
+    const Snapshot first = make_snapshot(scene, Moment{0, 0}), second = make_snapshot(scene, Moment{1, 0.5}, &first);
     ASSERT_EQ(first.lights.size(), 1u);
     EXPECT_NE(first.lights[0].intensity, second.lights[0].intensity);
     const SharedFloats grid = grid_of(first), froxels = froxels_of(first, view);
@@ -188,12 +188,12 @@ TEST(FrameCache, LightDepthIsMadeOnceForFramesAndUsers) {
     EXPECT_EQ(grid_of(first), grid);
     EXPECT_EQ(grid_of(second), grid);
     EXPECT_EQ(froxels_of(second, view), froxels);
-    EXPECT_EQ(*grid_of(make_snapshot(scene, {1, 0.5})), *grid);
+    EXPECT_EQ(*grid_of(make_snapshot(scene, Moment{1, 0.5})), *grid);
     EXPECT_NE(froxels_of(second, view_of({4, 2, 4.5f}, {0, 1, 0}, {64, 48})), froxels);
 
     // All it depends on.
     const auto changed = [&](auto change) {
-        Snapshot other = make_snapshot(scene, {1, 0.5}, &first);
+        Snapshot other = make_snapshot(scene, Moment{1, 0.5}, &first);
         change(other);
         return grid_of(other);
     };
@@ -215,7 +215,7 @@ TEST(FrameCache, ShadowsAreMadeOnceWhileAllStandsStill) {
     scene.nodes[0].translation = from_to(vec3(0), vec3(1, 0, 0)); // between 0 s and 1 s
     const View view = view_of({4, 2, 4}, {0, 1, 0}, {64, 48}), aside = view_of({4, 2, 4.5f}, {0, 1, 0}, {64, 48});
     const ShadowMapOptions options{64, 2, 1, 0};
-    const Snapshot first = make_snapshot(scene, {0, 1}), second = make_snapshot(scene, {1, 2}, &first);
+    const Snapshot first = make_snapshot(scene, Moment{0, 1}), second = make_snapshot(scene, Moment{1, 2}, &first);
     const Light light = first.lights.at(0);
     const auto map = cached_shadow_map(view, first, light, options);
     const auto volumes = cached_shadow_volumes(first, light);
@@ -239,7 +239,7 @@ TEST(FrameCache, ShadowsAreMadeOnceWhileAllStandsStill) {
     Snapshot less_fog = second;
     less_fog.media.clear();
     EXPECT_NE(cached_shadow_map(view, less_fog, light, options), map);
-    const Snapshot before = make_snapshot(scene, {2, 0.5}, &second);
+    const Snapshot before = make_snapshot(scene, Moment{2, 0.5}, &second);
     EXPECT_NE(cached_shadow_map(view, before, light, options), map);
     EXPECT_NE(cached_shadow_volumes(before, light), volumes);
     EXPECT_NE(cached_shadow_view(before, light, view, 0.5f), seen);

@@ -59,7 +59,7 @@ struct Things {
 
 Things things_of(const Scene& scene, std::shared_ptr<CacheFolder> folder) {
     const View view = view_of({4, 2, 4}, {0, 1, 0}, {64, 48});
-    Things things{make_snapshot(scene, {0, 0}, nullptr, MissingFrame::error, std::move(folder)), {}, {}, {}, {}};
+    Things things{make_snapshot(scene, Moment{0, 0}, nullptr, MissingFrame::error, std::move(folder)), {}, {}, {}, {}};
     const Snapshot& snapshot = things.snapshot;
     const Light& light = snapshot.lights.at(0);
     things.grid = make_light_depth(snapshot, light, LightTransmittance::grid, 16).grid;
@@ -152,9 +152,9 @@ TEST(PreparedSnapshot, FogThatIsEmptyAndNotesOfFilesAreKept) {
     Scene scene = prepared_scene();
     scene.media[0].recipe->threshold = 1;
     const auto first = folder_in(scratch), second = folder_in(scratch);
-    EXPECT_EQ(make_snapshot(scene, {0, 0}, nullptr, MissingFrame::error, first).media.size(), 0u);
+    EXPECT_EQ(make_snapshot(scene, Moment{0, 0}, nullptr, MissingFrame::error, first).media.size(), 0u);
     second->files = first->files;
-    EXPECT_EQ(make_snapshot(scene, {0, 0}, nullptr, MissingFrame::error, second).media.size(), 0u);
+    EXPECT_EQ(make_snapshot(scene, Moment{0, 0}, nullptr, MissingFrame::error, second).media.size(), 0u);
     EXPECT_THAT(names_of(*second, CostKind::found), testing::ElementsAre("bricks"));
 }
 

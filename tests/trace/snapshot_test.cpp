@@ -58,8 +58,8 @@ TEST(Snapshot, EvaluatesLightsAndDropsDarkOnes) {
     dark.intensity = 0.0f;
     scene.lights = {lamp, dark};
 
-    EXPECT_TRUE(make_snapshot(scene, {0, 0}).lights.empty());
-    const Snapshot snapshot = make_snapshot(scene, {12, 0.5});
+    EXPECT_TRUE(make_snapshot(scene, Moment{0, 0}).lights.empty());
+    const Snapshot snapshot = make_snapshot(scene, Moment{12, 0.5});
     EXPECT_EQ(snapshot.frame, 12);
     ASSERT_EQ(snapshot.lights.size(), 1u);
     const Light& light = snapshot.lights[0];
@@ -77,7 +77,8 @@ TEST(Snapshot, LightWithoutDirectionIsRefused) {
     light.name = "sun", light.kind = LightKind::sun;
     light.direction = vec3(0);
     scene.lights = {light};
-    EXPECT_THAT([&] { make_snapshot(scene, {}); }, testing::ThrowsMessage<Error>(testing::HasSubstr("light sun")));
+    EXPECT_THAT([&] { make_snapshot(scene, Moment{}); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("light sun")));
 }
 
 TEST(Snapshot, AnalyticMediaMoveWithTheirTransform) {
@@ -94,8 +95,8 @@ TEST(Snapshot, AnalyticMediaMoveWithTheirTransform) {
     layer.height_base = from_to(0.0f, 2.0f);
     scene.media = {box, layer};
 
-    EXPECT_EQ(make_snapshot(scene, {0, 0}).media.size(), 1u); // the box has no extinction yet
-    const Snapshot snapshot = make_snapshot(scene, {0, 1});
+    EXPECT_EQ(make_snapshot(scene, Moment{0, 0}).media.size(), 1u); // the box has no extinction yet
+    const Snapshot snapshot = make_snapshot(scene, Moment{0, 1});
     ASSERT_EQ(snapshot.media.size(), 2u);
     EXPECT_EQ(snapshot.media[0].world_bounds.low, vec3(3, -1, -1));
     EXPECT_EQ(snapshot.media[0].world_bounds.high, vec3(7, 1, 1));
@@ -121,19 +122,20 @@ TEST(Snapshot, FlatMediumIsRefused) {
     source.name = "sheet";
     source.scale = vec3(1, 0, 1);
     scene.media = {source};
-    EXPECT_THAT([&] { make_snapshot(scene, {}); }, testing::ThrowsMessage<Error>(testing::HasSubstr("medium sheet")));
+    EXPECT_THAT([&] { make_snapshot(scene, Moment{}); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr("medium sheet")));
 }
 
 TEST(Snapshot, StillFogIsGrownOnceAndDriftingFogAnew) {
     Scene scene;
     scene.media = {noise_source(), noise_source()};
     scene.media[1].recipe->wind = vec3(1, 0, 0);
-    const Snapshot first = make_snapshot(scene, {0, 0});
+    const Snapshot first = make_snapshot(scene, Moment{0, 0});
     ASSERT_EQ(first.media.size(), 2u);
-    const Snapshot next = make_snapshot(scene, {1, 0.5}, &first);
+    const Snapshot next = make_snapshot(scene, Moment{1, 0.5}, &first);
     EXPECT_EQ(next.media[0].density.bricks, first.media[0].density.bricks);
     EXPECT_NE(next.media[1].density.bricks, first.media[1].density.bricks);
-    EXPECT_EQ(make_snapshot(scene, {1, 0.5}, &next).media[1].density.bricks, next.media[1].density.bricks);
+    EXPECT_EQ(make_snapshot(scene, Moment{1, 0.5}, &next).media[1].density.bricks, next.media[1].density.bricks);
 }
 
 // What a frame holds must not depend on the frame before.
@@ -142,10 +144,10 @@ TEST(Snapshot, ReuseGivesTheSameBits) {
     scene.media = {noise_source()};
     scene.media[0].translation = from_to(vec3(0), vec3(3, 1, 2));
     scene.media[0].rotation = from_to(quat(1, 0, 0, 0), glm::angleAxis(1.0f, vec3(0, 1, 0)));
-    const Snapshot first = make_snapshot(scene, {0, 0.1});
-    const Snapshot second = make_snapshot(scene, {1, 0.2}, &first);
-    const Snapshot third = make_snapshot(scene, {2, 0.3}, &second);
-    const Snapshot fresh = make_snapshot(scene, {2, 0.3});
+    const Snapshot first = make_snapshot(scene, Moment{0, 0.1});
+    const Snapshot second = make_snapshot(scene, Moment{1, 0.2}, &first);
+    const Snapshot third = make_snapshot(scene, Moment{2, 0.3}, &second);
+    const Snapshot fresh = make_snapshot(scene, Moment{2, 0.3});
     const BrickPool &a = *third.media[0].density.bricks, &b = *fresh.media[0].density.bricks;
     EXPECT_EQ(a.index_to_world, b.index_to_world);
     EXPECT_EQ(a.world_to_index, b.world_to_index);
@@ -153,7 +155,7 @@ TEST(Snapshot, ReuseGivesTheSameBits) {
     EXPECT_EQ(a.anchor, b.anchor);
     EXPECT_EQ(a.values, b.values);
     EXPECT_EQ(third.fog_sources[0].bricks, first.fog_sources[0].bricks);
-    EXPECT_EQ(make_snapshot(scene, {2, 0.3}, &third).media[0].density.bricks, third.media[0].density.bricks);
+    EXPECT_EQ(make_snapshot(scene, Moment{2, 0.3}, &third).media[0].density.bricks, third.media[0].density.bricks);
     EXPECT_EQ(third.media[0].world_bounds.low, b.bounds.low);
 }
 
@@ -166,15 +168,15 @@ TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
     Scene scene;
     scene.media = {file_source(file)};
     scene.media[0].translation = vec3(0, 10, 0);
-    const Snapshot first = make_snapshot(scene, {1, 0});
+    const Snapshot first = make_snapshot(scene, Moment{1, 0});
     ASSERT_EQ(first.media.size(), 1u);
     EXPECT_NEAR(first.media[0].world_bounds.center().x, 11.5f, 1e-3);
     EXPECT_NEAR(first.media[0].world_bounds.center().y, 17.5f, 1e-3);
-    const Snapshot same = make_snapshot(scene, {2, 1}, &first);
+    const Snapshot same = make_snapshot(scene, Moment{2, 1}, &first);
     EXPECT_EQ(same.media[0].density.bricks, first.media[0].density.bricks);
 
     write_vdb(file, constant_box(24, 0.5f));
-    const Snapshot changed = make_snapshot(scene, {3, 2}, &same);
+    const Snapshot changed = make_snapshot(scene, Moment{3, 2}, &same);
     EXPECT_NE(changed.media[0].density.bricks, first.media[0].density.bricks);
     EXPECT_NEAR(changed.media[0].density.bricks->mass, 0.5 * 24 * 24 * 24, 1);
 }
@@ -194,7 +196,7 @@ TEST(Snapshot, VolumesWithZUpStandUpright) {
     scene.media = {file_source(file)};
     scene.media[0].z_up = true;
     scene.media[0].scale = vec3(2), scene.media[0].translation = vec3(100, 0, 0);
-    const Snapshot snapshot = make_snapshot(scene, {});
+    const Snapshot snapshot = make_snapshot(scene, Moment{});
     const Medium& column = snapshot.media.at(0);
     expect_near(column.world_bounds.low, vec3(98, -2, -32), 1e-3f);
     expect_near(column.world_bounds.high, vec3(132, 32, 2), 1e-3f);
@@ -211,25 +213,25 @@ TEST(Snapshot, ClippedSequencesHaveNoFog) {
     scene.media = {file_source(scratch / "fog.####.vdb")};
     scene.media[0].sequence.files = {2};
     scene.media[0].sequence.mode = SequenceMode::clip;
-    EXPECT_TRUE(make_snapshot(scene, {1, 0}).media.empty());
-    EXPECT_EQ(make_snapshot(scene, {2, 0}).media.size(), 1u);
+    EXPECT_TRUE(make_snapshot(scene, Moment{1, 0}).media.empty());
+    EXPECT_EQ(make_snapshot(scene, Moment{2, 0}).media.size(), 1u);
     scene.media[0].sequence.mode = SequenceMode::hold;
-    EXPECT_EQ(make_snapshot(scene, {1, 0}).media.size(), 1u);
+    EXPECT_EQ(make_snapshot(scene, Moment{1, 0}).media.size(), 1u);
 }
 
 TEST(Snapshot, MissingFileIsNamed) {
     Scene scene;
     scene.media = {file_source("/nowhere/fog.vdb")};
-    EXPECT_THAT([&] { make_snapshot(scene, {}); },
+    EXPECT_THAT([&] { make_snapshot(scene, Moment{}); },
                 testing::ThrowsMessage<Error>(testing::HasSubstr("/nowhere/fog.vdb")));
 }
 
 TEST(Snapshot, DroppedTrianglesAreSaidOnce) {
     Scene scene;
     add_mesh(scene, quad(vec3(0), vec3(1, 0, 0), vec3(2, 0, 0)));
-    const Snapshot first = make_snapshot(scene, {0, 0});
+    const Snapshot first = make_snapshot(scene, Moment{0, 0});
     EXPECT_THAT(first.notes, testing::ElementsAre(testing::HasSubstr("2 triangles")));
-    EXPECT_TRUE(make_snapshot(scene, {1, 1}, &first).notes.empty());
+    EXPECT_TRUE(make_snapshot(scene, Moment{1, 1}, &first).notes.empty());
 }
 
 TEST(Snapshot, CamerasFromNodesAreOrthonormal) {

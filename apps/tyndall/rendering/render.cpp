@@ -127,6 +127,8 @@ void say_before(const Scene& scene, const Snapshot& first, const Limitations& li
         say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
     if (one.request.history > 0 && one.plan.mode->remembers && is_chromatic(first))
         fail(ExitCode::usage, "--history", "does not go with fog whose extinction differs between the channels");
+    if (one.request.time_samples > 0 && !first.moments && !globals.quiet)
+        say("note: --time-samples changes nothing: the shutter is closed, or nothing moves while it is open");
     say_limitations(scene, first, limitations, globals);
 }
 

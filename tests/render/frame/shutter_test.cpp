@@ -210,6 +210,33 @@ TEST(ShutterFog, IsTheMeanOfItsMoments) {
     }
 }
 
+// Of the fog's light over the image, and its standard error.
+std::pair<double, double> mean_light(const Layers& layers) {
+    double sum = 0, variance = 0;
+    for (size_t i = 0; i < layers.inscatter.pixels.size(); ++i) {
+        sum += double{layers.inscatter.pixels[i].x};
+        if (!layers.inscatter_variance.empty()) variance += double{layers.inscatter_variance.pixels[i].x};
+    }
+    const double count = static_cast<double>(layers.inscatter.pixels.size());
+    return {sum / count, std::sqrt(variance) / count};
+}
+
+TEST(ShutterFog, MarchAgreesWithPath) {
+    Moving moving;
+    put(moving, true), add_lamps(moving);
+    moving.scene.materials[0].emission = vec3(0); // in path it lights the fog
+    moving.request.time_samples = 32;
+    moving.request.exr.layers = {"variance"};
+    Settings& settings = moving.request.settings;
+    settings.path.orders = settings.fluence.orders = 1;
+    settings.pixel.samples = 64;
+    const auto [marched, march_error] = mean_light(rendered(moving.scene, moving.request, "march"));
+    settings.pixel.samples = 1024;
+    const auto [traced, path_error] = mean_light(rendered(moving.scene, moving.request, "path"));
+    EXPECT_LT(path_error, 0.02 * traced);
+    EXPECT_NEAR(marched, traced, 3.5 * std::hypot(path_error, march_error));
+}
+
 TEST(ShutterFog, LightsHaveLayersOfTheirOwnWhateverTheMoment) {
     Moving moving;
     put(moving, true), add_lamps(moving);
@@ -248,6 +275,26 @@ TEST(UsualMoments, NothingThatMovesNeedsOne) {
     moving.scene.nodes[0].translation = vec3(0);
     EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(64), 0, moving.scene.cameras[0].shutter), 1);
     EXPECT_EQ(view_of(moving.scene, moving.request, moving.request.settings, 0).shutter, nullptr);
+}
+
+TEST(ShutterLimitations, SayInEveryModeHowFarMomentsLieApart) {
+    Moving moving;
+    put(moving, true);
+    for (const auto& [count, severity] : {std::pair{4, Severity::degraded}, {16, Severity::info}}) {
+        moving.request.time_samples = count;
+        const Snapshot snapshot = make_snapshot(moving.scene, moments_of(moving.scene, moving.request, 0));
+        const View view = view_of(moving.scene, moving.request, moving.request.settings, 0);
+        for (const Mode& mode : modes()) {
+            SCOPED_TRACE(mode.name);
+            const Limitations said = mode.limitations(view, snapshot, moving.request.settings);
+            const auto found = std::ranges::find_if(
+                said, [](const Limitation& one) { return one.kind->id == std::string_view("shutter_moments"); });
+            ASSERT_NE(found, said.end());
+            EXPECT_EQ(found->severity, severity);
+            EXPECT_NEAR(found->amounts[0], 0.2 * 64 / count, 0.05); // the plate crosses a fifth of the picture
+            EXPECT_EQ(found->amounts[1], count);
+        }
+    }
 }
 
 TEST(ShutterSnapshots, ShareWhatStandsStill) {
