@@ -50,7 +50,7 @@ struct Snapshot {
     const Scene* scene = nullptr;
     double seconds = 0;
     int frame = 0;
-    std::vector<Light> lights; // of non-zero intensity
+    std::vector<Light> lights; // of non-zero intensity; those with a face after all others
     std::vector<Medium> media; // that dim light or emit it; of non-zero extinction
     vec3 ambient{0};
     BackgroundNow background;
