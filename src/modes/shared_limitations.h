@@ -23,8 +23,8 @@ inline constexpr LimitationKind mean_environment{
 inline constexpr LimitationKind environment_left_out{"environment_left_out",
                                                      "its light in the fog is left out: {} nits from all around"};
 inline constexpr LimitationKind lamp_for_face{
-    "lamp_for_face", "in the fog it shines from its middle, as a lamp of {} m radius with its cosine: off by more than "
-                     "10% within {} m"};
+    "lamp_for_face", "in the fog it shines from its middle, as a lamp of {} m radius: off by more than 10% within {} m "
+                     "of it"};
 inline constexpr LimitationKind light_grid_cells{
     "light_grid_cells", "cells of the light grid are up to {} optical depths deep: light in dense parts is blurred"};
 inline constexpr LimitationKind long_steps{
