@@ -134,6 +134,24 @@ TEST(FaceLight, MarchIsAsPathsOfOneOrder) {
     }
 }
 
+TEST(FaceLight, LightThatScattersOftenStartsAllOverTheFace) {
+    const Medium fog = homogeneous_medium(1, {vec3(-1.5f), vec3(1.5f)}, forward_phase(0.3f), vec3(0.9f));
+    Settings settings;
+    settings.fluence.orders = all_orders;
+    const Ray ray{{-0.5f, -0.6f, 3}, glm::normalize(vec3(0.1f, 0.08f, -1)), 6};
+    for (Light light : some_faces()) {
+        AreaShape hidden = *light.area;
+        hidden.visible = false;
+        light.area = std::make_shared<const AreaShape>(hidden);
+        const Snapshot snapshot = snapshot_of({fog}, {light});
+        const double paths = estimate_ray(path_mode(snapshot), ray, 1 << 9, fog_light).value.x;
+        const double march = marched_light(snapshot, ray, 1 << 6, settings).value.x;
+        EXPECT_GT(paths, 1.2 * marched_light(snapshot, ray, 1 << 6).value.x)
+            << "much of it is scattered more than once";
+        EXPECT_NEAR(march, paths, 0.03 * paths) << traits_of(hidden.kind).name;
+    }
+}
+
 TEST(FaceLight, PartsOfTheFogAreThoseOfTheLights) {
     std::vector<Light> lights = some_faces();
     lights.insert(lights.begin(), point_light({0.8f, 0.9f, 0.5f}, 2));
