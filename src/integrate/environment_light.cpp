@@ -1,11 +1,10 @@
 #include "integrate/environment_light.h"
 
-#include "base/random.h"
+#include "integrate/fog_points.h"
 #include "integrate/terms.h"
 #include "trace/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/phase.h"
-#include "volume/rays/fog_pieces.h"
 
 #include <algorithm>
 #include <utility>
@@ -19,51 +18,6 @@ struct SkyPath {
     size_t ray = 0;
     vec3 point{0}, direction{0}, light{0};
 };
-
-// Two numbers for point k of a ray: well spread over the samples of a pixel.
-vec2 numbers(const RayBatch& batch, size_t ray, uint32_t k, uint32_t count, Use use) {
-    const SamplePlace place = batch.places.empty() ? SamplePlace{0, batch.ids[ray]} : batch.places[ray];
-    const Sample2 u = sample2(place.index * count + k, hash(place.sequence, static_cast<uint32_t>(use)));
-    return {u.x, u.y};
-}
-
-// Where the optical depth from the ray's start reaches a value below the whole: Newton's steps, kept in a bracket.
-double distance_at(const FogPieces& fog, double depth, size_t& piece) {
-    const auto after = std::upper_bound(fog.pieces.begin() + 1, fog.pieces.end(), depth,
-                                        [](double d, const FogPieces::Piece& p) { return d < p.depth; });
-    piece = static_cast<size_t>(after - fog.pieces.begin()) - 1;
-    double low = fog.pieces[piece].low, high = fog.pieces[piece].high, t = 0.5 * (low + high);
-    for (int i = 0; i < 24 && high - low > 1e-9 * high; ++i) {
-        const double off = fog.depth_at(piece, t) - depth;
-        (off > 0 ? high : low) = t;
-        double slope = 0;
-        for (size_t m = 0; m < fog.media; ++m) slope += fog.extinction[m] * fog.density(piece, m, t);
-        const double next = slope > 0 ? t - off / slope : low;
-        if (std::abs(next - t) < 1e-9 * high) break;
-        t = next > low && next < high ? next : 0.5 * (low + high);
-    }
-    return t;
-}
-
-// The fog at a point of a ray: what each medium has of the extinction there.
-struct FogThere {
-    vec3 point{0}, direction{0};
-    std::vector<float> shares;
-};
-
-// Σ albedo p over the media, and Σ p.
-std::pair<vec3, float> scattered(const std::vector<Medium>& media, const FogThere& fog, vec3 towards) {
-    const float cosine = glm::dot(fog.direction, towards);
-    vec3 albedo(0);
-    float density = 0;
-    for (size_t m = 0; m < media.size(); ++m) {
-        if (!(fog.shares[m] > 0)) continue;
-        const Optics& optics = media[m].optics;
-        const float share = fog.shares[m] * phase_value(optics.phase, cosine);
-        albedo += share * (optics.albedo_field ? albedo_at(optics, fog.point) : optics.albedo), density += share;
-    }
-    return {albedo, density};
-}
 
 // Picks a direction as the fog at the point scatters, of a medium by its share.
 vec3 direction_by_phase(const std::vector<Medium>& media, const FogThere& fog, float which, vec2 u) {
@@ -99,21 +53,15 @@ void append_ray(const EnvironmentLight& light, const RayBatch& batch, size_t i, 
     const auto points = static_cast<uint32_t>(light.points);
     static thread_local FogThere fog;
     for (uint32_t k = 0; k < points; ++k) {
-        const vec2 u = numbers(batch, i, k, points, use_place);
+        const vec2 u = point_numbers(batch, i, k, points, use_place);
         const double depth = factor > 0 ? -std::log1p(-factor * double(u.x) * seen) / factor : u.x * seen;
         size_t piece = 0;
         const double t = distance_at(pieces, depth, piece);
-        fog.point = ray.at(static_cast<float>(t)), fog.direction = ray.direction;
-        fog.shares.assign(light.fog.size(), 0);
-        double total = 0;
-        for (size_t m = 0; m < pieces.media; ++m) total += pieces.extinction[m] * pieces.density(piece, m, t);
-        if (!(total > 0)) continue;
-        for (size_t m = 0; m < pieces.media; ++m)
-            fog.shares[m] = static_cast<float>(pieces.extinction[m] * pieces.density(piece, m, t) / total);
+        if (!(look_at_fog(pieces, piece, ray, t, fog) > 0)) continue;
         const float fade = fades(light.style) ? style_fade(light.style, eye_distance(light.camera, fog.point)) : 1;
         const float weight = static_cast<float>(seen) * fade * light.environment->volume_scale / float(points);
-        append_paths(light, fog, i, weight, u.y, numbers(batch, i, k, points, use_light),
-                     numbers(batch, i, k, points, use_phase), paths);
+        append_paths(light, fog, i, weight, u.y, point_numbers(batch, i, k, points, use_light),
+                     point_numbers(batch, i, k, points, use_phase), paths);
     }
 }
 

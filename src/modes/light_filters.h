@@ -13,7 +13,8 @@ inline constexpr LimitationKind sampled_gobo{
 inline constexpr LimitationKind blurred_filter{"blurred_filter",
                                                "what its IES profile or gobo has finer than {} degrees is lost"};
 inline constexpr LimitationKind mean_filter{
-    "mean_filter", "its IES profile or gobo is drawn as its mean: what the light sends varies by {} times that"};
+    "mean_filter",
+    "its IES profile, gobo or cosine is drawn as its mean: what the light sends varies by {} times that"};
 }
 
 // Lights that send the mean of what their filters let through, evenly.

@@ -1,6 +1,7 @@
 #include "modes/shared_limitations.h"
 
 #include "modes/settings.h"
+#include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/environment.h"
@@ -255,6 +256,18 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
     if (const double nits = nits_in_fog(snapshot); nits > 0)
         limitations.push_back(
             {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
+}
+
+void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations) {
+    constexpr double tolerated = 0.1;
+    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    for (const Light& light : snapshot.lights)
+        if (light.area && light.volume_scale > 0)
+            limitations.push_back({Severity::degraded,
+                                   &limitation::lamp_for_face,
+                                   Subject::light,
+                                   light.name,
+                                   {light.radius, far_enough(*light.area, tolerated)}});
 }
 
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {

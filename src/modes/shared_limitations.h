@@ -22,6 +22,9 @@ inline constexpr LimitationKind mean_environment{
                         "elsewhere, of {} nits"};
 inline constexpr LimitationKind environment_left_out{"environment_left_out",
                                                      "its light in the fog is left out: {} nits from all around"};
+inline constexpr LimitationKind lamp_for_face{
+    "lamp_for_face", "in the fog it shines from its middle, as a lamp of {} m radius: off by more than 10% within {} m "
+                     "of it"};
 inline constexpr LimitationKind light_grid_cells{
     "light_grid_cells", "cells of the light grid are up to {} optical depths deep: light in dense parts is blurred"};
 inline constexpr LimitationKind long_steps{
@@ -104,6 +107,9 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
 // Where the fog has the environment's light as its mean, or none of it.
 void add_mean_environment(const Snapshot& snapshot, Limitations& limitations);
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
+
+// Where lamps stand for the faces of rectangles, discs and spheres.
+void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the light of fog is not drawn at all.
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);

@@ -7,6 +7,7 @@
 #include <string>
 
 namespace tyndall {
+struct AreaShape;
 struct LightFilter;
 
 struct Light {
@@ -23,6 +24,9 @@ struct Light {
     float core = 1e-4f;                        // metres; 1/r² is capped inside of this in any case
     float angle = 0;                           // radians, half angle of the sun's disc
     std::shared_ptr<const LightFilter> filter; // point, spot: what of the intensity goes where; null = all everywhere
+    // Rectangle, disc, sphere: what glows; null = none. All else is then that of a lamp in its middle that stands for
+    // it (scene/area_shape.h), for whom its size does not matter.
+    std::shared_ptr<const AreaShape> area;
     bool shadows = true;
     int casters = -1, lit = -1; // surfaces that shadow it, and that it lights: sets of the snapshot; -1 = all
 };

@@ -1,10 +1,10 @@
-// The kinds of light, as in KHR_lights_punctual, and what is true of all lights of a kind. What a kind does to light is
-// in scene/lights.
+// The kinds of light, those of KHR_lights_punctual and faces that glow, and what is true of all lights of a kind. What
+// a kind does to light is in scene/lights.
 #pragma once
 #include <string_view>
 
 namespace tyndall {
-enum class LightKind { point, spot, sun };
+enum class LightKind { point, spot, sun, rectangle, disc, sphere };
 
 struct LightTraits {
     std::string_view name, noun; // in scene files and in messages
@@ -12,11 +12,15 @@ struct LightTraits {
     bool distant = false;        // parallel light from far away: no place, no falloff
     bool aimed = false;          // shines in a direction
     bool cone = false;           // within inner_cone and outer_cone only
+    bool area = false;           // a face that glows evenly: scene/area_shape.h
 };
 inline constexpr LightTraits light_kinds[] = {
     {.name = "point", .noun = "point light", .unit = "candela"},
     {.name = "spot", .noun = "spot", .unit = "candela", .aimed = true, .cone = true},
     {.name = "sun", .noun = "sun", .unit = "lux", .distant = true, .aimed = true},
+    {.name = "rectangle", .noun = "rectangle", .unit = "nit", .aimed = true, .area = true},
+    {.name = "disc", .noun = "disc", .unit = "nit", .aimed = true, .area = true},
+    {.name = "sphere", .noun = "sphere", .unit = "nit", .area = true},
 };
 constexpr const LightTraits& traits_of(LightKind kind) { return light_kinds[static_cast<int>(kind)]; }
 
@@ -24,5 +28,6 @@ constexpr const LightTraits& traits_of(LightKind kind) { return light_kinds[stat
 template<class T> constexpr bool is_distant(const T& light) { return traits_of(light.kind).distant; }
 template<class T> constexpr bool is_aimed(const T& light) { return traits_of(light.kind).aimed; }
 template<class T> constexpr bool has_cone(const T& light) { return traits_of(light.kind).cone; }
+template<class T> constexpr bool has_area(const T& light) { return traits_of(light.kind).area; }
 template<class T> constexpr bool shines_around(const T& light) { return !is_distant(light) && !has_cone(light); }
 }

@@ -55,10 +55,11 @@ struct CameraSource {
 
 // What the number of a light's intensity means.
 enum class LightUnit {
-    native, // candela (point, spot) or lux (sun)
-    lumen,  // of all the light
-    watt,   // times an efficacy: lumens, or lux of a sun
-    profile // the candela of its IES file, times this
+    native,  // candela (point, spot), lux (sun) or nit (rectangle, disc, sphere)
+    candela, // of the whole face, seen along its axis
+    lumen,   // of all the light
+    watt,    // times an efficacy: lumens, or lux of a sun
+    profile  // the candela of its IES file, times this
 };
 
 struct GoboSource {
@@ -81,13 +82,16 @@ struct LightSource {
     bool whole_sphere = false;       // a spot's lumens are spread over the sphere, and most do not leave its cone
     Keyed<float> exposure{0.0f};     // stops
     Keyed<float> temperature{0.0f};  // kelvin, multiplies the colour; 0 = none
-    Keyed<vec3> up{vec3(0, 1, 0)};   // of profile and gobo, where the light has no node
+    Keyed<vec3> up{vec3(0, 1, 0)};   // of rectangle, profile and gobo, where the light has no node
     Keyed<float> profile_turn{0.0f}; // radians, counterclockwise as seen from the light
     std::shared_ptr<const IesProfile> profile; // null = none
     std::optional<GoboSource> gobo;
     Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};
     Keyed<float> inner_cone{0.0f}, outer_cone{pi / 4}; // radians, half angles
     Keyed<float> radius{0.0f}, angle{0.0f};
+    Keyed<float> width{1.0f}, height{1.0f}; // rectangle, metres
+    bool two_sided = false;                 // rectangle, disc
+    bool visible = true;                    // rectangle, disc, sphere: the camera sees it
     float range = infinity;
     bool shadows = true;
     std::vector<bool> lit, casters;    // of each instance: whether it is lit by it, and shadows it; empty = all

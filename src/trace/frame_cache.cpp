@@ -1,6 +1,7 @@
 #include "trace/frame_cache.h"
 
 #include "base/io/file.h"
+#include "scene/area_shape.h"
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -29,6 +30,8 @@ std::string content_of(const Occluders& occluders) { return occluders.content();
 
 CacheKey& CacheKey::add(const Light& light) {
     add(light.kind).add(light.position).add(light.direction).add(light.inner_cone).add(light.outer_cone);
+    if (const AreaShape* face = light.area.get())
+        add(face->kind).add(face->center).add(face->right).add(face->up).add(face->half).add(face->two_sided);
     return add(light.range).add(light.radius).add(light.core).add(light.angle).add(light.shadows);
 }
 

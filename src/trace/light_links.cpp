@@ -75,12 +75,12 @@ const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const
 }
 
 bool shadows_light(const Light& light, const Snapshot& snapshot, int instance) {
-    if (!light.shadows || light.casters < 0) return light.shadows;
+    if (!light.shadows || light.casters < 0 || instance < 0) return light.shadows;
     return snapshot.casters[static_cast<size_t>(light.casters)].instances[static_cast<size_t>(instance)];
 }
 
 bool is_lit(const Light& light, const Snapshot& snapshot, int instance) {
-    return light.lit < 0 || snapshot.lit[static_cast<size_t>(light.lit)][static_cast<size_t>(instance)];
+    return light.lit < 0 || instance < 0 || snapshot.lit[static_cast<size_t>(light.lit)][static_cast<size_t>(instance)];
 }
 
 bool has_alpha_shadows(const Snapshot& snapshot) {

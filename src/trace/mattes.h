@@ -11,6 +11,6 @@ inline bool has_mattes(const Snapshot& snapshot) {
 }
 
 inline bool is_matte(const Snapshot& snapshot, int instance) {
-    return snapshot.scene && snapshot.scene->instances[static_cast<size_t>(instance)].matte;
+    return snapshot.scene && instance >= 0 && snapshot.scene->instances[static_cast<size_t>(instance)].matte;
 }
 }

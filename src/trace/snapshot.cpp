@@ -2,8 +2,10 @@
 #include "trace/snapshot.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "scene/area_shape.h"
 #include "scene/camera.h"
 #include "scene/light.h"
+#include "scene/light_filter.h"
 #include "scene/photometry/light_power.h"
 #include "scene/scene.h"
 #include "trace/environment.h"
@@ -58,6 +60,20 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
     light.radius = source.radius.at(seconds), light.angle = source.angle.at(seconds);
     light.shadows = source.shadows;
     return light;
+}
+
+// The face of a rectangle, disc or sphere, and the lamp that stands for it.
+void add_face(const LightSource& source, double seconds, vec3 up, Light& light) {
+    AreaShape shape;
+    shape.kind = source.kind, shape.center = light.position, shape.normal = light.direction;
+    const LightAxes axes = light_axes(shape.normal, up, 0);
+    shape.right = axes.right, shape.up = axes.up;
+    shape.half = vec2(source.radius.at(seconds));
+    if (source.kind == LightKind::rectangle)
+        shape.half = 0.5f * vec2(source.width.at(seconds), source.height.at(seconds));
+    shape.half = glm::max(shape.half, vec2(0));
+    shape.two_sided = source.two_sided, shape.visible = source.visible;
+    stand_for(shape, light);
 }
 
 bool shines(const Light& light) {
@@ -134,10 +150,12 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         vec3 up;
         Light light = light_at(scene, scene.lights[i], moment.seconds, up);
         add_filter(scene.lights[i], moment, up, missing, previous, light);
+        if (has_area(scene.lights[i])) add_face(scene.lights[i], moment.seconds, up, light);
         if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
         light.core = core_share * snapshot.extent;
         if (shines(light)) snapshot.lights.push_back(std::move(light));
     }
+    std::ranges::stable_partition(snapshot.lights, [](const Light& light) { return !light.area; });
     snapshot.ambient = scene.ambient.at(moment.seconds);
     snapshot.background = background_at(scene.background, moment.seconds);
     snapshot.environment = environment_at(scene, moment.seconds, previous ? previous->environment.get() : nullptr);

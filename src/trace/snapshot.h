@@ -51,7 +51,7 @@ struct Snapshot {
     const Scene* scene = nullptr;
     double seconds = 0;
     int frame = 0;
-    std::vector<Light> lights; // of non-zero intensity
+    std::vector<Light> lights; // of non-zero intensity; those with a face after all others
     std::vector<Medium> media; // that dim light or emit it; of non-zero extinction, the same in all channels
     // Where channels differ, which `media` is the mean of: the media as red, green and blue light meet them. Else
     // empty.

@@ -1,6 +1,7 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
 #include "trace/environment.h"
+#include "trace/faces.h"
 #include "trace/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -87,9 +88,16 @@ void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths
 
     for (size_t l = 0; l < lights; ++l) {
         const Light& light = snapshot.lights[l];
-        if (!gather_light(light, snapshot, points, packet)) continue;
-        if (const auto& occluders = shadow_casters(light, snapshot)) cast_shadows(*occluders, light, points, u, packet);
-        if (l < depths.size()) dim(depths[l], packet);
+        if (light.area) {
+            std::array<vec3, 16> irradiance{};
+            add_face_light(snapshot, light, l < depths.size(), points, u, irradiance);
+            std::copy_n(irradiance.begin(), 16, packet.irradiance);
+        } else {
+            if (!gather_light(light, snapshot, points, packet)) continue;
+            if (const auto& occluders = shadow_casters(light, snapshot))
+                cast_shadows(*occluders, light, points, u, packet);
+            if (l < depths.size()) dim(depths[l], packet);
+        }
         for (size_t i = 0; i < points.size(); ++i) {
             const vec3 added = points[i].base_color * packet.irradiance[i] / pi;
             radiance[i] += added;

@@ -51,7 +51,7 @@ Json lights_json(const Scene& scene) {
     return json_list(scene.lights, [](const LightSource& light) {
         return json_object({{"name", light.name},
                             {"kind", traits_of(light.kind).name},
-                            {"intensity", candela_of(light, 0)},
+                            {"intensity", native_intensity(light, 0)},
                             {"unit", traits_of(light.kind).unit},
                             {"color", light.color.at(0)},
                             {"temperature", light.temperature.at(0)},
@@ -142,7 +142,7 @@ std::string content_text(const Scene& scene) {
     for (const LightSource& light : scene.lights)
         text += formatted("  light         %s, %s, %g %s%s%s\n",
                           printable(light.name.empty() ? "(no name)" : light.name, 80).c_str(),
-                          std::string(traits_of(light.kind).name).c_str(), double{candela_of(light, 0)},
+                          std::string(traits_of(light.kind).name).c_str(), double{native_intensity(light, 0)},
                           std::string(traits_of(light.kind).unit).c_str(),
                           light.profile ? " at the peak of its profile" : "", light.gobo ? ", with a gobo" : "");
     const std::string hint = light_units_hint(scene);

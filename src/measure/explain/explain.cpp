@@ -10,6 +10,7 @@
 #include "render/adaptive/candidates.h"
 #include "render/frame/camera_paths.h"
 #include "render/frame/channels.h"
+#include "scene/area_shape.h"
 #include "scene/scene.h"
 #include "trace/mattes.h"
 #include "volume/rays/fog_reach.h"
@@ -45,7 +46,7 @@ void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
     story.pixel = pixel, story.size = scene.view.size;
     for (const Light& light : scene.snapshot.lights) {
         LightOnRay on;
-        on.name = light.name, on.kind = light.kind, on.shadows = light.shadows;
+        on.name = light.name, on.kind = light.area ? light.area->kind : light.kind, on.shadows = light.shadows;
         on.points = static_cast<int>(scene.points_of(light));
         const auto& casters = shadow_casters(light, scene.snapshot);
         on.sampled = casters && casters->has_alpha();
@@ -73,6 +74,13 @@ vec3 add_reference(const Prepared& prepared, const RayPart& part, vec3 through, 
     return scatter.transmittance * scatter.tint;
 }
 
+std::string material_of(const RayScene& scene, int instance) {
+    const Scene& whole = *scene.snapshot.scene;
+    const int material =
+        whole.meshes[static_cast<size_t>(whole.instances[static_cast<size_t>(instance)].mesh)].material;
+    return material >= 0 ? whole.materials[static_cast<size_t>(material)].name : std::string();
+}
+
 // The surface the ray has come to.
 void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const PathPacket& s,
                  const SurfacePoint& point, double distance, RayStory& story) {
@@ -88,11 +96,11 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     shade(scene.snapshot, prepared, {&point, 1}, u, {&surface.radiance, 1}, &of_lights);
 
     const int instance = s.hits.instance[0];
-    surface.distance = distance, surface.name = name_of_instance(scene.snapshot, instance);
-    const Scene& whole = *scene.snapshot.scene;
-    const int material =
-        whole.meshes[static_cast<size_t>(whole.instances[static_cast<size_t>(instance)].mesh)].material;
-    if (material >= 0) surface.material = whole.materials[static_cast<size_t>(material)].name;
+    surface.distance = distance;
+    if (s.face[0] >= 0)
+        surface.name = scene.snapshot.lights[static_cast<size_t>(s.face[0])].name;
+    else
+        surface.name = name_of_instance(scene.snapshot, instance), surface.material = material_of(scene, instance);
     if (is_matte(scene.snapshot, instance)) surface.radiance = vec3(0), of_lights.assign(of_lights.size(), vec3(0));
     surface.alpha = point.alpha, surface.share = mean_component(path.through) * point.alpha;
     const vec3 share = path.through * point.alpha;

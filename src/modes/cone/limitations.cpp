@@ -64,6 +64,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     if (settings.of<ConeSettings>().resolution != Resolution::full)
         add_no_fog_picture(view, "cone.resolution", limitations);
     add_mean_environment(snapshot, limitations);
+    add_lamps_for_faces(snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) add_emission(snapshot, true, limitations);
     add_shutter(view, snapshot, limitations);

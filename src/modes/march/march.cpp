@@ -1,6 +1,7 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
 #include "integrate/environment_light.h"
+#include "integrate/face_light.h"
 #include "integrate/field_light.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
@@ -50,6 +51,9 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     EnvironmentLight sky = environment_light(fog->snapshot, settings.style, settings.terms, view.camera,
                                              march.visibility != Visibility::off, march.min_transmittance);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
+    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
+    FaceLight faces = take_faces(fog->snapshot, settings.style, settings.terms, view.camera,
+                                 march.visibility != Visibility::off, march.min_transmittance);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
@@ -62,13 +66,13 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         const ShadowMaps maps = make_shadow_maps(view, fog->snapshot, settings);
         for (size_t i = 0; i < maps.size(); ++i) fog->shadows[i].map = maps[i];
     }
-    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
     ScatterFunction scatter = [fog, intervals, exact](const RayBatch& batch, std::span<Scatter> results) {
         if (intervals) return single_scattering_packet(*fog, batch, results);
         if (exact) return march_exact(*fog, batch, results);
         march_packet(*fog, batch, results);
     };
-    return with_environment_light(std::move(sky), with_field_light(std::move(fields), std::move(scatter)));
+    scatter = with_face_light(std::move(faces), with_field_light(std::move(fields), std::move(scatter)));
+    return with_environment_light(std::move(sky), std::move(scatter));
 }
 
 Mode march_mode() {

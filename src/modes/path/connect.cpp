@@ -1,6 +1,7 @@
 // Shadow rays in packets, fog by ratio tracking.
 #include "modes/path/connect.h"
 
+#include "scene/area_shape.h"
 #include "scene/light.h"
 #include "trace/environment.h"
 #include "trace/light_ray.h"
@@ -28,6 +29,17 @@ void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connect
         }
         if (any && surfaces && !surfaces->empty()) surfaces->transmission(rays, shares);
     }
+}
+
+// To a point of a light's face.
+Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u) {
+    const AreaSample sample = sample_area(*light.area, point, u);
+    Connection c;
+    c.point = point, c.to_light = c.shadow = sample.direction;
+    c.fog_length = sample.distance, c.shadow_length = sample.distance * 0.9999f;
+    c.irradiance = radiance_of(light) * sample.steradians;
+    c.shadows = light.shadows, c.light_index = index;
+    return c;
 }
 
 void connect_packet(const PathTracer& tracer, std::span<Connection> connections, const RayBatch& batch,
@@ -71,6 +83,7 @@ void find_visibility(const PathTracer& tracer, std::span<const Connection> conne
 
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, vec3 to_light, vec2 u) {
     const Light& light = tracer.snapshot.lights[index];
+    if (light.area) return connection_to_face(light, point, index, u);
     const Ray shadow = ray_to_light(light, point, is_soft(light) ? u : vec2(0));
     Connection c;
     c.point = point, c.to_light = to_light;

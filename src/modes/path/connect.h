@@ -15,6 +15,7 @@ struct Connection {
     float shadow_length = 0;
     bool shadows = true;
     vec3 light{0};        // what reaches the eye if nothing is in the way
+    vec3 irradiance{0};   // of a light with a face: what arrives from it by this connection, facing it
     int light_index = -1; // of the snapshot; -1 = none of its lights, but the next
     OtherLight other = OtherLight::emission;
     size_t lane = 0;     // of the batch
@@ -22,7 +23,8 @@ struct Connection {
     RandomStream random;
 };
 
-// From a point to a light of the snapshot; `u` picks the point of a soft light.
+// From a point to a light of the snapshot; `u` picks the point of a soft light. To one with a face it goes to that
+// point, also through the fog.
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int light, vec3 to_light, vec2 u);
 
 // From a point to a point on a glowing surface.

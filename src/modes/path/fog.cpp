@@ -67,7 +67,8 @@ void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate>
         const LightSample arriving = arrival(snapshot.lights[light], point);
         connections[i] = connection_to_light(walk.tracer, point, static_cast<int>(light), arriving.to_light,
                                              {turned(soft.x), soft.y});
-        connections[i].light = arriving.irradiance * snapshot.lights[light].volume_scale;
+        const vec3 irradiance = snapshot.lights[light].area ? connections[i].irradiance : arriving.irradiance;
+        connections[i].light = irradiance * snapshot.lights[light].volume_scale;
     }
     float visibility[16];
     find_visibility(walk.tracer, connections, visibility);
@@ -247,11 +248,13 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
         const LineLight& along = walk.scratch.lights[pick.light];
         const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.chance,
                     other = static_cast<float>(candidate_count(walk)) * along.chance * along.density(distance);
-        const vec3 scattered = fog.scattered(snapshot, glm::dot(pick.to_light, line.rest.direction)) * pick.irradiance;
+        const Connection connection =
+            connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
+        const Light& light = snapshot.lights[static_cast<size_t>(pick.light)];
+        const vec3 irradiance = light.area ? connection.irradiance * light.volume_scale : pick.irradiance;
+        const vec3 scattered = fog.scattered(snapshot, glm::dot(connection.to_light, line.rest.direction)) * irradiance;
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
-        queue(walk, line,
-              connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft)),
-              scattered * (weight / pick.chance), in_fog);
+        queue(walk, line, connection, scattered * (weight / pick.chance), in_fog);
     }
     if (!walk.tracer.fire.empty()) {
         const EmissivePlace target = pick_fire(walk, line);

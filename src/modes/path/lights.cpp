@@ -1,6 +1,7 @@
 // Chances of lights and of distances.
 #include "modes/path/lights.h"
 
+#include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
 #include "scene/light_reach.h"
@@ -40,6 +41,20 @@ Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
         stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
     }
     return stretch;
+}
+
+// What is expected to arrive at a point, to pick lights by.
+LightSample expected(const Light& light, vec3 point) {
+    LightSample arriving = arrival(light, point);
+    if (light.area) arriving.irradiance = rough_arrival(light, point);
+    return arriving;
+}
+
+// The cosine that a surface can make at most of a light that is seen at `cosine` in its middle.
+float expected_cosine(const Light& light, vec3 point, float cosine) {
+    if (!light.area) return std::max(0.0f, cosine);
+    const float reach = glm::length(light.area->half), distance = glm::distance(point, light.area->center);
+    return distance > reach ? std::clamp(cosine + reach / distance, 0.0f, 1.0f) : 1.0f;
 }
 
 LineLight light_on_line(const Light& light, const Ray& line, Interval<float> stretch) {
@@ -103,7 +118,7 @@ void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineL
 
 LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
     return pick(snapshot.lights.size(), u, [&](size_t i) {
-        LightSample arriving = arrival(snapshot.lights[i], point);
+        LightSample arriving = expected(snapshot.lights[i], point);
         arriving.irradiance *= snapshot.lights[i].volume_scale;
         return arriving;
     });
@@ -112,8 +127,8 @@ LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
 LightPick pick_light(const Snapshot& snapshot, const SurfacePoint& surface, float u) {
     return pick(snapshot.lights.size(), u, [&](size_t i) {
         const Light& light = snapshot.lights[i];
-        LightSample arriving = arrival(light, surface.position);
-        const float cosine = std::max(0.0f, glm::dot(surface.normal, arriving.to_light));
+        LightSample arriving = expected(light, surface.position);
+        const float cosine = expected_cosine(light, surface.position, glm::dot(surface.normal, arriving.to_light));
         arriving.irradiance *= is_lit(light, snapshot, surface.instance) ? light.surface_scale * cosine : 0.0f;
         return arriving;
     });
@@ -122,7 +137,8 @@ LightPick pick_light(const Snapshot& snapshot, const SurfacePoint& surface, floa
 float pick_chance(const Snapshot& snapshot, vec3 point, int light) {
     double total = 0, wanted = 0;
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
-        const double share = luminance(arrival(snapshot.lights[i], point).irradiance) * snapshot.lights[i].volume_scale;
+        const double share =
+            luminance(expected(snapshot.lights[i], point).irradiance) * snapshot.lights[i].volume_scale;
         total += share;
         if (static_cast<int>(i) == light) wanted = share;
     }

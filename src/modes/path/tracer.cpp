@@ -2,6 +2,8 @@
 #include "modes/path/tracer.h"
 
 #include "modes/path/vertex.h"
+#include "scene/area_shape.h"
+#include "trace/faces.h"
 #include "trace/mattes.h"
 #include "trace/surface.h"
 
@@ -42,7 +44,12 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         Connection connection = connection_to_light(walk.tracer, surface.position, pick.light, pick.to_light,
                                                     line.numbers(use_surface_soft));
         connection.face_normal = surface.face_normal;
-        queue(walk, line, connection, reflected * pick.irradiance / pick.chance, line.walker.in_fog);
+        vec3 irradiance = pick.irradiance;
+        if (const Light& light = walk.snapshot.lights[static_cast<size_t>(pick.light)]; light.area) {
+            const float cosine = std::max(glm::dot(surface.normal, connection.to_light), 0.0f);
+            irradiance = connection.irradiance * (light.surface_scale * cosine);
+        }
+        queue(walk, line, connection, reflected * irradiance / pick.chance, line.walker.in_fog);
     }
     if (!walk.tracer.fire.empty()) {
         const EmissivePlace target = pick_fire(walk, line);
@@ -134,16 +141,40 @@ void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
     }
 }
 
+// The lights' faces that the eye sees before any surface: ends lines there. -1 = none.
+void find_faces(const Walk& walk, const Ray* tested, Hits& hits, std::span<int> faces) {
+    for (size_t i = 0; i < faces.size(); ++i) {
+        Segment& line = walk.scratch.lines[i];
+        const FaceHit face = visible_face(walk.snapshot, tested[i]);
+        faces[i] = face.light >= 0 && line.skip + face.distance < line.end ? face.light : -1;
+        if (faces[i] >= 0) line.end = line.skip + face.distance, hits.instance[i] = -1;
+    }
+}
+
+// The eye sees the face of a light, and nothing beyond.
+void meet_face(const Walk& walk, Segment& line, const Light& light) {
+    add_light(walk, line, radiance_of(light) * line.through, OtherLight::emission, line.walker.in_fog);
+    line.walking = false, line.through = 0;
+}
+
 void follow_lines(const Walk& walk) {
     std::vector<Segment>& lines = walk.scratch.lines;
+    const bool shown = walk.order == 0 && shows_faces(walk.snapshot);
     for (int layer = 0; layer < max_layers && !lines.empty(); ++layer) {
         Ray tested[16];
         Hits hits;
+        int faces[16];
         find_ends(walk, tested, hits);
+        std::fill_n(faces, 16, -1);
+        if (shown) find_faces(walk, tested, hits, {faces, lines.size()});
         for (size_t i = 0; i < lines.size(); ++i) {
             Segment& line = lines[i];
             line.layer = layer;
             follow_fog(walk, line);
+            if (faces[i] >= 0) {
+                meet_face(walk, line, walk.snapshot.lights[static_cast<size_t>(faces[i])]);
+                continue;
+            }
             if (hits.instance[i] < 0) {
                 leave(walk, line);
                 continue;

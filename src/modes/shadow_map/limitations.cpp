@@ -47,6 +47,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
     add_mean_environment(snapshot, limitations);
+    add_lamps_for_faces(snapshot, limitations);
     return limitations;
 }
 }

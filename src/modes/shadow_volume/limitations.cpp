@@ -31,6 +31,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
     }
     if (settings.terms.emission) add_emission(snapshot, true, limitations);
     add_single_scattering(view, snapshot, limitations), add_mean_environment(snapshot, limitations);
+    add_lamps_for_faces(snapshot, limitations);
 }
 
 void add_shadows(const Snapshot& snapshot, Limitations& limitations) {

@@ -2,8 +2,12 @@
 #include "render/frame/camera_paths.h"
 
 #include "base/random.h"
+#include "scene/area_shape.h"
+#include "trace/faces.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
+
+#include <algorithm>
 
 namespace tyndall {
 namespace {
@@ -52,6 +56,26 @@ void start_paths(const View& view, bool in_moments, std::span<const ivec2> pixel
     }
 }
 
+namespace {
+// Ends paths at glowing faces in front of what they meet.
+void find_faces(const Snapshot& snapshot, PathPacket& s) {
+    for (int i = 0; i < s.count; ++i) {
+        const FaceHit face = visible_face(snapshot, s.tested[i]);
+        if (face.light < 0 || s.path[i].skip + face.distance >= s.length[i]) continue;
+        s.face[i] = face.light, s.length[i] = s.path[i].skip + face.distance;
+        s.hits.instance[i] = -1;
+    }
+}
+
+// A glowing face as a surface: it reflects nothing.
+SurfacePoint face_point(const Light& light, vec3 position) {
+    SurfacePoint point;
+    point.position = position, point.normal = point.face_normal = light.area->normal;
+    point.base_color = vec3(0), point.emission = radiance_of(light);
+    return point;
+}
+}
+
 void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s) {
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];
@@ -60,7 +84,9 @@ void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s) {
     s.hits.instance.fill(-1);
     if (snapshot.occluders && !snapshot.occluders->empty())
         snapshot.occluders->closest({s.tested, static_cast<size_t>(s.count)}, 0, s.hits, layer == 0);
+    std::fill_n(s.face, s.count, -1);
     for (int i = 0; i < s.count; ++i) s.length[i] = s.hit(i) ? s.path[i].skip + s.hits.t[i] : s.path[i].ray.t_max;
+    if (shows_faces(snapshot)) find_faces(snapshot, s);
 }
 
 SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& s) {
@@ -68,6 +94,11 @@ SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& 
     for (int i = 0; i < s.count; ++i) {
         if (!s.hit(i)) continue;
         SurfacePoint& point = met.points[met.count];
+        if (s.face[i] >= 0) {
+            point = face_point(snapshot.lights[static_cast<size_t>(s.face[i])], s.path[i].ray.at(s.length[i]));
+            met.which[met.count++] = i;
+            continue;
+        }
         point = snapshot.occluders->surface(s.tested[i], s.hits, i);
         if (s.hit_again(i)) point.alpha = 0;
         if (layer + 1 == max_layers) point.alpha = 1;

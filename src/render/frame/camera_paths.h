@@ -31,12 +31,13 @@ struct PathPacket { // of the paths still on their way, packed
     Path path[16];
     int count = 0;
     Hits hits;
+    int32_t face[16]; // the light whose glowing face is met before any surface, or -1
     float length[16]; // to the surface, or to the end of the ray
     Ray tested[16];   // the rays as given to the occluders
 
-    bool hit(int i) const { return hits.instance[i] >= 0; }
+    bool hit(int i) const { return hits.instance[i] >= 0 || face[i] >= 0; }
     bool hit_again(int i) const {
-        return hit(i) && hits.instance[i] == path[i].instance && hits.triangle[i] == path[i].triangle;
+        return hits.instance[i] >= 0 && hits.instance[i] == path[i].instance && hits.triangle[i] == path[i].triangle;
     }
 };
 

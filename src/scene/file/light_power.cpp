@@ -14,9 +14,12 @@ LightUnit unit_named(const Field& unit, const LightSource& light) {
     const LightTraits& kind = traits_of(light.kind);
     if (name == "watt") return LightUnit::watt;
     if (name == kind.unit) return LightUnit::native;
+    if (name == "candela" && kind.area) return LightUnit::candela;
     if (name != "lumen" || kind.distant)
         refuse(unit, "is not for a " + std::string(kind.noun) + "; its intensity is in " + std::string(kind.unit) +
-                         (kind.distant ? " or watt" : ", lumen or watt"));
+                         (kind.distant ? " or watt"
+                          : kind.area  ? ", candela, lumen or watt"
+                                       : ", lumen or watt"));
     return LightUnit::lumen;
 }
 
@@ -46,7 +49,8 @@ void read_light_power(const Field& field, LightSource& light) {
     if (const Field exposure = field.member("exposure")) light.exposure = keyed_number(exposure);
     if (const Field temperature = field.member("temperature")) light.temperature = keyed_number(temperature);
     if (const Field up = field.member("up")) {
-        if (!light.profile && !light.gobo) refuse(up, "is for lights with a profile or a gobo only");
+        if (!light.profile && !light.gobo && light.kind != LightKind::rectangle)
+            refuse(up, "is for rectangles and lights with a profile or a gobo only");
         if (light.node >= 0) refuse(up, "is that of the light's node; a light that is placed here can have its own");
         light.up = keyed_vector(up);
     }

@@ -18,14 +18,18 @@ void check_fields(const Field& field, const LightSource& light) {
     };
     only("inner_cone", kind.cone, "spots");
     only("outer_cone", kind.cone, "spots");
-    only("direction", aimed, "spots, suns and lights with a profile");
-    only("target", aimed, "spots, suns and lights with a profile");
-    only("ies", !kind.distant, "point lights and spots");
+    const bool rectangle = light.kind == LightKind::rectangle, lamp = !kind.distant && !kind.area;
+    only("direction", aimed, "spots, suns, rectangles, discs and lights with a profile");
+    only("target", aimed, "spots, suns, rectangles, discs and lights with a profile");
+    only("ies", lamp, "point lights and spots");
     only("gobo", kind.cone, "spots");
-    only("range", !kind.distant, "point lights and spots");
-    only("radius", !kind.distant, "point lights and spots");
+    only("range", lamp, "point lights and spots");
+    only("radius", !kind.distant && !rectangle, "point lights, spots, discs and spheres");
+    for (const char* name : {"width", "height"}) only(name, rectangle, "rectangles");
+    only("two_sided", kind.area && kind.aimed, "rectangles and discs");
+    only("visible", kind.area, "environments, rectangles, discs and spheres");
     only("angle", kind.distant, "suns");
-    for (const char* name : {"sky", "image", "rotation", "visible"}) only(name, false, "environments");
+    for (const char* name : {"sky", "image", "rotation"}) only(name, false, "environments");
     if (const Field target = field.member("target"); target && field.member("direction"))
         refuse(target, "and direction exclude each other");
 }
@@ -53,6 +57,23 @@ void read_placement(const Field& field, dvec3 origin, LightSource& light) {
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
 }
 
+// Of a light that is a face.
+void read_face(const Field& field, LightSource& light) {
+    const auto size = [&](const char* name, Keyed<float>& value) {
+        const Field given = field.member(name);
+        if (!given) refuse(field, "a " + std::string(traits_of(light.kind).noun) + " needs a " + name);
+        value = keyed_number(given);
+        for (const float metres : value.values)
+            if (!(metres > 0)) refuse(given, "is not above 0");
+    };
+    if (light.kind == LightKind::rectangle)
+        size("width", light.width), size("height", light.height);
+    else
+        size("radius", light.radius);
+    light.two_sided = field.json->boolean_or("two_sided", false);
+    light.visible = field.json->boolean_or("visible", true);
+}
+
 void read_fields(const Field& field, Scene& scene, LightSource& light) {
     const auto number = [&](const char* name, Keyed<float>& value, Keyed<float> (*read)(const Field&)) {
         if (const Field given = field.member(name)) value = read(given);
@@ -65,6 +86,7 @@ void read_fields(const Field& field, Scene& scene, LightSource& light) {
     number("inner_cone", light.inner_cone, keyed_degrees);
     number("outer_cone", light.outer_cone, keyed_degrees);
     number("radius", light.radius, keyed_number);
+    if (has_area(light)) read_face(field, light);
     number("angle", light.angle, keyed_degrees);
     if (const Field range = field.member("range")) light.range = read_number(range);
     light.shadows = field.json->boolean_or("shadows", light.shadows);

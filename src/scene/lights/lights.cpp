@@ -5,7 +5,8 @@
 namespace tyndall {
 namespace {
 const LightFunctions& functions_of(const Light& light) {
-    static const LightFunctions* const table[] = {&punctual_functions, &punctual_functions, &sun_functions};
+    static const LightFunctions* const table[] = {&punctual_functions, &punctual_functions, &sun_functions,
+                                                  &punctual_functions, &punctual_functions, &punctual_functions};
     static_assert(std::size(table) == std::size(light_kinds));
     return *table[static_cast<int>(light.kind)];
 }

@@ -1,4 +1,5 @@
 #include "trace/fluence/light_emission.h"
+#include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
 #include "trace/environment.h"
@@ -8,6 +9,12 @@ namespace {
 vec2 on_disc(vec2 u) {
     const float radius = std::sqrt(u.x), angle = 2 * pi * u.y;
     return radius * vec2(std::cos(angle), std::sin(angle));
+}
+
+// A point of a rectangle or disc, even over its face.
+vec3 face_place(const AreaShape& face, vec2 u) {
+    const vec2 place = (face.kind == LightKind::disc ? on_disc(u) : 2.0f * u - 1.0f) * face.half;
+    return face.center + place.x * face.right + place.y * face.up;
 }
 
 vec3 corner(const Box& box, int i) {
@@ -38,7 +45,9 @@ void fit_directions(const Box& reach, LightSquare& square) {
     float cosine = std::cos(std::min(light.outer_cone, pi));
     if (shines_around(light)) {
         const vec3 towards = reach.center() - light.position;
-        const float distance = glm::length(towards), radius = 0.5f * glm::length(reach.size()) + light.radius;
+        const float distance = glm::length(towards),
+                    radius =
+                        0.5f * glm::length(reach.size()) + (light.area ? glm::length(light.area->half) : light.radius);
         cosine = distance > radius ? std::sqrt(1 - radius * radius / (distance * distance)) : -1;
         axis = distance > radius ? towards / distance : vec3(0, 1, 0);
     }
@@ -92,6 +101,7 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
     const float cosine = 1 - place.x * (1 - lowest_cosine), sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
     const float angle = 2 * pi * place.y;
     const vec3 direction = glm::normalize(sine * (std::cos(angle) * across + std::sin(angle) * up) + cosine * axis);
+    if (light->area && light->area->kind != LightKind::sphere) return {face_place(*light->area, soft), direction};
     vec3 x, y;
     make_frame(direction, x, y);
     const vec2 disc = on_disc(soft);

@@ -17,6 +17,17 @@ bool is_local(const Scene& scene, size_t i) { return !is_sun(scene, i); }
 template<LightUnit unit> bool is_local_in(const Scene& scene, size_t i) {
     return is_local(scene, i) && scene.lights[i].unit == unit;
 }
+bool is_face(const Scene& scene, size_t i) { return has_area(scene.lights[i]); }
+bool is_lamp(const Scene& scene, size_t i) { return is_local(scene, i) && !is_face(scene, i); }
+bool is_rectangle(const Scene& scene, size_t i) { return scene.lights[i].kind == LightKind::rectangle; }
+bool is_round(const Scene& scene, size_t i) { return is_face(scene, i) && !is_rectangle(scene, i); }
+bool has_sides(const Scene& scene, size_t i) { return is_face(scene, i) && is_aimed(scene.lights[i]); }
+template<LightUnit unit> bool is_face_in(const Scene& scene, size_t i) {
+    return is_face(scene, i) && scene.lights[i].unit == unit;
+}
+bool is_lamp_in_candela(const Scene& scene, size_t i) {
+    return is_lamp(scene, i) && scene.lights[i].unit == LightUnit::native;
+}
 template<LightUnit unit> bool is_sun_in(const Scene& scene, size_t i) {
     return is_sun(scene, i) && scene.lights[i].unit == unit;
 }
@@ -73,7 +84,11 @@ const Property table[] = {
     {Part::light, "color", color, "", 0, bright, 0, 1, "Colour, multiplies the intensity",
      of_light<&LightSource::color>, always},
     {Part::light, "intensity", number, "cd", 0, bright, 0, 2000, "Luminous intensity",
-     of_light<&LightSource::intensity>, is_local_in<LightUnit::native>},
+     of_light<&LightSource::intensity>, is_lamp_in_candela},
+    {Part::light, "intensity", number, "nt", 0, bright, 0, 10000, "Radiance of the face",
+     of_light<&LightSource::intensity>, is_face_in<LightUnit::native>},
+    {Part::light, "intensity", number, "cd", 0, bright, 0, 2000, "Luminous intensity along the axis",
+     of_light<&LightSource::intensity>, is_face_in<LightUnit::candela>},
     {Part::light, "intensity", number, "lm", 0, bright, 0, 10000, "Luminous flux", of_light<&LightSource::intensity>,
      is_local_in<LightUnit::lumen>},
     {Part::light, "intensity", number, "W", 0, bright, 0, 1000, "Power, times the efficacy",
@@ -93,9 +108,19 @@ const Property table[] = {
     {Part::light, "outer_cone", number, "degrees", 0, 90, 0, 90, "Half angle where the light ends",
      of_light<&LightSource::outer_cone>, is_spot},
     {Part::light, "range", number, "m", tiny, far, 0.1f, 100, "The light fades to nothing at this distance",
-     of_light<&LightSource::range>, is_local},
+     of_light<&LightSource::range>, is_lamp},
     {Part::light, "radius", number, "m", 0, bright, 0, 0.5f, "Radius of the glowing ball: soft shadows",
-     of_light<&LightSource::radius>, is_local},
+     of_light<&LightSource::radius>, is_lamp},
+    {Part::light, "radius", number, "m", tiny, far, 0.01f, 2, "Radius of the glowing face",
+     of_light<&LightSource::radius>, is_round},
+    {Part::light, "width", number, "m", tiny, far, 0.01f, 5, "Of the glowing face, across its up",
+     of_light<&LightSource::width>, is_rectangle},
+    {Part::light, "height", number, "m", tiny, far, 0.01f, 5, "Of the glowing face, along its up",
+     of_light<&LightSource::height>, is_rectangle},
+    {Part::light, "two_sided", toggle, "", 0, 1, 0, 1, "Whether the face glows on its back, too",
+     of_light<&LightSource::two_sided>, has_sides},
+    {Part::light, "visible", toggle, "", 0, 1, 0, 1, "Whether the camera sees the face",
+     of_light<&LightSource::visible>, is_face},
     {Part::light, "angle", number, "degrees", 0, 90, 0, 5, "Half angle of the sun's disc: soft shadows",
      of_light<&LightSource::angle>, is_sun},
     {Part::light, "shadows", toggle, "", 0, 1, 0, 1, "Whether surfaces block the light",

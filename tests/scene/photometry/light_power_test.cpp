@@ -61,6 +61,26 @@ TEST(LightPower, LumensAndWattsBecomeCandela) {
                 cone_lumens(0, glm::radians(20.0)) / cone_lumens(0, glm::radians(10.0)), 1e-3);
 }
 
+TEST(LightPower, FacesGlowInNitsLumensAndCandela) {
+    const std::string
+        board = R"({"type": "rectangle", "position": [0,1,0], "direction": [0,-1,0], "width": 2, "height": 0.5, )",
+        disc = R"({"type": "disc", "position": [0,1,0], "direction": [0,-1,0], "radius": 0.5, )",
+        ball = R"({"type": "sphere", "position": [0,1,0], "radius": 0.5, )";
+    const auto nits = [](const std::string& light) { return native_intensity(scene_with(light + "}").lights[0], 0); };
+    constexpr double quarter = 0.25 * double{pi}; // m² of disc and ball, seen along the axis
+    for (const std::string& face : {board, disc, ball}) EXPECT_NEAR(nits(face + R"("intensity": 7)"), 7, 1e-5);
+    EXPECT_NEAR(candela(board + R"("intensity": 7})"), 7, 1e-5);
+    EXPECT_NEAR(nits(disc + R"("intensity": 7, "unit": "candela")"), 7 / quarter, 1e-5);
+    // A Lambert face sends π times its radiance and area.
+    EXPECT_NEAR(nits(board + R"("intensity": 800, "unit": "lumen")"), 800 / double{pi}, 1e-3);
+    EXPECT_NEAR(nits(board + R"("intensity": 800, "unit": "lumen", "two_sided": true)"), 400 / double{pi}, 1e-3);
+    EXPECT_NEAR(nits(disc + R"("intensity": 40, "unit": "watt", "efficacy": 20)"), 800 / (double{pi} * quarter), 1e-3);
+    EXPECT_NEAR(nits(ball + R"("intensity": 800, "unit": "lumen")"), 800 / (double{pi} * 4 * quarter), 1e-3);
+    EXPECT_NEAR(nits(ball + R"("intensity": 10, "exposure": 2)"), 40, 1e-4);
+    EXPECT_NE(refusal(ball + R"("intensity": 5, "unit": "lux"})").find("nit, candela, lumen or watt"),
+              std::string::npos);
+}
+
 TEST(LightPower, ExposureAndTemperatureKeepTheirMeaning) {
     EXPECT_NEAR(candela(point(R"("intensity": 10, "exposure": 2.5)")), 10 * std::exp2(2.5), 1e-3);
     const LightSource warm = scene_with(point(R"("intensity": 10, "temperature": 2700)")).lights[0];

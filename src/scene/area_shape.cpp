@@ -1,0 +1,151 @@
+#include "scene/area_shape.h"
+
+#include "scene/light_filter.h"
+#include "scene/photometry/ies_file.h"
+#include "scene/photometry/ies_profile.h"
+#include "scene/spherical_rectangle.h"
+
+namespace tyndall {
+namespace {
+bool is_ball(const AreaShape& shape) { return shape.kind == LightKind::sphere; }
+
+// Lambert's cosine, ahead or to both sides, as a measured lamp would have it.
+std::shared_ptr<const IesProfile> cosine_profile(bool both_sides) {
+    IesFile file;
+    file.horizontal = {0};
+    const int last = both_sides ? 180 : 90;
+    for (int angle = 0; angle <= last; ++angle) {
+        file.vertical.push_back(angle);
+        file.candela.push_back(angle == 90 ? 0 : std::abs(std::cos(glm::radians(double(angle)))));
+    }
+    return make_ies_profile(file, both_sides ? "cosine to both sides" : "cosine");
+}
+
+// Whether the point is on a side that glows.
+bool is_before(const AreaShape& shape, vec3 point) {
+    if (is_ball(shape)) return glm::distance(point, shape.center) > shape.half.x;
+    const float height = glm::dot(point - shape.center, shape.normal);
+    return shape.two_sided ? height != 0 : height > 0;
+}
+
+AreaSample sample_ball(const AreaShape& shape, vec3 point, vec2 u) {
+    Light ball;
+    ball.position = shape.center, ball.radius = shape.half.x;
+    const Ray ray = ray_to_light(ball, point, u);
+    const double distance = glm::distance(dvec3(point), dvec3(shape.center)), sine = shape.half.x / distance;
+    const double one_minus_cosine = sine * sine / (1 + std::sqrt(std::max(0.0, 1 - sine * sine)));
+    return {ray.direction, ray.t_max, static_cast<float>(2 * double{pi} * one_minus_cosine)};
+}
+
+// To a point of the face whose points are picked evenly.
+AreaSample towards(const AreaShape& shape, vec3 point, vec2 place) {
+    const vec3 offset = shape.center + place.x * shape.right + place.y * shape.up - point;
+    const float squared = glm::dot(offset, offset), distance = std::sqrt(squared);
+    const vec3 direction = offset / distance;
+    return {direction, distance, face_area(shape) * std::abs(glm::dot(direction, shape.normal)) / squared};
+}
+
+// To a point of the face, or of the square around a disc.
+AreaSample sample_rectangle(const AreaShape& shape, vec3 point, vec2 u) {
+    constexpr double small = 1e-6; // steradians, below which doubles do not resolve the angles
+    const SphericalRectangle seen(shape.center, shape.right, shape.up, glm::dvec2(shape.half), point);
+    const glm::dvec2 place =
+        seen.steradians > small ? seen.place(u) : (2.0 * glm::dvec2(u) - 1.0) * glm::dvec2(shape.half);
+    AreaSample sample = towards(shape, point, vec2(place));
+    if (seen.steradians > small) sample.steradians = static_cast<float>(seen.steradians);
+    return sample;
+}
+
+AreaSample sample_disc(const AreaShape& shape, vec3 point, vec2 u) {
+    constexpr float near = 3; // radii
+    const vec3 offset = point - shape.center;
+    if (glm::length(offset) > near * shape.half.x) {
+        const float radius = shape.half.x * std::sqrt(u.x), turn = 2 * pi * u.y;
+        return towards(shape, point, radius * vec2(std::cos(turn), std::sin(turn)));
+    }
+    AreaSample sample = sample_rectangle(shape, point, u);
+    const vec3 off = point + sample.direction * sample.distance - shape.center;
+    if (glm::dot(off, off) > shape.half.x * shape.half.x) sample.steradians = 0;
+    return sample;
+}
+
+double axial_steradians(const AreaShape& shape, double distance) {
+    const double a = shape.half.x, b = shape.half.y, d = distance;
+    switch (shape.kind) {
+    case LightKind::rectangle:
+        return 4 * std::asin(a * b / std::sqrt((a * a + d * d) * (b * b + d * d)));
+    case LightKind::disc:
+        return 2 * double{pi} * (1 - d / std::hypot(d, a));
+    default:
+        return d > a ? 2 * double{pi} * (1 - std::sqrt(1 - a * a / (d * d))) : 4 * double{pi};
+    }
+}
+}
+
+float face_area(const AreaShape& shape) {
+    return shape.kind == LightKind::rectangle ? 4 * shape.half.x * shape.half.y : pi * shape.half.x * shape.half.x;
+}
+
+void stand_for(const AreaShape& shape, Light& light) {
+    static const std::shared_ptr<const IesProfile> ahead = cosine_profile(false), both = cosine_profile(true);
+    light.area = std::make_shared<const AreaShape>(shape);
+    light.kind = LightKind::point, light.radius = std::sqrt(face_area(shape) / pi);
+    if (!(light.radius > 0)) light.intensity = vec3(0);
+    if (is_ball(shape)) return;
+    auto filter = std::make_shared<LightFilter>();
+    filter->direction = light.direction = shape.normal;
+    filter->profile = shape.two_sided ? both : ahead;
+    filter->profile_axes = filter->gobo_axes = {shape.right, shape.up};
+    light.filter = std::move(filter);
+    if (!shape.two_sided) light.kind = LightKind::spot, light.inner_cone = light.outer_cone = ahead->reach;
+}
+
+vec3 radiance_of(const Light& light) { return light.intensity / face_area(*light.area); }
+
+AreaSample sample_area(const AreaShape& shape, vec3 point, vec2 u) {
+    if (!is_before(shape, point)) return {};
+    if (is_ball(shape)) return sample_ball(shape, point, u);
+    return shape.kind == LightKind::disc ? sample_disc(shape, point, u) : sample_rectangle(shape, point, u);
+}
+
+float area_hit(const AreaShape& shape, const Ray& ray) {
+    if (!is_before(shape, ray.origin)) return infinity;
+    const vec3 offset = shape.center - ray.origin;
+    if (is_ball(shape)) {
+        const float along = glm::dot(offset, ray.direction);
+        const vec3 off = offset - along * ray.direction;
+        const float rest = shape.half.x * shape.half.x - glm::dot(off, off);
+        return along > 0 && rest > 0 ? along - std::sqrt(rest) : infinity;
+    }
+    const float t = glm::dot(offset, shape.normal) / glm::dot(ray.direction, shape.normal);
+    if (!(t > 0) || !std::isfinite(t)) return infinity;
+    const vec3 off = ray.at(t) - shape.center;
+    const vec2 place = glm::abs(vec2(glm::dot(off, shape.right), glm::dot(off, shape.up)));
+    const bool inside = shape.kind == LightKind::disc ? glm::dot(place, place) < shape.half.x * shape.half.x
+                                                      : place.x < shape.half.x && place.y < shape.half.y;
+    return inside ? t : infinity;
+}
+
+vec3 rough_arrival(const Light& light, vec3 point) {
+    const AreaShape& shape = *light.area;
+    if (!is_before(shape, point)) return vec3(0);
+    const vec3 offset = point - shape.center;
+    const float reach = is_ball(shape) ? shape.half.x : glm::length(shape.half);
+    const float distance = std::max(glm::length(offset), reach);
+    const float height = is_ball(shape) ? distance : std::abs(glm::dot(offset, shape.normal));
+    return light.intensity * (std::min((height + reach) / distance, 1.0f) / (distance * distance));
+}
+
+double far_enough(const AreaShape& shape, double share) {
+    const double size = std::sqrt(face_area(shape) / pi);
+    const auto off = [&](double d) {
+        return std::abs(face_area(shape) / (d * d) / axial_steradians(shape, d) - 1) > share;
+    };
+    double low = size, high = 1e4 * size;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (off(middle) ? low : high) = middle;
+    }
+    return high;
+}
+}
