@@ -68,12 +68,7 @@ void append_ray(const EnvironmentLight& light, const RayBatch& batch, size_t i, 
 // Share of the light of up to 16 paths that surfaces let through.
 void see_sky(const Occluders& occluders, std::span<const SkyPath> paths, float* shares) {
     Occluders::ShadowRays rays{};
-    for (size_t i = 0; i < paths.size(); ++i) {
-        const SkyPath& path = paths[i];
-        rays.ox[i] = path.point.x, rays.oy[i] = path.point.y, rays.oz[i] = path.point.z;
-        rays.dx[i] = path.direction.x, rays.dy[i] = path.direction.y, rays.dz[i] = path.direction.z;
-        rays.t_max[i] = infinity, rays.active[i] = -1;
-    }
+    for (size_t i = 0; i < paths.size(); ++i) rays.set(i, {paths[i].point, paths[i].direction, infinity});
     occluders.transmission(rays, shares);
 }
 }

@@ -105,12 +105,7 @@ void append_ray(const FaceLight& faces, const Light& light, size_t number, const
 // Share of the light of up to 16 paths that surfaces let through.
 void pass_surfaces(const Occluders& occluders, std::span<const FacePath> paths, float* shares) {
     Occluders::ShadowRays rays{};
-    for (size_t i = 0; i < paths.size(); ++i) {
-        const Ray& way = paths[i].way;
-        rays.ox[i] = way.origin.x, rays.oy[i] = way.origin.y, rays.oz[i] = way.origin.z;
-        rays.dx[i] = way.direction.x, rays.dy[i] = way.direction.y, rays.dz[i] = way.direction.z;
-        rays.t_max[i] = way.t_max, rays.active[i] = -1;
-    }
+    for (size_t i = 0; i < paths.size(); ++i) rays.set(i, paths[i].way);
     occluders.transmission(rays, shares);
 }
 

@@ -23,16 +23,10 @@ void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const
     Occluders::ShadowRays rays{};
     alignas(64) float shares[16];
     std::fill_n(shares, 16, 1.0f);
-    const auto origin = [&](size_t i) {
-        const float side = glm::dot(points[i].face_normal, sky.direction[i]) < 0 ? -1.0f : 1.0f;
-        return points[i].position + points[i].face_normal * (side * shadow_offset(points[i].position));
-    };
-    for (size_t i = 0; i < points.size(); ++i) {
-        const vec3 from = origin(i), d = sky.direction[i];
-        rays.ox[i] = from.x, rays.oy[i] = from.y, rays.oz[i] = from.z;
-        rays.dx[i] = d.x, rays.dy[i] = d.y, rays.dz[i] = d.z;
-        rays.t_max[i] = infinity, rays.active[i] = max_component(sky.light[i]) > 0 ? -1 : 0;
-    }
+    for (size_t i = 0; i < points.size(); ++i)
+        if (max_component(sky.light[i]) > 0)
+            rays.set(i, {off_surface(points[i].position, points[i].face_normal, sky.direction[i]), sky.direction[i],
+                         infinity});
     if (snapshot.environment->shadows && snapshot.occluders) snapshot.occluders->transmission(rays, shares);
     for (size_t i = 0; i < points.size(); ++i) {
         if (!rays.active[i] || !(shares[i] > 0)) continue;

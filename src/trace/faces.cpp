@@ -41,11 +41,8 @@ void aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePo
         const AreaSample sample = sample_area(*light.area, point.position, u[i * count + k]);
         const float cosine = glm::dot(point.normal, sample.direction);
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
-        const float side = glm::dot(point.face_normal, sample.direction) < 0 ? -1.0f : 1.0f;
-        const vec3 from = point.position + point.face_normal * (side * shadow_offset(point.position));
-        to.rays.ox[i] = from.x, to.rays.oy[i] = from.y, to.rays.oz[i] = from.z;
-        to.rays.dx[i] = sample.direction.x, to.rays.dy[i] = sample.direction.y, to.rays.dz[i] = sample.direction.z;
-        to.rays.t_max[i] = sample.distance * 0.9999f, to.rays.active[i] = -1;
+        const vec3 from = off_surface(point.position, point.face_normal, sample.direction);
+        to.rays.set(i, {from, sample.direction, sample.distance * 0.9999f});
         to.light[i] = radiance * (sample.steradians * cosine);
     }
 }

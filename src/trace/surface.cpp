@@ -39,14 +39,10 @@ void see_light(const Occluders& occluders, const Light& light, std::span<const S
                const Packet& packet, float* visibility) {
     Occluders::ShadowRays rays{};
     for (size_t i = 0; i < points.size(); ++i) {
-        // The ray starts off the surface, on the side that the light comes from.
         const SurfacePoint& point = points[i];
-        const Ray ray = ray_to_light(light, point.position, u[i]);
-        const float side = dot(point.face_normal, ray.direction) < 0 ? -1.0f : 1.0f;
-        const vec3 origin = point.position + point.face_normal * (side * shadow_offset(point.position));
-        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
-        rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
-        rays.t_min[i] = 0, rays.t_max[i] = ray.t_max;
+        Ray ray = ray_to_light(light, point.position, u[i]);
+        ray.origin = off_surface(point.position, point.face_normal, ray.direction);
+        rays.set(i, ray);
         rays.active[i] = packet.active[i];
     }
     occluders.transmission(rays, visibility);

@@ -69,13 +69,9 @@ void find_visibility(const PathTracer& tracer, std::span<const Connection> conne
     for (size_t i = 0; i < connections.size(); ++i) {
         const Connection& c = connections[i];
         shares[i] = 1;
-        rays.active[i] = c.shadows && max_component(c.light) > 0 ? -1 : 0;
-        any |= rays.active[i] != 0;
-        const float side = glm::dot(c.face_normal, c.shadow) < 0 ? -1.0f : 1.0f;
-        const vec3 origin = c.point + c.face_normal * (side * shadow_offset(c.point));
-        rays.ox[i] = origin.x, rays.oy[i] = origin.y, rays.oz[i] = origin.z;
-        rays.dx[i] = c.shadow.x, rays.dy[i] = c.shadow.y, rays.dz[i] = c.shadow.z;
-        rays.t_max[i] = c.shadow_length;
+        if (!c.shadows || !(max_component(c.light) > 0)) continue;
+        rays.set(i, {off_surface(c.point, c.face_normal, c.shadow), c.shadow, c.shadow_length});
+        any = true;
     }
     if (any) pass_surfaces(tracer.snapshot, connections, rays, shares);
     std::copy_n(shares, connections.size(), visibility);

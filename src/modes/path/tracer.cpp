@@ -84,8 +84,7 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
     const vec2 u = line.numbers(use_bounce);
     const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
     const vec3 direction = cosine_direction(surface.normal, u);
-    const float side = glm::dot(surface.face_normal, direction) < 0 ? -1.0f : 1.0f;
-    const vec3 origin = surface.position + surface.face_normal * (side * shadow_offset(surface.position));
+    const vec3 origin = off_surface(surface.position, surface.face_normal, direction);
     const float sky_scale = walk.tracer.finds_sky ? walk.snapshot.environment->surface_scale : 0;
     scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, sky_scale, line.walker.in_fog);
 }

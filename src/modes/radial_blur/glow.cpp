@@ -22,11 +22,8 @@ float share_above(vec3 color, float threshold) {
 
 // A camera ray, to the light's planar depth.
 void set_ray(Occluders::ShadowRays& rays, int i, const Camera& camera, const Ray& ray, float depth) {
-    rays.ox[i] = ray.origin.x, rays.oy[i] = ray.origin.y, rays.oz[i] = ray.origin.z;
-    rays.dx[i] = ray.direction.x, rays.dy[i] = ray.direction.y, rays.dz[i] = ray.direction.z;
     const float along = std::max(glm::dot(ray.direction, camera.forward), 1e-6f);
-    rays.t_min[i] = camera.near / along, rays.t_max[i] = depth / along;
-    rays.active[i] = -1;
+    rays.set(static_cast<size_t>(i), {ray.origin, ray.direction, depth / along}, camera.near / along);
 }
 
 // `light`: what shadows it hides its glow; a light without shadows is hidden by all surfaces.

@@ -31,9 +31,7 @@ struct Segments {
     void add(vec3 from, vec3 to) {
         const float length = glm::distance(from, to);
         const vec3 direction = length > 0 ? (to - from) / length : vec3(1, 0, 0);
-        rays.ox[count] = from.x, rays.oy[count] = from.y, rays.oz[count] = from.z;
-        rays.dx[count] = direction.x, rays.dy[count] = direction.y, rays.dz[count] = direction.z;
-        rays.t_min[count] = 0, rays.t_max[count] = length, rays.active[count++] = -1;
+        rays.set(static_cast<size_t>(count++), {from, direction, length});
     }
     // Whether any light gets along each.
     std::array<bool, 16> open(const Occluders& occluders) const {

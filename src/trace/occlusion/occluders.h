@@ -45,6 +45,12 @@ void set_embree_isa(std::string_view isa);
 // How far a ray must start from a surface at `position` to miss it: 32 ulps of the largest coordinate.
 inline float shadow_offset(vec3 position) { return 4e-6f * std::max(max_component(glm::abs(position)), 1e-5f); }
 
+// Where a ray that leaves a surface starts: off the face, on the side that it goes to.
+inline vec3 off_surface(vec3 position, vec3 face_normal, vec3 direction) {
+    const float side = glm::dot(face_normal, direction) < 0 ? -1.0f : 1.0f;
+    return position + face_normal * (side * shadow_offset(position));
+}
+
 class Occluders {
 public:
     // World-space triangles of every instance at a moment. Non-finite and degenerate triangles are left out and
@@ -72,6 +78,12 @@ public:
     struct ShadowRays {
         alignas(64) float ox[16], oy[16], oz[16], dx[16], dy[16], dz[16], t_min[16], t_max[16];
         alignas(64) int32_t active[16]; // -1 = trace, 0 = skip
+
+        void set(size_t lane, const Ray& ray, float near = 0) {
+            ox[lane] = ray.origin.x, oy[lane] = ray.origin.y, oz[lane] = ray.origin.z;
+            dx[lane] = ray.direction.x, dy[lane] = ray.direction.y, dz[lane] = ray.direction.z;
+            t_min[lane] = near, t_max[lane] = ray.t_max, active[lane] = -1;
+        }
     };
     void transmission(const ShadowRays& rays, float* visibility) const;
     float transmission(const Ray& ray, float t_min) const; // a single ray: the slow way, for tests and benchmarks

@@ -74,9 +74,7 @@ FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid,
         weight[i] *= falloff_at(light, scene.near(light_index), points[i], line.width2);
 
         const Ray ray = ray_to_light(light, points[i], vec2(to_unit(hash(key, 1u)), to_unit(hash(key, 2u))));
-        shadow.ox[i] = points[i].x, shadow.oy[i] = points[i].y, shadow.oz[i] = points[i].z;
-        shadow.dx[i] = ray.direction.x, shadow.dy[i] = ray.direction.y, shadow.dz[i] = ray.direction.z;
-        shadow.t_min[i] = 0, shadow.t_max[i] = ray.t_max;
+        shadow.set(i, {points[i], ray.direction, ray.t_max});
         shadow.active[i] = weight[i] > 0 ? -1 : 0, visible[i] = 1;
     }
     const auto& occluders = shadow_casters(light, scene.snapshot);
