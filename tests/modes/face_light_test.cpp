@@ -144,11 +144,11 @@ TEST(FaceLight, LightThatScattersOftenStartsAllOverTheFace) {
         hidden.visible = false;
         light.area = std::make_shared<const AreaShape>(hidden);
         const Snapshot snapshot = snapshot_of({fog}, {light});
-        const double paths = estimate_ray(path_mode(snapshot), ray, 1 << 9, fog_light).value.x;
+        const RayEstimate paths = traced(snapshot, ray, 1 << 9);
         const double march = marched_light(snapshot, ray, 1 << 6, settings).value.x;
-        EXPECT_GT(paths, 1.2 * marched_light(snapshot, ray, 1 << 6).value.x)
-            << "much of it is scattered more than once";
-        EXPECT_NEAR(march, paths, 0.03 * paths) << traits_of(hidden.kind).name;
+        EXPECT_GT(march, 2 * marched_light(snapshot, ray, 1 << 6).value.x) << "most of it is scattered more than once";
+        // Cells of 5 cm are 3 % off beside a face that stands in the fog, half as much at half their size.
+        EXPECT_NEAR(march, paths.value.x, 0.04 * paths.value.x + sigmas * paths.error.x) << traits_of(hidden.kind).name;
     }
 }
 
