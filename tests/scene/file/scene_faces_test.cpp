@@ -23,7 +23,7 @@ TEST(SceneFaces, AreReadWithTheirSizes) {
            {"type": "disc", "position": [0, 2, 0], "direction": [1, 0, 0], "radius": 0.5, "intensity": 5},
            {"type": "point", "position": [0, 2, 0], "intensity": 5},
            {"type": "sphere", "position": [0, 2, 0], "radius": 0.25, "intensity": 5, "shadows": false})");
-    const Snapshot snapshot = make_snapshot(scene, {24, 1});
+    const Snapshot snapshot = make_snapshot(scene, Moment{24, 1});
     ASSERT_EQ(snapshot.lights.size(), 4u);
     EXPECT_FALSE(snapshot.lights[0].area) << "faces stand after all others";
     const AreaShape &box = *snapshot.lights[1].area, &disc = *snapshot.lights[2].area, &ball = *snapshot.lights[3].area;
