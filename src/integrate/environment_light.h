@@ -1,28 +1,17 @@
 // Light of the environment that fog scatters once towards the eye. Distances are picked in proportion to what would be
 // seen from there; directions both by the light and by the phase function, which share it (balance heuristic).
 #pragma once
-#include "integrate/ray_batch.h"
-#include "integrate/style.h"
-#include "volume/medium.h"
+#include "integrate/scatter_paths.h"
 
 #include <memory>
-#include <vector>
 
 namespace tyndall {
 struct Environment;
-struct Snapshot;
-struct TermSettings;
-class Occluders;
 
 struct EnvironmentLight {
     std::shared_ptr<const Environment> environment; // null = none
     std::shared_ptr<const Occluders> occluders;     // null = nothing shadows it
-    std::vector<Medium> fog;
-    StyleSettings style;
-    Camera camera;
-    float light_depth = 1;       // factor on the optical depth that its light crosses
-    float min_transmittance = 0; // behind which fog is not asked for
-    int points = 1;              // on each ray
+    ScatteringFog fog;
 };
 
 // Of a snapshot as the settings see it.

@@ -2,29 +2,18 @@
 // angle around the light and in proportion to what would be seen from there, which share it (balance heuristic); points
 // of the face by its solid angle.
 #pragma once
-#include "integrate/ray_batch.h"
-#include "integrate/style.h"
+#include "integrate/scatter_paths.h"
 #include "scene/light.h"
-#include "volume/medium.h"
 
 #include <memory>
 #include <vector>
 
 namespace tyndall {
-struct Snapshot;
-struct TermSettings;
-class Occluders;
-
 struct FaceLight {
     std::vector<Light> lights;
     std::vector<std::shared_ptr<const Occluders>> casters; // of each; null = nothing shadows it
     size_t first = 0;                                      // its number among the lights of the snapshot
-    std::vector<Medium> fog;
-    StyleSettings style;
-    Camera camera;
-    float light_depth = 1;       // factor on the optical depth that the light crosses
-    float min_transmittance = 0; // behind which fog is not asked for
-    int points = 1;              // on each ray, for each light: a quarter of those that are asked for
+    ScatteringFog fog; // points: on each ray, for each light, a quarter of those asked for
 };
 
 // Takes the lights that are faces out of a snapshot as the settings see it.

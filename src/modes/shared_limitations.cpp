@@ -1,5 +1,6 @@
 #include "modes/shared_limitations.h"
 
+#include "integrate/fire_lamps.h"
 #include "modes/settings.h"
 #include "scene/area_shape.h"
 #include "scene/light.h"
@@ -238,7 +239,7 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
         const auto& field = medium.optics.emission.field;
         if (field && field->out_of_gamut > 0)
             add(limitation::out_of_gamut, {100 * static_cast<double>(field->out_of_gamut), lowest_in_gamut()});
-        if (lights_nothing) add(limitation::unscattered_emission, {lumens_of(medium)});
+        if (lights_nothing && !field) add(limitation::unscattered_emission, {lumens_of(medium)});
     }
 }
 
@@ -268,6 +269,21 @@ void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations) {
                                    Subject::light,
                                    light.name,
                                    {light.radius, far_enough(*light.area, tolerated)}});
+}
+
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
+    constexpr double tolerated = 0.1;
+    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    const std::vector<Light> lamps = fire_lamps(snapshot);
+    double reach = 0;
+    for (const Light& lamp : lamps) reach = std::max(reach, far_enough(lamp, tolerated));
+    for (const Medium& medium : snapshot.media)
+        if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
+            limitations.push_back({Severity::degraded,
+                                   &limitation::lamps_for_fire,
+                                   Subject::medium,
+                                   medium.name,
+                                   {reach, double(lamps.size())}});
 }
 
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {

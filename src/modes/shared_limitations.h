@@ -57,6 +57,8 @@ inline constexpr LimitationKind out_of_gamut{
     "{}% of its light, below {n} K, is redder than Rec.709 can be: shown as red as can be at its luminance"};
 inline constexpr LimitationKind unscattered_emission{
     "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
+inline constexpr LimitationKind lamps_for_fire{
+    "lamps_for_fire", "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for it"};
 inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
@@ -101,8 +103,12 @@ void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limita
 void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
 void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
-// What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing.
+// What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing because it
+// comes from no grid.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
+
+// Where lamps stand for glowing fog.
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the fog has the environment's light as its mean, or none of it.
 void add_mean_environment(const Snapshot& snapshot, Limitations& limitations);

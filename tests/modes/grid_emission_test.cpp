@@ -5,6 +5,7 @@
 #include "modes/path/path_rays.h"
 #include "modes/path/tracer.h"
 #include "support/run_mode.h"
+#include "trace/emissive_bricks.h"
 #include "trace/small_scenes.h"
 #include "volume/emission/blackbody.h"
 #include "volume/emission/emission_field.h"
@@ -66,6 +67,12 @@ TEST(GridEmission, BoxInVacuumIsEmissionTimesLength) {
     }
 }
 
+// What it gives off alone.
+Snapshot without_scattering(Snapshot snapshot) {
+    for (Medium& medium : snapshot.media) medium.optics.albedo = vec3(0);
+    return snapshot;
+}
+
 // What emits as it absorbs: j/σ (1 - e^-τ) with j = B σ (1 - albedo).
 TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
     const Scratch scratch;
@@ -75,14 +82,15 @@ TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
         const MediumSource source = glowing(scratch, kind, static_cast<float>(extinction), {0.25f, 0.5f, 0.75f});
         const dvec3 light = 0.25 * dvec3(1, 0.5, 1) * blackbody_color(kind, hot);
         const dvec3 absorbed = kind == BlackbodyKind::pbrt ? dvec3(0.75, 0.5, 0.25) : dvec3(1 / extinction);
-        expect_along(snapshot_with(scene, source), inside, light * absorbed * dimmed,
+        expect_along(without_scattering(snapshot_with(scene, source)), inside, light * absorbed * dimmed,
                      std::string(blackbody_names[static_cast<size_t>(kind)]));
     }
     Scene scene;
     MediumSource source = glowing(scratch, BlackbodyKind::kelvin, static_cast<float>(extinction), vec3(0.5f));
     source.blackbody->by_absorption = true;
     const dvec3 light = 0.25 * dvec3(1, 0.5, 1) * blackbody_color(BlackbodyKind::kelvin, hot);
-    expect_along(snapshot_with(scene, source), inside, light * 0.5 * dimmed, "kelvin as it absorbs");
+    expect_along(without_scattering(snapshot_with(scene, source)), inside, light * 0.5 * dimmed,
+                 "kelvin as it absorbs");
 }
 
 // A whole ray meets the edges, where the temperature falls to 0 within a voxel.
@@ -219,10 +227,19 @@ TEST(GridEmission, AFlameLightsSmokeAsALampDoes) {
     Light lamp = point_light(vec3(-2, 1, 1) + 0.035f);
     lamp.intensity = vec3(candela);
     const vec3 expected = marched(snapshot_of({smoke}, {lamp}), exact_settings(), ray).radiance;
-    const RayEstimate traced = test::traced(snapshot, ray, 256, 1);
-    for (int c = 0; c < 3; ++c) {
-        EXPECT_NEAR(traced.value[c], expected[c], sigmas * traced.error[c] + 2e-3 * expected.x);
-        EXPECT_LT(traced.error[c], 0.01 * expected.x);
+    const auto of_march = [&](const Settings& settings) {
+        return estimate_ray(find_mode("march").prepare(View{}, snapshot, settings, nullptr), ray, 256, fog_light);
+    };
+    for (const RayEstimate& found : {test::traced(snapshot, ray, 256, 1), of_march({}), of_march(exact_settings())})
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(found.value[c], expected[c], sigmas * found.error[c] + 2e-3 * expected.x);
+            EXPECT_LT(found.error[c], 0.01 * expected.x);
+        }
+    const View view = view_of({1, 1, -1}, {1, 1, 0});
+    for (const char* mode : {"shadow-map", "shadow-volume", "cone"}) {
+        const Scatter found = run_mode(mode, view, snapshot, settings_for(Quality::final), {ray}).front();
+        const Scatter own = run_mode(mode, view, snapshot_of({smoke}, {lamp}), settings_for(Quality::final), {ray})[0];
+        expect_light(found.radiance, dvec3(own.radiance), 5e-3, mode);
     }
 }
 
@@ -234,9 +251,12 @@ TEST(GridEmission, AimingAtAFlameChangesNoMean) {
     for (const Ray& ray : {Ray{{2, 0.6f, -2}, {0, 0, 1}, 20}, Ray{{-2, 3.2f, 2}, {1, 0, 0}, 20}}) {
         auto unaimed = std::make_shared<PathTracer>();
         unaimed->snapshot = snapshot, unaimed->has_emission = true;
-        unaimed->fields = take_fields(unaimed->snapshot, {}, {}).fields;
-        unaimed->fire.media.resize(unaimed->fields.size());
-        for (auto& medium : unaimed->fire.media) medium.per_volume.assign(1 << 20, 0), medium.line_scale = 1;
+        EmissiveBricks dark; // aims at a corner without light
+        dark.fields = take_fields(unaimed->snapshot, {}, {}).fields;
+        dark.bricks = {{0, 0}}, dark.cumulative = {1};
+        dark.chances.resize(dark.fields.size());
+        for (auto& field : dark.chances) field.per_volume.assign(1 << 20, 0), field.line_scale = 1;
+        unaimed->fire = std::make_shared<const EmissiveBricks>(std::move(dark));
         const RayEstimate by_chance = estimate_ray(
             [unaimed](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*unaimed, batch, results); },
             ray, 512, [](const Scatter& s) { return s.radiance; });

@@ -4,6 +4,7 @@
 #include "modes/cone/settings.h"
 #include "modes/resolution.h"
 
+#include "integrate/fire_lamps.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
@@ -119,7 +120,8 @@ float AnchoredFog::extinction() const {
 float filter_node_angle(const Light& light) { return whole_angle(light) / (8 * filter_pieces_of_ray); }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    Snapshot seen = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms));
+    Snapshot seen =
+        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);
@@ -142,6 +144,8 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
     ScatterFunction scatter = [cone](const RayBatch& batch, std::span<Scatter> results) {
         cone_packet(*cone, batch, results);
     };
+    const size_t lights = snapshot.lights.size();
+    scatter = with_lamps_as_emission(lights, cone->lights.size() - lights, std::move(scatter));
     if (history) follow(*history, view, snapshot, settings);
     if (settings.of<ConeSettings>().resolution == Resolution::full && !history) return scatter;
     return from_fog_buffer(view, snapshot, {settings.of<ConeSettings>().resolution}, std::move(scatter), history);

@@ -66,7 +66,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     add_mean_environment(snapshot, limitations);
     add_lamps_for_faces(snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
-    if (settings.terms.emission) add_emission(snapshot, true, limitations);
+    if (settings.terms.emission) add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);
     add_shutter(view, snapshot, limitations);
     return limitations;
 }

@@ -2,6 +2,7 @@
 // again for every camera ray.
 #include "base/simd/simd.h"
 #include "integrate/field_light.h"
+#include "integrate/fire_lamps.h"
 #include "integrate/style.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
@@ -41,7 +42,7 @@ struct FroxelFrame {
 // The scene as the settings see it. Returns what rays find by themselves.
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
-    scene.snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), terms));
+    scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), terms)));
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
     scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);
@@ -226,6 +227,8 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
         if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
         look_up_with_parts(*frame, batch, results);
     };
+    const size_t lights = snapshot.lights.size();
+    scatter = with_lamps_as_emission(lights, frame->scene.snapshot.lights.size() - lights, std::move(scatter));
     return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 

@@ -3,6 +3,7 @@
 #include "integrate/environment_light.h"
 #include "integrate/face_light.h"
 #include "integrate/field_light.h"
+#include "integrate/fire_light.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"
@@ -48,12 +49,15 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     const MarchSettings& march = settings.march;
     const bool intervals = march.visibility == Visibility::intervals, exact = march.visibility == Visibility::exact;
     fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
-    EnvironmentLight sky = environment_light(fog->snapshot, settings.style, settings.terms, view.camera,
-                                             march.visibility != Visibility::off, march.min_transmittance);
+    const bool shadows = march.visibility != Visibility::off;
+    EnvironmentLight sky =
+        environment_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
+    FireLight fire =
+        fire_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    FaceLight faces = take_faces(fog->snapshot, settings.style, settings.terms, view.camera,
-                                 march.visibility != Visibility::off, march.min_transmittance);
+    FaceLight faces =
+        take_faces(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
@@ -72,6 +76,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march_packet(*fog, batch, results);
     };
     scatter = with_face_light(std::move(faces), with_field_light(std::move(fields), std::move(scatter)));
+    scatter = with_fire_light(std::move(fire), std::move(scatter));
     return with_environment_light(std::move(sky), std::move(scatter));
 }
 

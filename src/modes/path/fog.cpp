@@ -3,7 +3,6 @@
 #include "scene/light.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
-#include "volume/rays/emission_nodes.h"
 
 namespace tyndall {
 namespace {
@@ -107,59 +106,30 @@ Interval<float> thin_range(const Segment& line, const Medium& medium) {
     return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
 }
 
-// A distance at which to ask for the light of a field, in proportion to how bright each cell of the line can be.
-struct EmissionPick {
-    float distance = 0, inverse_density = 0; // 0 = there is none
-};
-EmissionPick pick_emission(const BrickPool& luminance, const Ray& ray, float u) {
-    static thread_local std::vector<EmissionCell> cells;
-    cells.clear();
-    double total = 0;
-    find_emission_cells(luminance, ray, 0, [&](const EmissionCell& cell) {
-        if (!(cell.most > 0)) return;
-        cells.push_back(cell), total += cell.most * (cell.high - cell.low);
-    });
-    double left = u * total;
-    for (const EmissionCell& cell : cells) {
-        const double own = cell.most * (cell.high - cell.low);
-        if (left < own || &cell == &cells.back()) {
-            const double share = std::min(left / own, 1.0);
-            return {static_cast<float>(cell.low + share * (cell.high - cell.low)),
-                    static_cast<float>(total / cell.most)};
-        }
-        left -= own;
-    }
-    return {};
-}
-
 // Share of the light found on a line that is not found by aiming at it from where the line began (balance heuristic).
-float unaimed_share(const Walk& walk, const Segment& line, size_t medium, float distance) {
+float unaimed_share(const Segment& line, const EmissionOnLine& hit) {
     if (!(line.walker.density > 0)) return 1;
-    const EmissiveDensities densities =
-        emissive_densities(walk.tracer.fire, walk.tracer.fields, medium, line.rest.at(distance));
-    const float away = line.travelled + distance, found = line.walker.density * densities.line;
-    const float aimed = densities.volume * away * away;
+    const float away = line.travelled + hit.distance, found = line.walker.density * hit.place.line_density;
+    const float aimed = hit.place.density * away * away;
     return found + aimed > 0 ? found / (found + aimed) : 0;
 }
 
 void gather_field(const Walk& walk, Segment& line, size_t number) {
-    const Medium& medium = walk.tracer.fields[number];
     Ray stretch = line.rest;
     stretch.t_max = line.end;
-    const EmissionPick pick = pick_emission(*medium.density.bricks, stretch, line.numbers(use_emission).x);
-    if (!(pick.inverse_density > 0)) return;
+    const EmissionOnLine hit = emission_on_line(*walk.tracer.fire, number, stretch, line.numbers(use_emission).x);
+    if (!(hit.inverse_density > 0)) return;
     ++walk.results[line.walker.lane].steps;
-    const vec3 emission = emission_at(medium, stretch.at(pick.distance));
-    if (!(max_component(emission) > 0)) return;
-    const float share =
-        line.through * passing_share(walk, line, {0, pick.distance}) * unaimed_share(walk, line, number, pick.distance);
-    add_light(walk, line, emission * (share * pick.inverse_density), OtherLight::emission,
+    if (!(max_component(hit.place.emission) > 0)) return;
+    const float share = line.through * passing_share(walk, line, {0, hit.distance}) * unaimed_share(line, hit);
+    add_light(walk, line, hit.place.emission * (share * hit.inverse_density), OtherLight::emission,
               walk.order == 0 || line.walker.in_fog);
 }
 
 // What thin fog emits, from one distance of each medium's range; thicker fog emits where paths collide with it.
 void gather_emission(const Walk& walk, Segment& line) {
-    for (size_t m = 0; m < walk.tracer.fields.size() && line.through > 0; ++m) gather_field(walk, line, m);
+    const size_t fields = walk.tracer.fire ? walk.tracer.fire->fields.size() : 0;
+    for (size_t m = 0; m < fields && line.through > 0; ++m) gather_field(walk, line, m);
     for (const Medium& medium : walk.snapshot.media) {
         const vec3 emission = medium.optics.emission.radiance;
         const Interval<float> range = thin_range(line, medium);
@@ -256,7 +226,7 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
         queue(walk, line, connection, scattered * (weight / pick.chance), in_fog);
     }
-    if (!walk.tracer.fire.empty()) {
+    if (walk.tracer.fire) {
         const EmissivePlace target = pick_fire(walk, line);
         const Connection connection = connection_to_fire(fog.position, target);
         const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;

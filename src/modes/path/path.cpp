@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 bool has_emission(const PathTracer& tracer) {
-    if (max_component(tracer.snapshot.ambient) > 0 || tracer.finds_sky || !tracer.fields.empty()) return true;
+    if (max_component(tracer.snapshot.ambient) > 0 || tracer.finds_sky || tracer.fire) return true;
     for (const Medium& medium : tracer.snapshot.media)
         if (max_component(medium.optics.emission.radiance) > 0) return true;
     if (tracer.surfaces_emit && tracer.snapshot.scene)
@@ -36,8 +36,8 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
     if (tracer->surfaces_emit) tracer->glow = make_emissive_triangles(tracer->snapshot);
-    tracer->fields = take_fields(tracer->snapshot, settings.style, view.camera).fields;
-    tracer->fire = make_emissive_bricks(tracer->fields);
+    tracer->fire = emissive_bricks(tracer->snapshot);
+    take_fields(tracer->snapshot, settings.style, view.camera);
     tracer->finds_sky = finds_sky(tracer->snapshot);
     tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };

@@ -51,7 +51,7 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         }
         queue(walk, line, connection, reflected * irradiance / pick.chance, line.walker.in_fog);
     }
-    if (!walk.tracer.fire.empty()) {
+    if (walk.tracer.fire) {
         const EmissivePlace target = pick_fire(walk, line);
         Connection connection = connection_to_fire(surface.position, target);
         connection.face_normal = surface.face_normal;
@@ -199,7 +199,7 @@ void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight 
 
 EmissivePlace pick_fire(const Walk& walk, const Segment& line) {
     const vec2 first = line.numbers(use_fire), second = line.numbers(use_in_fire);
-    return pick_emissive_place(walk.tracer.fire, walk.tracer.fields, first.x, {first.y, second.x, second.y});
+    return pick_emissive_place(*walk.tracer.fire, first.x, {first.y, second.x, second.y});
 }
 
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {

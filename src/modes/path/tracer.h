@@ -21,10 +21,9 @@ struct PathTracer {
     Camera camera;
     ivec2 size{0};
     EmissiveTriangles glow;
-    std::vector<Medium> fields; // media that only emit; not in the snapshot
-    EmissiveBricks fire;        // their light, which paths aim at
-    bool finds_sky = false;     // the environment by lines that leave the scene, too; else by aiming at it alone
-    bool has_emission = false;  // fog, surfaces or surroundings give off light that paths must find by themselves
+    std::shared_ptr<const EmissiveBricks> fire; // of media that only emit, which the snapshot is without; null = none
+    bool finds_sky = false;    // the environment by lines that leave the scene, too; else by aiming at it alone
+    bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
 };
 
 // Traces the paths of one pixel sample of up to 16 pixels.

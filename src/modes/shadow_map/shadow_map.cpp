@@ -1,5 +1,6 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "integrate/field_light.h"
+#include "integrate/fire_lamps.h"
 #include "integrate/lobe_cuts.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
@@ -32,7 +33,8 @@ float fog_detail(std::span<const Medium> media) {
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
-    march->snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms));
+    march->snapshot =
+        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
@@ -45,10 +47,12 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
         march->cones.push_back(cone_falloff(light));
         march->colored |= light.filter && has_colors(*light.filter);
     }
-    ScatterFunction scatter =
-        with_field_light(std::move(fields), [march](const RayBatch& batch, std::span<Scatter> results) {
-            march_shadow_maps(*march, batch, results);
-        });
+    ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
+        march_shadow_maps(*march, batch, results);
+    };
+    const size_t lights = snapshot.lights.size();
+    scatter = with_lamps_as_emission(lights, march->snapshot.lights.size() - lights, std::move(scatter));
+    scatter = with_field_light(std::move(fields), std::move(scatter));
     const FogBufferOptions picture{settings.of<ShadowMapSettings>().fog_resolution,
                                    settings.of<ShadowMapSettings>().blur};
     if (history) follow(*history, view, snapshot, settings);

@@ -1,5 +1,6 @@
 // Shadow volumes: exact shafts without noise.
 #include "integrate/field_light.h"
+#include "integrate/fire_lamps.h"
 #include "integrate/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/lens_fog.h"
@@ -24,7 +25,8 @@ float half_diagonal(const Box& scene) {
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
-    frame->snapshot = with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)),
+    frame->snapshot =
+        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
     frame->style = settings.style;
     FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);
     frame->nodes = own.nodes, frame->steps = own.steps;
@@ -42,6 +44,8 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);
     };
+    const size_t lights = snapshot.lights.size();
+    scatter = with_lamps_as_emission(lights, frame->snapshot.lights.size() - lights, std::move(scatter));
     return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 

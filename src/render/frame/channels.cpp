@@ -4,6 +4,8 @@
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
+#include "trace/emissive_bricks.h"
+#include "trace/fire_surface.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/surface.h"
@@ -17,12 +19,14 @@ namespace {
 Prepared prepare_grey(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                       History* history) {
     const double start = steady_seconds();
-    Prepared result{mode.prepare(view, snapshot, settings, history), {}, 0};
+    Prepared result;
+    result.scatter = mode.prepare(view, snapshot, settings, history);
     result.mode_seconds = steady_seconds() - start;
-    if (mode.surfaces != Surfaces::own && snapshot.occluders && !snapshot.occluders->empty())
-        for (const Light& light : snapshot.lights)
-            result.light_depths.push_back(
-                make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
+    if (mode.surfaces == Surfaces::own || !snapshot.occluders || snapshot.occluders->empty()) return result;
+    for (const Light& light : snapshot.lights)
+        result.light_depths.push_back(
+            make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
+    if (settings.terms.emission) result.fire = emissive_bricks(snapshot);
     return result;
 }
 
@@ -64,6 +68,7 @@ Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snap
         const auto scene = std::make_shared<const Snapshot>(channel_of(snapshot, c));
         Prepared channel = prepare_grey(mode, view, *scene, settings, nullptr);
         channel.channel = scene;
+        result.fire = channel.fire;
         channels.push_back(channel.scatter);
         result.mode_seconds += channel.mode_seconds;
         result.channels.push_back(std::move(channel));
@@ -72,14 +77,21 @@ Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snap
     return result;
 }
 
+namespace {
+void shade_grey(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
+                std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
+    shade_surfaces(snapshot, prepared.light_depths, points, u, radiance, per_light);
+    if (prepared.fire) add_fire(*prepared.fire, snapshot, points, u, radiance);
+}
+}
+
 void shade(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
            std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
-    if (prepared.channels.empty())
-        return shade_surfaces(snapshot, prepared.light_depths, points, u, radiance, per_light);
+    if (prepared.channels.empty()) return shade_grey(snapshot, prepared, points, u, radiance, per_light);
     std::vector<vec3> found(points.size()), of_lights;
     for (glm::length_t c = 0; c < 3; ++c) {
         const Prepared& channel = prepared.channels[static_cast<size_t>(c)];
-        shade_surfaces(*channel.channel, channel.light_depths, points, u, found, per_light ? &of_lights : nullptr);
+        shade_grey(*channel.channel, channel, points, u, found, per_light ? &of_lights : nullptr);
         for (size_t i = 0; i < found.size(); ++i) radiance[i][c] = found[i][c];
         if (!per_light) continue;
         per_light->resize(of_lights.size());
