@@ -68,7 +68,7 @@ void add_environment_light(const EnvironmentLight& light, const RayBatch& batch,
 }
 
 ScatterFunction with_environment_light(EnvironmentLight light, ScatterFunction scatter) {
-    if (!light.environment || light.fog.media.empty()) return scatter;
+    if (!light.environment || !scatters(light.fog)) return scatter;
     return [light = std::make_shared<const EnvironmentLight>(std::move(light)),
             scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
         scatter(batch, results);

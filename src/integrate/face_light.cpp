@@ -94,7 +94,7 @@ void add_face_light(const FaceLight& faces, const RayBatch& batch, std::span<Sca
 }
 
 ScatterFunction with_face_light(FaceLight faces, ScatterFunction scatter) {
-    if (faces.lights.empty() || faces.fog.media.empty()) return scatter;
+    if (faces.lights.empty() || !scatters(faces.fog)) return scatter;
     return [faces = std::make_shared<const FaceLight>(std::move(faces)),
             scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
         scatter(batch, results);

@@ -130,7 +130,7 @@ void add_fire_light(const FireLight& light, const RayBatch& batch, std::span<Sca
 }
 
 ScatterFunction with_fire_light(FireLight light, ScatterFunction scatter) {
-    if (!light.fire || light.fog.media.empty()) return scatter;
+    if (!light.fire || !scatters(light.fog)) return scatter;
     return [light = std::make_shared<const FireLight>(std::move(light)),
             scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
         scatter(batch, results);

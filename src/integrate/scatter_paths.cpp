@@ -17,6 +17,10 @@ ScatteringFog scattering_fog(const Snapshot& snapshot, const StyleSettings& styl
     return fog;
 }
 
+bool scatters(const ScatteringFog& fog) {
+    return std::ranges::any_of(fog.media, [](const Medium& medium) { return max_component(medium.optics.albedo) > 0; });
+}
+
 float shown_share(const ScatteringFog& fog, vec3 point) {
     return fades(fog.style) ? style_fade(fog.style, eye_distance(fog.camera, point)) : 1;
 }

@@ -22,6 +22,9 @@ struct ScatteringFog {
 ScatteringFog scattering_fog(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
                              const Camera& camera, float min_transmittance);
 
+// Whether any of it sends light on.
+bool scatters(const ScatteringFog& fog);
+
 // Share of what is scattered at a point that the style shows.
 float shown_share(const ScatteringFog& fog, vec3 point);
 

@@ -223,6 +223,12 @@ bool has_emission(const Medium& medium) {
     return max_component(medium.optics.emission.radiance) > 0 && is_finite(medium.world_bounds.size());
 }
 
+template<class Visit> void for_emitting_materials(const Snapshot& snapshot, const Visit& visit) {
+    if (!snapshot.scene) return;
+    for (const Material& material : snapshot.scene->materials)
+        if (max_component(material.emission) > 0) visit(material);
+}
+
 // Whether there is something that light could fall on.
 bool can_be_lit(const Snapshot& snapshot) {
     return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters);
@@ -284,6 +290,23 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
                                    Subject::medium,
                                    medium.name,
                                    {reach, double(lamps.size())}});
+}
+
+void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
+    for_emitting_materials(snapshot, [&](const Material& material) {
+        if (material.alpha_mode != AlphaMode::opaque)
+            limitations.push_back(
+                {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    });
+}
+
+void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations) {
+    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    for_emitting_materials(snapshot, [&](const Material& material) {
+        if (material.alpha_mode == AlphaMode::opaque)
+            limitations.push_back(
+                {Severity::degraded, &limitation::emission_lights_no_fog, Subject::material, material.name});
+    });
 }
 
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {

@@ -59,6 +59,10 @@ inline constexpr LimitationKind unscattered_emission{
     "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
 inline constexpr LimitationKind lamps_for_fire{
     "lamps_for_fire", "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for it"};
+inline constexpr LimitationKind emission_lights_nothing{
+    "emission_lights_nothing", "emission of surfaces with holes or alpha is visible but lights nothing else"};
+inline constexpr LimitationKind emission_lights_no_fog{
+    "emission_lights_no_fog", "its emission lights surfaces, but what fog scatters of it is left out"};
 inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
@@ -116,6 +120,10 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
 
 // Where lamps stand for the faces of rectangles, discs and spheres.
 void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations);
+
+// Materials whose emission lights nothing; and those for which it does so in the fog alone.
+void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);
+void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the light of fog is not drawn at all.
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);

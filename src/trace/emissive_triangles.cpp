@@ -1,6 +1,7 @@
 // The list of emitting triangles, and points on them.
 #include "trace/emissive_triangles.h"
 #include "scene/scene.h"
+#include "trace/frame_cache.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 
@@ -32,11 +33,9 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& glow) 
         glow.triangles.push_back(triangle);
     }
 }
-}
 
 EmissiveTriangles make_emissive_triangles(const Snapshot& snapshot) {
     EmissiveTriangles glow;
-    if (!snapshot.scene) return glow;
     glow.by_shape.resize(snapshot.scene->instances.size());
     for (size_t i = 0; i < snapshot.scene->instances.size(); ++i) add_instance(snapshot, static_cast<int>(i), glow);
     double total = 0;
@@ -45,8 +44,18 @@ EmissiveTriangles make_emissive_triangles(const Snapshot& snapshot) {
     for (EmissiveTriangle& triangle : glow.triangles) triangle.chance /= static_cast<float>(total);
     return glow;
 }
+}
 
-EmissivePoint pick_glow_point(const EmissiveTriangles& glow, const Snapshot& snapshot, float u, vec2 v) {
+std::shared_ptr<const EmissiveTriangles> emissive_triangles(const Snapshot& snapshot) {
+    if (!snapshot.scene || !snapshot.occluders) return nullptr;
+    const Scene& scene = *snapshot.scene;
+    if (std::ranges::none_of(scene.meshes, [&](const Mesh& mesh) { return glows(scene, mesh); })) return nullptr;
+    auto glow = cached(snapshot, "emissive triangles", CacheKey().add(snapshot.occluders),
+                       [&] { return make_emissive_triangles(snapshot); });
+    return glow->triangles.empty() ? nullptr : glow;
+}
+
+EmissivePoint pick_glow_point(const EmissiveTriangles& glow, const Occluders& surfaces, float u, vec2 v) {
     const auto found = std::ranges::upper_bound(glow.cumulative, static_cast<double>(u));
     const size_t index = std::min<size_t>(found - glow.cumulative.begin(), glow.triangles.size() - 1);
     const EmissiveTriangle& triangle = glow.triangles[index];
@@ -56,12 +65,12 @@ EmissivePoint pick_glow_point(const EmissiveTriangles& glow, const Snapshot& sna
     Hits hit;
     hit.instance[0] = triangle.instance, hit.triangle[0] = triangle.triangle;
     hit.u[0] = root * (1 - v.y), hit.v[0] = root * v.y;
-    const SurfacePoint surface = snapshot.occluders->surface(Ray{}, hit, 0);
+    const SurfacePoint surface = surfaces.surface(Ray{}, hit, 0);
     return {surface.position, surface.face_normal, surface.emission, triangle.chance / triangle.area};
 }
 
 float glow_density(const EmissiveTriangles& glow, int instance, int triangle) {
-    if (glow.empty() || glow.by_shape[instance].empty()) return 0;
+    if (glow.by_shape[instance].empty()) return 0;
     const int index = glow.by_shape[instance][triangle];
     return index < 0 ? 0 : glow.triangles[index].chance / glow.triangles[index].area;
 }

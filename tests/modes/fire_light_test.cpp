@@ -10,8 +10,8 @@
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
+#include "trace/emission_surface.h"
 #include "trace/emissive_bricks.h"
-#include "trace/fire_surface.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 
@@ -37,7 +37,7 @@ Medium glowing_ball(vec3 center) {
 struct Emitter {
     dvec3 at, candela;
 };
-std::vector<Emitter> emitters_of(const Medium& medium) {
+std::vector<Emitter> places_of(const Medium& medium) {
     constexpr int steps = 48;
     std::vector<Emitter> emitters;
     const dvec3 low(medium.world_bounds.low), size(medium.world_bounds.size());
@@ -51,7 +51,7 @@ std::vector<Emitter> emitters_of(const Medium& medium) {
 }
 
 dvec3 light_by_quadrature(const Medium& fire, const Medium& fog, const Ray& ray) {
-    const std::vector<Emitter> emitters = emitters_of(fire);
+    const std::vector<Emitter> emitters = places_of(fire);
     const Interval<float> inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
     const double extinction = double{grey_extinction(fog.optics)}, length = double{inside.length()};
     dvec3 sum(0);
@@ -151,7 +151,7 @@ TEST(FireLight, SurfacesAreLitAsByQuadrature) {
                 u[i] = {pair.x, pair.y};
             }
             vec3 radiance(0);
-            add_fire(*emissive_bricks(stage.snapshot), stage.snapshot, {&point, 1}, u, {&radiance, 1});
+            add_emitted_light(emitters_of(stage.snapshot), stage.snapshot, {&point, 1}, u, {&radiance, 1});
             sum += dvec3(radiance), squares += dvec3(radiance) * dvec3(radiance);
         }
         const dvec3 mean = sum / double(batches);
@@ -168,7 +168,7 @@ TEST(FireLight, LampsHaveItsCandelaAndPlace) {
     const Snapshot snapshot = snapshot_of({fire, other, homogeneous_medium(0.2f, {vec3(-3), vec3(3)})});
     dvec3 candela(0), found(0), middle(0);
     for (const Medium* medium : {&fire, &other})
-        for (const Emitter& place : emitters_of(*medium)) candela += place.candela;
+        for (const Emitter& place : places_of(*medium)) candela += place.candela;
     const std::vector<Light> lamps = fire_lamps(snapshot);
     EXPECT_GE(lamps.size(), 2u);
     for (const Light& lamp : lamps) {

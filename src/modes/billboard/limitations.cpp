@@ -42,6 +42,8 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
     add_mean_filters(snapshot, limitations);
     add_fog_through_middle(view, snapshot, limitations);
     add_left_out_emission(snapshot, limitations);
+    if (settings.terms.emission)
+        add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
     add_left_out_environment(snapshot, limitations);
     add_lamps_for_faces(snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});

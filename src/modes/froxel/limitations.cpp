@@ -131,7 +131,8 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     add_fog_through_middle(view, snapshot, limitations);
     add_mean_environment(snapshot, limitations);
     add_lamps_for_faces(snapshot, limitations);
-    if (settings.terms.emission) add_lamps_for_fire(snapshot, limitations);
+    if (settings.terms.emission)
+        add_lamps_for_fire(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();
     const FroxelSize size = middle_froxel(view, snapshot, froxel);

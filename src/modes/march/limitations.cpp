@@ -56,11 +56,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
     add_light_transmittance(snapshot, terms.light, limitations);
     add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     if (terms.emission) add_emission(snapshot, true, limitations);
-    if (snapshot.scene)
-        for (const Material& material : snapshot.scene->materials)
-            if (max_component(material.emission) > 0)
-                limitations.push_back(
-                    {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    if (terms.emission) add_dark_emission(snapshot, limitations);
     add_shutter(view, snapshot, limitations);
     return limitations;
 }

@@ -12,8 +12,6 @@ inline constexpr LimitationKind sampled_alpha_shadows{
     "sampled_alpha_shadows", "shadows of MASK and BLEND surfaces are sampled by rays, not integrated exactly"};
 inline constexpr LimitationKind sampled_shadows{"sampled_shadows",
                                                 "{n} triangles: shadows are sampled by rays, not integrated exactly"};
-inline constexpr LimitationKind emission_lights_nothing{"emission_lights_nothing",
-                                                        "emission is visible but lights nothing else"};
 }
 
 Limitations march_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

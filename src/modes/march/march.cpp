@@ -4,6 +4,7 @@
 #include "integrate/face_light.h"
 #include "integrate/field_light.h"
 #include "integrate/fire_light.h"
+#include "integrate/mesh_light.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"
@@ -54,6 +55,8 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         environment_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
     FireLight fire =
         fire_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
+    MeshLight meshes =
+        mesh_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
     FaceLight faces =
@@ -76,7 +79,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         march_packet(*fog, batch, results);
     };
     scatter = with_face_light(std::move(faces), with_field_light(std::move(fields), std::move(scatter)));
-    scatter = with_fire_light(std::move(fire), std::move(scatter));
+    scatter = with_mesh_light(std::move(meshes), with_fire_light(std::move(fire), std::move(scatter)));
     return with_environment_light(std::move(sky), std::move(scatter));
 }
 

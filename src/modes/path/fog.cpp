@@ -235,9 +235,9 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
             queue(walk, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
     }
     if (snapshot.environment) gather_sky_at_collision(walk, line, fog);
-    if (walk.tracer.glow.empty()) return;
+    if (!walk.tracer.glow) return;
     const EmissivePoint target =
-        pick_glow_point(walk.tracer.glow, snapshot, line.numbers(use_light).y, line.numbers(use_glow));
+        pick_glow_point(*walk.tracer.glow, *snapshot.occluders, line.numbers(use_light).y, line.numbers(use_glow));
     const Connection connection = connection_to_glow(fog.position, target);
     const float facing = std::abs(glm::dot(target.normal, connection.to_light));
     const float chance = target.density * connection.fog_length * connection.fog_length / facing;

@@ -31,7 +31,7 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
 // Chance per steradian with which a glowing surface point is picked as a target from where the line began.
 float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
                      int triangle) {
-    const float density = glow_density(tracer.glow, instance, triangle);
+    const float density = tracer.glow ? glow_density(*tracer.glow, instance, triangle) : 0;
     const float distance = line.travelled + line.end,
                 facing = std::abs(glm::dot(surface.face_normal, line.rest.direction));
     return density > 0 ? density * distance * distance / std::max(facing, 1e-12f) : 0;
@@ -66,9 +66,9 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
             line.walker.in_fog,
             [&](vec3 direction) { return reflected * std::max(glm::dot(surface.normal, direction), 0.0f); },
             [&](vec3 direction) { return std::max(glm::dot(surface.normal, direction), 0.0f) / pi; });
-    if (walk.tracer.glow.empty()) return;
-    const EmissivePoint target = pick_glow_point(walk.tracer.glow, walk.snapshot, line.numbers(use_surface_light).y,
-                                                 line.numbers(use_surface_glow));
+    if (!walk.tracer.glow) return;
+    const EmissivePoint target = pick_glow_point(*walk.tracer.glow, *walk.snapshot.occluders,
+                                                 line.numbers(use_surface_light).y, line.numbers(use_surface_glow));
     Connection connection = connection_to_glow(surface.position, target);
     connection.face_normal = surface.face_normal;
     const float cosine = glm::dot(surface.normal, connection.to_light),

@@ -20,7 +20,7 @@ struct PathTracer {
     bool surfaces_emit = true; // light on fog and other surfaces
     Camera camera;
     ivec2 size{0};
-    EmissiveTriangles glow;
+    std::shared_ptr<const EmissiveTriangles> glow; // surfaces that paths aim at; null = none
     std::shared_ptr<const EmissiveBricks> fire; // of media that only emit, which the snapshot is without; null = none
     bool finds_sky = false;    // the environment by lines that leave the scene, too; else by aiming at it alone
     bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves

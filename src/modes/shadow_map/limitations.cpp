@@ -48,7 +48,8 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
     add_mean_environment(snapshot, limitations);
     add_lamps_for_faces(snapshot, limitations);
-    if (settings.terms.emission) add_lamps_for_fire(snapshot, limitations);
+    if (settings.terms.emission)
+        add_lamps_for_fire(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
     return limitations;
 }
 }

@@ -4,8 +4,6 @@
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/light.h"
-#include "trace/emissive_bricks.h"
-#include "trace/fire_surface.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/surface.h"
@@ -26,7 +24,7 @@ Prepared prepare_grey(const Mode& mode, const View& view, const Snapshot& snapsh
     for (const Light& light : snapshot.lights)
         result.light_depths.push_back(
             make_light_depth(snapshot, light, settings.terms.light, settings.terms.light_resolution, &view));
-    if (settings.terms.emission) result.fire = emissive_bricks(snapshot);
+    if (settings.terms.emission) result.emitters = emitters_of(snapshot);
     return result;
 }
 
@@ -68,7 +66,7 @@ Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snap
         const auto scene = std::make_shared<const Snapshot>(channel_of(snapshot, c));
         Prepared channel = prepare_grey(mode, view, *scene, settings, nullptr);
         channel.channel = scene;
-        result.fire = channel.fire;
+        result.emitters = channel.emitters;
         channels.push_back(channel.scatter);
         result.mode_seconds += channel.mode_seconds;
         result.channels.push_back(std::move(channel));
@@ -81,7 +79,7 @@ namespace {
 void shade_grey(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
                 std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
     shade_surfaces(snapshot, prepared.light_depths, points, u, radiance, per_light);
-    if (prepared.fire) add_fire(*prepared.fire, snapshot, points, u, radiance);
+    if (prepared.emitters) add_emitted_light(prepared.emitters, snapshot, points, u, radiance);
 }
 }
 

@@ -13,6 +13,7 @@
 #pragma once
 #include "integrate/ray_batch.h"
 #include "render/frame/layers.h"
+#include "trace/emission_surface.h"
 
 #include <atomic>
 #include <functional>
@@ -20,7 +21,6 @@
 #include <vector>
 
 namespace tyndall {
-struct EmissiveBricks;
 struct History;
 struct LightDepth;
 struct Mode;
@@ -31,9 +31,9 @@ struct View;
 // What a frame needs before its first ray.
 struct Prepared {
     ScatterFunction scatter;
-    std::vector<LightDepth> light_depths;         // of every light, for shared surfaces; empty when there are none
-    std::shared_ptr<const EmissiveBricks> fire{}; // that lights shared surfaces; null = none
-    double mode_seconds = 0;                      // what the mode took
+    std::vector<LightDepth> light_depths; // of every light, for shared surfaces; empty when there are none
+    Emitters emitters{};                  // that light shared surfaces
+    double mode_seconds = 0;              // what the mode took
     // Of each moment while the shutter is open; then the frame itself has neither fog nor depths, and lights of a
     // moment go into these of the frame's layers.
     std::vector<Prepared> moments{};

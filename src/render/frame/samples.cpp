@@ -71,7 +71,7 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
     std::vector<vec2> u(met.count * points);
     vec3 radiance[16];
     const bool soft =
-        tracer.snapshot.environment || tracer.prepared.fire || std::ranges::any_of(tracer.snapshot.lights, is_soft);
+        tracer.snapshot.environment || tracer.prepared.emitters || std::ranges::any_of(tracer.snapshot.lights, is_soft);
     for (size_t k = 0; soft && k < met.count; ++k) {
         const Path& path = s.path[met.which[k]];
         for (size_t p = 0; p < points; ++p) {
