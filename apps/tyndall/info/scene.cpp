@@ -182,7 +182,7 @@ std::string scene_report(const std::filesystem::path& file, bool json) {
 std::string recipe_report(const std::filesystem::path& file, bool json) {
     const FogRecipe recipe = read_recipe(file);
     const dvec3 size = dvec3(recipe.bounds.high) - dvec3(recipe.bounds.low);
-    const vec3 across = glm::ceil(size / recipe.voxel_size - 1e-6);
+    const vec3 across = glm::ceil(size / recipe.voxel_size - 0.5); // centres, as a bake has them
     if (json)
         return json_line({{"file", file.native()},
                           {"kind", "recipe"},

@@ -10,8 +10,10 @@
 
 namespace tyndall {
 namespace {
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A grid of one voxel of a value.
 SparseVolume voxel(const std::string& name, float value) {
@@ -40,7 +42,7 @@ TEST(MediaGrids, ARecipeHasItsTemperatureFromItsFire) {
     const std::string blackbody = R"(, "blackbody": {"convention": "kelvin", "emission_scale": 2})";
     const LoadAnswer fire = load_recipe(R"("recipe": "fire.json")" + blackbody);
     ASSERT_TRUE(fire.loaded) << fire.message;
-    EXPECT_TRUE(fire.scene.warnings.empty());
+    EXPECT_THAT(fire.scene.warnings, Not(Contains(HasSubstr("gives no light"))));
     EXPECT_EQ(fire.scene.media[0].blackbody->scale.at(0), 2);
     EXPECT_TRUE(emits_light(fire.scene.media[0]));
     const LoadAnswer fog = load_recipe(R"("recipe": "fog.json")" + blackbody);
@@ -48,8 +50,7 @@ TEST(MediaGrids, ARecipeHasItsTemperatureFromItsFire) {
     EXPECT_THAT(fog.message, HasSubstr("/media/0/blackbody"));
     EXPECT_THAT(fog.message, HasSubstr("\"fire\""));
     const LoadAnswer dark = load_recipe(R"("recipe": "fire.json")");
-    ASSERT_EQ(dark.scene.warnings.size(), 1u);
-    EXPECT_THAT(dark.scene.warnings[0], HasSubstr("gives no light"));
+    EXPECT_THAT(dark.scene.warnings, Contains(HasSubstr("gives no light")));
 }
 
 TEST(MediaGrids, AreReadAsTheyAreWritten) {
