@@ -9,13 +9,14 @@ namespace tyndall {
 namespace {
 struct Options {
     std::string recipe, output, frames = "1", voxel_size, compression = "blosc";
-    bool full_float = false, resume = false;
+    bool full_float = false, velocity = false, resume = false;
 };
 
 BakeOptions bake_options(const Options& texts) {
     BakeOptions options;
     options.write.half = !texts.full_float;
     options.write.blosc = choice_among("--compression", texts.compression, {"blosc", "zip"}) == 0;
+    options.velocity = texts.velocity;
     options.resume = texts.resume;
     options.cancel = &cancel_flag();
     return options;
@@ -70,6 +71,8 @@ Run add_bake(const Command& program) {
     command.option("--voxel-size", texts->voxel_size, "edge of a voxel in metres, instead of the recipe's", "METRES");
     command.flag("--float", texts->full_float, "store 32-bit floats; 16 bits otherwise, enough for fog");
     command.option("--compression", texts->compression, "blosc (default) or zip, for readers without Blosc", "NAME");
+    command.flag("--velocity", texts->velocity,
+                 "a grid \"vel\" as well: metres per second that the fog is advected at");
     command.flag("--resume", texts->resume, "keep frames that are already there and still right");
     command.footer("Example: two seconds of drifting dust with 4 cm voxels\n"
                    "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"

@@ -137,7 +137,7 @@ struct MediumSource {
     ValueMap density_map;                                 // vdb
     std::optional<GridSource> albedo_grid, emission_grid; // vdb: factors on `albedo`, and on `emission`
     std::optional<GridSource> temperature, flame;         // vdb: kelvin, and a factor on what they emit
-    std::optional<BlackbodySource> blackbody;             // with a temperature
+    std::optional<BlackbodySource> blackbody;             // with a temperature, or a recipe's fire
     std::string entry;                                    // as of a camera
 };
 

@@ -14,8 +14,24 @@
 
 namespace tyndall {
 float recipe_speed(const FogRecipe& recipe) {
-    return glm::length(recipe.wind) + std::abs(recipe.noise.evolve) * recipe.noise.scale +
-           2 * pi * std::abs(recipe.swirl * recipe.swirl_speed);
+    const auto speed = [](float advection, const FractalNoise& noise) {
+        return advection + std::abs(noise.evolve) * noise.scale;
+    };
+    const float smoke = speed(glm::length(recipe.wind), recipe.noise);
+    const float flames = recipe.fire ? speed(recipe.fire->rise, recipe.fire->noise) : 0;
+    return std::max(smoke, flames) + 2 * pi * std::abs(recipe.swirl * recipe.swirl_speed);
+}
+
+FogRecipe grown_recipe(const MediumSource& source) {
+    FogRecipe recipe = *source.recipe;
+    if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
+    return recipe;
+}
+
+std::string growth_key(const FogRecipe& recipe, double seconds) {
+    std::string key = "recipe " + recipe_hash(recipe);
+    if (recipe_speed(recipe) > 0) key += formatted(" at %a", seconds);
+    return key;
 }
 
 namespace {
@@ -31,8 +47,6 @@ Optics optics_at(const MediumSource& source, double seconds) {
     return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds),
             phase_at(source.phase, source.g.at(seconds), seconds), source.emission.at(seconds)};
 }
-
-std::string number_key(double value) { return formatted("%a", value); }
 
 // Fog as cache files keep it.
 struct StoredFog {
@@ -63,10 +77,8 @@ FogSource source_of(StoredFog fog, std::string key, const std::string& content) 
 }
 
 FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, const FogSource& before) {
-    FogRecipe recipe = *source.recipe;
-    if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
-    std::string key = "recipe " + recipe_hash(recipe);
-    if (recipe_speed(recipe) > 0) key.append(" at ").append(number_key(seconds));
+    const FogRecipe recipe = grown_recipe(source);
+    const std::string key = growth_key(recipe, seconds);
     if (key == before.key) return before;
     const auto grow_fog = [&] { return stored_fog(grow(recipe, seconds), {}); };
     return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");

@@ -88,6 +88,22 @@ GridProperty read(const std::optional<GridSource>& source, Quantity quantity, co
     return property;
 }
 
+// That of a recipe's fire.
+GridProperty grown_temperature(const MediumSource& source, const Reading& reading, const GridProperty* before) {
+    const FogRecipe recipe = grown_recipe(source);
+    const double seconds = reading.moment.grown.value_or(reading.moment.seconds);
+    GridProperty property;
+    property.key = "temperature of " + growth_key(recipe, seconds);
+    if (before && before->key == property.key) return *before;
+    StoredProperty stored = found_or_made<StoredProperty>(reading.snapshot.files.get(), "bricks", property.key, [&] {
+        StoredProperty made;
+        add_pool(grow_temperature(recipe, seconds), made);
+        return made;
+    });
+    property.channels.fill({std::make_shared<const BrickPool>(std::move(stored.pools[0])), stored.places[0]});
+    return property;
+}
+
 std::array<std::shared_ptr<const BrickPool>, 3> bricks_of(const GridProperty& property) {
     return {property.channels[0].bricks, property.channels[1].bricks, property.channels[2].bricks};
 }
@@ -208,7 +224,8 @@ void append_part(const EmissionPart& part, const std::string& name, vec3 scale, 
 }
 
 bool has_grids(const MediumSource& source) {
-    return source.albedo_grid || source.emission_grid || (source.blackbody && source.temperature);
+    const bool has_temperature = source.temperature || (source.recipe && source.recipe->fire);
+    return source.albedo_grid || source.emission_grid || (source.blackbody && has_temperature);
 }
 
 std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, MissingFrame missing,
@@ -218,7 +235,9 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
     auto grids = std::make_shared<MediumGrids>();
     grids->albedo = read(source.albedo_grid, Quantity::share, reading, before ? &before->albedo : nullptr);
     grids->emission = read(source.emission_grid, Quantity::color, reading, before ? &before->emission : nullptr);
-    grids->temperature = read(source.temperature, Quantity::number, reading, before ? &before->temperature : nullptr);
+    const GridProperty* const temperature_before = before ? &before->temperature : nullptr;
+    grids->temperature = source.recipe ? grown_temperature(source, reading, temperature_before)
+                                       : read(source.temperature, Quantity::number, reading, temperature_before);
     grids->flame = read(source.flame, Quantity::number, reading, before ? &before->flame : nullptr);
     grids->key = key_of(source, moment.seconds, *grids, fog);
     if (before && before->key == grids->key) {

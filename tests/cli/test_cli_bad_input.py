@@ -131,6 +131,9 @@ class Recipe(ProgramTest):
         self.refuse_recipe(3, ["/voxel_size"], recipe(voxel_size="small"))
         self.refuse_recipe(3, ["/voxel_size"], recipe(voxel_size=0))
         self.refuse_recipe(3, ["/noise/octaves"], recipe(noise={"octaves": 1000}))
+        self.refuse_recipe(3, ["/fire", "height"], recipe(fire={"radius": 1}))
+        self.refuse_recipe(3, ["/fire/core"], recipe(fire={"height": 1, "core": -1900}))
+        self.refuse_recipe(3, ["/fire/core"], recipe(fire={"height": 1, "core": 1e9}))
         self.refuse_recipe(3, [], "not json")
         self.refuse_recipe(3, [], scene())
 

@@ -82,8 +82,30 @@ TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
     EXPECT_LT(relative_rmse(read, grown), 1e-3); // half floats on disk and in the bricks
 }
 
+TEST(ExampleScenes, AFireRenderedDirectlyEqualsItsBake) {
+    const Scratch scratch;
+    FogRecipe recipe = read_recipe(source_dir / "volumes/campfire.json");
+    recipe.voxel_size = 0.05f;
+    Progress progress(ProgressStyle::none, "bake", 1);
+    bake(recipe, (scratch / "fire.####.vdb").string(), {12}, {}, progress);
+
+    Scene direct = load_scene(source_dir / "scenes/campfire.json"), baked = direct;
+    MediumSource &grown = direct.media[0], &read = baked.media[0];
+    ASSERT_TRUE(grown.blackbody && grown.recipe && grown.recipe->fire);
+    grown.voxel_size = static_cast<float>(recipe.voxel_size);
+    read.kind = MediumKind::vdb, read.recipe.reset();
+    read.sequence = find_sequence("fire.####.vdb", scratch.path());
+    read.temperature = GridSource{read.sequence, {"temperature"}, {}};
+    const Camera camera = camera_at(direct, direct.camera, 0.5);
+    const Settings settings = settings_for(Quality::preview);
+    const auto expected = fog_light(make_snapshot(direct, moment_of(direct, 12)), camera, settings);
+    const auto found = fog_light(make_snapshot(baked, moment_of(baked, 12)), camera, settings);
+    EXPECT_GT(max_component(expected[64 * 18 + 32].radiance), 100) << "no fire in the middle of the picture";
+    EXPECT_LT(relative_rmse(found, expected), 1e-3); // half floats on disk and in the bricks
+}
+
 TEST(ExampleScenes, AllLoadWithoutWarnings) {
-    for (const char* name : {"window", "spotlight", "pillars", "lantern", "cloud"}) {
+    for (const char* name : {"window", "spotlight", "pillars", "lantern", "cloud", "campfire"}) {
         const Scene scene = load_scene(source_dir / "scenes" / (std::string(name) + ".json"));
         EXPECT_TRUE(scene.warnings.empty()) << name << ": " << scene.warnings.front();
         EXPECT_FALSE(scene.media.empty());

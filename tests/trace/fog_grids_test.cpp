@@ -117,6 +117,37 @@ TEST(FogGrids, AMissingGridIsOneLine) {
                 HasSubstr("has no grid \"heat\", it holds temperature (float)"));
 }
 
+TEST(FogGrids, ARecipesFireGlowsAsItsFormulaSays) {
+    Scene scene;
+    MediumSource& source = scene.media.emplace_back();
+    source.name = "fire", source.kind = MediumKind::noise, source.blackbody = BlackbodySource{.scale = 0.5f};
+    source.recipe = FogRecipe{};
+    source.recipe->bounds = {vec3(-0.5f, 0, -0.5f), vec3(0.5f, 1, 0.5f)}, source.recipe->voxel_size = 0.0625;
+    source.recipe->fire = FireRecipe{.height = 0.75f, .radius = 0.375f, .flicker = 0};
+    const Snapshot first = make_snapshot(scene, Moment{1, 0});
+    ASSERT_EQ(first.media.size(), 2u);
+    EXPECT_EQ(first.media[1].name, "fire (blackbody)");
+    for (const vec3 point : {vec3(0.03125f), vec3(0.03125f, 0.34375f, -0.09375f)}) { // centres of voxels
+        const double h = point.y / 0.75, r = std::hypot(point.x, point.z) / 0.375 * (1 + h);
+        const vec3 expected(0.5 * blackbody_color(BlackbodyKind::kelvin, 1100 + 800 * (1 - h * h - r * r)));
+        // Half floats: a kelvin is 1/1900, and luminance goes with its tenth power and more.
+        expect_near(emission_at(first.media[1], point), expected, 0.01f * expected.x);
+    }
+    EXPECT_EQ(emission_at(first.media[1], vec3(0.03125f, 0.90625f, 0.03125f)), vec3(0)) << "above the flame";
+
+    // It rises though nothing else moves, and is grown anew for another moment alone.
+    const Snapshot again = make_snapshot(scene, Moment{1, 0}, &first),
+                   later = make_snapshot(scene, Moment{2, 1}, &first);
+    EXPECT_EQ(again.media[1].density.bricks, first.media[1].density.bricks);
+    EXPECT_NE(later.media[1].density.bricks, first.media[1].density.bricks);
+    source.recipe->fire->rise = 0;
+    const Snapshot still = make_snapshot(scene, Moment{1, 0}), stays = make_snapshot(scene, Moment{2, 1}, &still);
+    EXPECT_EQ(stays.media[1].density.bricks, still.media[1].density.bricks);
+
+    source.extinction = 0.0f; // light alone
+    EXPECT_EQ(make_snapshot(scene, Moment{1, 0}).media.size(), 1u);
+}
+
 // A few bytes of file can stand for billions of voxels.
 TEST(FogGrids, HugeTilesStayTiles) {
     const Scratch scratch;

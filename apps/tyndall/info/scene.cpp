@@ -182,7 +182,7 @@ std::string scene_report(const std::filesystem::path& file, bool json) {
 std::string recipe_report(const std::filesystem::path& file, bool json) {
     const FogRecipe recipe = read_recipe(file);
     const dvec3 size = dvec3(recipe.bounds.high) - dvec3(recipe.bounds.low);
-    const vec3 across = glm::ceil(size / recipe.voxel_size - 1e-6);
+    const vec3 across = glm::ceil(size / recipe.voxel_size - 0.5); // centres, as a bake has them
     if (json)
         return json_line({{"file", file.native()},
                           {"kind", "recipe"},
@@ -195,13 +195,18 @@ std::string recipe_report(const std::filesystem::path& file, bool json) {
                           {"extinction", recipe.extinction},
                           {"albedo", recipe.albedo},
                           {"g", recipe.g},
+                          {"fire", recipe.fire.has_value()},
                           {"hash", recipe_hash(recipe)}});
-    std::string text = printable(file.string()) + ": fog recipe for a grid named " + printable(recipe.name, 80) + "\n";
+    std::string text = printable(file.string()) + ": fog recipe for a grid named " + printable(recipe.name, 80) +
+                       (recipe.fire ? std::string(" and one named ") + temperature_name : "") + "\n";
     text += "  world         " + vector_text(recipe.bounds.low) + " to " + vector_text(recipe.bounds.high) + " m\n";
     text += formatted("  voxels        %.0f x %.0f x %.0f of %g m\n", double{across.x}, double{across.y},
                       double{across.z}, double{recipe.voxel_size});
     text += formatted("  optics        extinction %g /m at density 1, albedo %s, g %g\n", double{recipe.extinction},
                       vector_text(recipe.albedo).c_str(), double{recipe.g});
+    if (const auto& fire = recipe.fire)
+        text += formatted("  fire          %g m high, %g to %g K\n", double{fire->height}, double{fire->edge},
+                          double{fire->core});
     text += recipe.period > 0 ? formatted("  motion        repeats after %g s (%g frames)\n", recipe.period,
                                           recipe.period * recipe.frame_rate)
                               : std::string("  motion        does not repeat\n");

@@ -79,6 +79,13 @@ BlackbodySource blackbody_source(const Field& field, const MediumSource& medium,
     return source;
 }
 
+// A recipe has its temperature from its fire.
+void check_recipe(const Field& field, const Field& blackbody, const FogRecipe& recipe, Scene& scene) {
+    if (blackbody && !recipe.fire) refuse(blackbody, "needs a recipe with a \"fire\"");
+    if (!blackbody && recipe.fire)
+        warn(scene, field.place() + ": its fire gives no light without \"blackbody\": {\"convention\": \"kelvin\"}");
+}
+
 // What one member says only together with another.
 void check_together(const Field& grids, const Field& blackbody) {
     const Field temperature = grids ? grids.member("temperature") : Field(),
@@ -92,7 +99,10 @@ void check_together(const Field& grids, const Field& blackbody) {
 
 void read_grids(const Field& field, MediumSource& medium, Scene& scene) {
     const Field grids = field.member("grids"), blackbody = field.member("blackbody");
-    check_together(grids, blackbody);
+    if (medium.recipe)
+        check_recipe(field, blackbody, *medium.recipe, scene);
+    else
+        check_together(grids, blackbody);
     if (grids) {
         const MediumSource usual = medium; // of whose file the other properties are, wherever the density is from
         const auto read = [&](const char* name, const char* grid, std::optional<GridSource>& source) {

@@ -15,9 +15,10 @@ RenderRequest render_request(const Request& request) {
     RenderRequest result;
     result.frames = {request.frame};
     result.mode = request.mode, result.settings = request.settings;
-    result.shutter = Shutter{}; // what is looked at is a still
     result.resolution = request.size, result.seed = request.seed, result.missing = request.missing;
-    if (request.scene) result.scene_file = request.scene->file;
+    if (!request.scene) return result;
+    result.scene_file = request.scene->file;
+    if (shutter_of(*request.scene, result)) result.shutter = Shutter{}; // what is looked at is a still
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "volume/recipe/growth.h"
+#include "volume/recipe/motion.h"
 
 #include <deque>
 #include <future>
@@ -18,9 +19,10 @@ using Metadata = std::vector<std::pair<std::string, std::string>>;
 using tyndall::shortest_text;
 std::string shortest_text(vec3 v) { return shortest_text(v.x) + " " + shortest_text(v.y) + " " + shortest_text(v.z); }
 
-std::string settings_hash(const FogRecipe& recipe, const VdbWriteOptions& write) {
+std::string settings_hash(const FogRecipe& recipe, const BakeOptions& options) {
+    const VdbWriteOptions& write = options.write;
     return content_hash(recipe_hash(recipe) + (write.half ? " half" : " float") + (write.blosc ? " blosc " : " zip ") +
-                        write.creator);
+                        write.creator + (options.velocity ? " velocity" : ""));
 }
 
 Metadata frame_metadata(const FogRecipe& recipe, const std::string& hash, int frame, double seconds) {
@@ -74,6 +76,51 @@ struct Written {
     int frame = 0;
     uint64_t voxels = 0, bytes = 0;
 };
+
+std::vector<VdbGridContent> grids_of(const FogRecipe& recipe, const BakeOptions& options) {
+    std::vector<VdbGridContent> grids{{recipe.name}};
+    if (recipe.fire) grids.push_back({temperature_name});
+    if (options.velocity) grids.push_back({velocity_name, true});
+    for (size_t g = 1; g < grids.size(); ++g)
+        if (grids[g].name == recipe.name)
+            refuse("name", "\"" + recipe.name + "\" is what another grid of this bake is called");
+    return grids;
+}
+
+// The velocities of a leaf whose temperature is known (null: no fire), by component.
+void grow_velocity(const Growth& growth, const FogMotion& motion, ivec3 origin, const Leaf* kelvin,
+                   std::span<Leaf, 3> leaves) {
+    std::array<vec3, 512> points, velocity;
+    for (int v = 0; v < 512; ++v) {
+        const ivec3 at = origin + ivec3(v / 64, v / 8 % 8, v % 8);
+        for (int axis = 0; axis < 3; ++axis) points[v][axis] = growth.at[axis][at[axis]];
+    }
+    constexpr std::array<float, 512> cold{};
+    fog_velocity(motion, points, kelvin ? kelvin->values : cold, velocity);
+    for (int axis = 0; axis < 3; ++axis) {
+        leaves[axis].origin = origin;
+        for (int v = 0; v < 512; ++v) leaves[axis].values[v] = velocity[v][axis];
+    }
+}
+
+VdbImage frame_image(const FogRecipe& recipe, double seconds, Metadata metadata, const BakeOptions& options,
+                     const std::string& where) {
+    const Growth growth = start_growth(recipe, seconds);
+    const std::optional<FogMotion> motion =
+        options.velocity ? std::optional(fog_motion(recipe, seconds)) : std::nullopt;
+    const VdbContent content{.grids = grids_of(recipe, options),
+                             .index_to_world = growth.index_to_world,
+                             .metadata = std::move(metadata),
+                             .tiles = {},
+                             .origins = growth.origins,
+                             .fill = [&](size_t number, std::span<Leaf> leaves) {
+                                 Leaf* const kelvin = recipe.fire ? &leaves[1] : nullptr;
+                                 grow_leaf(growth, number, leaves[0], kelvin);
+                                 if (motion)
+                                     grow_velocity(growth, *motion, growth.origins[number], kelvin, leaves.last<3>());
+                             }};
+    return {content, options.write, where};
+}
 
 // Frames that are being written while the next one grows. Few, so that memory stays bounded.
 class Writers {
@@ -130,7 +177,7 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
     check_output(first);
     sweep_temporaries(first.has_parent_path() ? first.parent_path() : ".");
 
-    const std::string hash = settings_hash(recipe, options.write);
+    const std::string hash = settings_hash(recipe, options);
     Writers writers(report, progress);
     for (const int frame : frames) {
         if (options.cancel && *options.cancel) break;
@@ -140,14 +187,9 @@ BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::
             continue;
         }
         const double seconds = frame / recipe.frame_rate;
-        const Growth growth = start_growth(recipe, seconds);
-        const VdbContent content{.name = recipe.name,
-                                 .index_to_world = growth.index_to_world,
-                                 .metadata = frame_metadata(recipe, hash, frame, seconds),
-                                 .tiles = {},
-                                 .origins = growth.origins,
-                                 .fill = [&](size_t number, Leaf& leaf) { grow_leaf(growth, number, leaf); }};
-        writers.start(file, frame, VdbImage(content, options.write, file.string()));
+        writers.start(
+            file, frame,
+            frame_image(recipe, seconds, frame_metadata(recipe, hash, frame, seconds), options, file.string()));
     }
     writers.finish();
     report.cancelled = report.written + report.kept < static_cast<int>(frames.size());

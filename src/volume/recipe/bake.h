@@ -11,7 +11,8 @@
 namespace tyndall {
 struct BakeOptions {
     VdbWriteOptions write;
-    bool resume = false; // keep files whose stored settings hash matches and whose voxels read back
+    bool velocity = false; // a grid of recipe_velocity() beside the others
+    bool resume = false;   // keep files whose stored settings hash matches and whose voxels read back
     const std::atomic<bool>* cancel = nullptr; // set from outside: no further frame is begun
 };
 

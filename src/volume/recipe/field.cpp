@@ -4,7 +4,7 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t swirl_salt = 0x517cc1b7u, second_layer_salt = 0x2545f491u;
+constexpr uint32_t swirl_salt = 0x517cc1b7u, second_layer_salt = 0x2545f491u, fire_salt = 0x9e3779b9u;
 
 // 0 <= phase < 1 of a repeating recipe.
 double loop_phase(const FogRecipe& recipe, double seconds) {
@@ -17,12 +17,12 @@ double turn_at(const FogRecipe& recipe, double seconds, double speed) {
     return wrapped_turn(turns_per_loop(recipe, speed) * loop_phase(recipe, seconds));
 }
 
+// Noise that evolves and is advected by a wind, metres per second.
 // Pure carriage repeats only if the fog repeats in space, every wind · period metres. So two unlike layers are
 // throughput half a period apart, each at the wind's own speed and without weight at the moment it jumps back.
-std::vector<NoiseLayer> layers(const FogRecipe& recipe, double seconds) {
-    const double turn = turn_at(recipe, seconds, recipe.noise.evolve);
-    const dvec3 wind(recipe.wind);
-    if (recipe.wind == vec3(0)) return {{.turn = turn}};
+std::vector<NoiseLayer> layers(const FogRecipe& recipe, double evolve, dvec3 wind, double seconds) {
+    const double turn = turn_at(recipe, seconds, evolve);
+    if (wind == dvec3(0)) return {{.turn = turn}};
     if (recipe.period <= 0) return {{.turn = turn, .displacement = wind * seconds}};
     std::vector<NoiseLayer> result;
     for (const uint32_t salt : {0u, second_layer_salt}) {
@@ -48,6 +48,26 @@ void add_swirl(FogField& field, const FogRecipe& recipe, double seconds) {
     field.swirl_stretch =
         std::abs(field.swirl_gain) * static_cast<float>(frequency) * (noise_bend_peak + noise_twist_peak);
 }
+
+void add_fire(FogField& field, const FogRecipe& recipe, const FireRecipe& fire, double seconds) {
+    FireField& f = field.fire;
+    f.burns = true;
+    f.base = vec3(dvec3(fire.base) - field.origin);
+    f.per_height = 1 / fire.height, f.per_radius = 1 / fire.radius, f.taper = fire.taper;
+    f.edge = fire.edge, f.span = fire.core - fire.edge, f.air = fire.air;
+    f.soot = fire.soot;
+
+    // Lattices are even: noise that is taller than wide is even noise of lower coordinates.
+    const double lower = 1 / double{fire.stretch};
+    FractalNoise noise = fire.noise;
+    noise.seed ^= fire_salt;
+    const dvec3 origin(field.origin.x, field.origin.y * lower, field.origin.z);
+    f.noise = noise_sum(noise, layers(recipe, noise.evolve, dvec3(0, fire.rise * lower, 0), seconds), origin);
+    f.flicker = fire_noise_gain * fire.flicker, f.per_stretch = static_cast<float>(lower);
+
+    f.plume_low = f.base.y + fire.smoke_start * fire.height, f.plume_rate = 2 / fire.height;
+    f.plume_radius = fire.radius, f.plume_spread = fire.smoke_spread;
+}
 }
 
 double turns_per_loop(const FogRecipe& recipe, double speed) {
@@ -60,7 +80,8 @@ FogField fog_field(const FogRecipe& recipe, double seconds) {
     const dvec3 low(recipe.bounds.low), high(recipe.bounds.high);
     field.origin = 0.5 * (low + high);
     field.half_size = vec3(0.5 * (high - low));
-    field.noise = noise_sum(recipe.noise, layers(recipe, seconds), field.origin);
+    field.noise =
+        noise_sum(recipe.noise, layers(recipe, recipe.noise.evolve, dvec3(recipe.wind), seconds), field.origin);
     add_swirl(field, recipe, seconds);
 
     field.threshold = recipe.threshold, field.gain = recipe.gain;
@@ -71,6 +92,7 @@ FogField fog_field(const FogRecipe& recipe, double seconds) {
     field.shape_high_axis = field.half_size - field.shape_center;
     field.height_base = static_cast<float>(recipe.height_base - field.origin.y);
     field.height_rate = recipe.height_falloff > 0 ? 1 / recipe.height_falloff : 0;
+    if (recipe.fire) add_fire(field, recipe, *recipe.fire, seconds);
     return field;
 }
 }

@@ -8,6 +8,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include <array>
+#include <cassert>
 #include <string>
 
 namespace tyndall {
@@ -106,16 +107,20 @@ Growth start_growth(const FogRecipe& recipe, double seconds) {
     return growth;
 }
 
-int grow_leaf(const Growth& growth, size_t number, Leaf& leaf) {
-    leaf.origin = growth.origins[number];
-    return fill_leaf(growth.field, &growth.at[0][leaf.origin.x], &growth.at[1][leaf.origin.y],
-                     &growth.at[2][leaf.origin.z], leaf.values);
+int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin) {
+    assert(growth.field.fire.burns == (kelvin != nullptr));
+    const ivec3 origin = growth.origins[number];
+    const float *x = &growth.at[0][origin.x], *y = &growth.at[1][origin.y], *z = &growth.at[2][origin.z];
+    density.origin = origin;
+    if (!kelvin) return fill_leaf(growth.field, x, y, z, density.values);
+    kelvin->origin = origin;
+    return fill_leaf(growth.field, x, y, z, density.values, kelvin->values);
 }
 
-SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
-    const Growth growth = start_growth(recipe, seconds);
+namespace {
+// Every leaf that `grow_one` does not leave empty; it returns how many voxels needed all octaves.
+template<class GrowOne> SparseVolume grown(const Growth& growth, const GrowOne& grow_one, GrowReport* report) {
     SparseVolume volume;
-    volume.name = recipe.name;
     volume.index_to_world = growth.index_to_world;
 
     // Filled in place, then closed up over the leaves that turned out empty.
@@ -127,7 +132,7 @@ SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
     parallel_ranges(static_cast<int64_t>(count), 8, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i) {
             Leaf& leaf = volume.leaves[i];
-            finished[i] = grow_leaf(growth, static_cast<size_t>(i), leaf);
+            finished[i] = grow_one(static_cast<size_t>(i), leaf);
             const VoxelMask mask = voxels_above(leaf.values, 0);
             voxels[i] = static_cast<int>(count_voxels(mask));
             if (voxels[i] == 0) continue;
@@ -154,6 +159,33 @@ SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
     if (kept > 0) volume.active_low = all.low, volume.active_high = all.high;
     work.kept = static_cast<int64_t>(kept);
     if (report) *report = work;
+    return volume;
+}
+}
+
+SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
+    const Growth growth = start_growth(recipe, seconds);
+    const auto fog = [&](size_t number, Leaf& leaf) { return grow_leaf(growth, number, leaf, nullptr); };
+    const auto smoke = [&](size_t number, Leaf& leaf) {
+        Leaf kelvin;
+        return grow_leaf(growth, number, leaf, &kelvin);
+    };
+    SparseVolume volume = recipe.fire ? grown(growth, smoke, report) : grown(growth, fog, report);
+    volume.name = recipe.name;
+    return volume;
+}
+
+SparseVolume grow_temperature(const FogRecipe& recipe, double seconds) {
+    SparseVolume volume;
+    if (recipe.fire) {
+        const Growth growth = start_growth(recipe, seconds);
+        const auto kelvin = [&](size_t number, Leaf& leaf) {
+            Leaf density;
+            return grow_leaf(growth, number, density, &leaf);
+        };
+        volume = grown(growth, kelvin, nullptr);
+    }
+    volume.name = temperature_name;
     return volume;
 }
 }

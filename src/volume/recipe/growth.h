@@ -19,6 +19,7 @@ struct Growth {
 // Throws Error: refused (no voxel fits), out_of_memory (over 2^33 voxels in the bounds).
 Growth start_growth(const FogRecipe& recipe, double seconds);
 
-// Computes the leaf of a number, every value of it. Returns how many of its voxels needed all octaves.
-int grow_leaf(const Growth& growth, size_t number, Leaf& leaf);
+// Computes the leaf of a number, every value of it, and with a fire those of its temperature, which null stands for
+// where there is none. Returns how many of its voxels needed all octaves.
+int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin);
 }

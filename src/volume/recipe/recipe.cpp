@@ -31,8 +31,7 @@ const Json& part(const Json& object, std::string_view key) {
     return found ? *found : none;
 }
 
-FractalNoise read_noise(const Json& json) {
-    FractalNoise noise;
+FractalNoise read_noise(const Json& json, FractalNoise noise) {
     noise.octaves = static_cast<int>(json.number_or("octaves", noise.octaves));
     noise.scale = number(json, "scale", noise.scale);
     noise.lacunarity = number(json, "lacunarity", noise.lacunarity);
@@ -70,6 +69,27 @@ void read_motion(const Json& document, FogRecipe& recipe) {
     recipe.frame_rate = document.number_or("frame_rate", recipe.frame_rate);
 }
 
+FireRecipe read_fire(const Json& json) {
+    FireRecipe fire;
+    fire.base = triple(json, "base", fire.base);
+    fire.height = number(json, "height", fire.height);
+    fire.radius = number(json, "radius", fire.radius);
+    fire.taper = number(json, "taper", fire.taper);
+    fire.core = number(json, "core", fire.core);
+    fire.edge = number(json, "edge", std::min(fire.edge, fire.core));
+    fire.air = number(json, "air", std::min(fire.air, fire.edge));
+    fire.flicker = number(json, "flicker", fire.flicker);
+    fire.rise = number(json, "rise", fire.rise);
+    fire.stretch = number(json, "stretch", fire.stretch);
+    fire.noise.scale = 0.8f * fire.radius;
+    fire.noise = read_noise(part(json, "noise"), fire.noise);
+    fire.soot = number(json, "soot", fire.soot);
+    const Json& smoke = part(json, "smoke");
+    fire.smoke_start = number(smoke, "start", fire.smoke_start);
+    fire.smoke_spread = number(smoke, "spread", fire.smoke_spread);
+    return fire;
+}
+
 void read_optics(const Json& optics, FogRecipe& recipe) {
     recipe.extinction = number(optics, "extinction", recipe.extinction);
     recipe.albedo = triple(optics, "albedo", recipe.albedo);
@@ -84,6 +104,11 @@ void check_bounds(const FogRecipe& recipe, const std::string& file) {
     const vec3 size = recipe.bounds.size();
     if (!(recipe.voxel_size <= std::min({size.x, size.y, size.z})))
         refuse(file + ": /voxel_size", "larger than the bounds");
+    if (!recipe.fire) return;
+    if (recipe.fire->edge > recipe.fire->core) refuse(file + ": /fire/edge", "has to be no hotter than \"core\"");
+    if (recipe.fire->air > recipe.fire->edge) refuse(file + ": /fire/air", "has to be no hotter than \"edge\"");
+    if (recipe.name == temperature_name)
+        refuse(file + ": /name", "is what the grid of the fire's temperature is called");
 }
 }
 
@@ -97,10 +122,11 @@ FogRecipe read_recipe(const std::filesystem::path& file) {
     const Json& bounds = part(document, "bounds");
     recipe.bounds = {triple(bounds, "low", recipe.bounds.low), triple(bounds, "high", recipe.bounds.high)};
     recipe.voxel_size = document.number_or("voxel_size", recipe.voxel_size);
-    recipe.noise = read_noise(part(document, "noise"));
+    recipe.noise = read_noise(part(document, "noise"), recipe.noise);
     read_density(document, recipe);
     read_motion(document, recipe);
     read_optics(part(document, "optics"), recipe);
+    if (const Json* fire = document.find("fire")) recipe.fire = read_fire(*fire);
     check_bounds(recipe, file.string());
     return recipe;
 }
@@ -112,9 +138,11 @@ std::string recipe_hash(const FogRecipe& recipe) {
     };
     const auto add_vector = [&](vec3 v) { add({v.x, v.y, v.z}); };
     add_vector(recipe.bounds.low), add_vector(recipe.bounds.high);
-    const FractalNoise& noise = recipe.noise;
-    add({recipe.voxel_size, static_cast<double>(noise.octaves), noise.scale, noise.lacunarity, noise.gain,
-         static_cast<double>(noise.seed), noise.evolve, noise.billow ? 1.0 : 0.0});
+    const auto add_noise = [&](const FractalNoise& noise) {
+        add({static_cast<double>(noise.octaves), noise.scale, noise.lacunarity, noise.gain,
+             static_cast<double>(noise.seed), noise.evolve, noise.billow ? 1.0 : 0.0});
+    };
+    add({recipe.voxel_size}), add_noise(recipe.noise);
     add({recipe.threshold, recipe.gain, recipe.soft_edge});
     add_vector(recipe.border);
     add({static_cast<double>(recipe.shape), recipe.shape_strength, recipe.shape_level, recipe.height_base,
@@ -123,6 +151,13 @@ std::string recipe_hash(const FogRecipe& recipe) {
     add({recipe.swirl, recipe.swirl_scale, recipe.swirl_speed, recipe.period, recipe.extinction});
     add_vector(recipe.albedo);
     add({recipe.g, recipe.frame_rate});
+    if (const auto& fire = recipe.fire) {
+        text += " fire";
+        add_vector(fire->base);
+        add({fire->height, fire->radius, fire->taper, fire->core, fire->edge, fire->air, fire->flicker, fire->rise,
+             fire->stretch, fire->soot, fire->smoke_start, fire->smoke_spread});
+        add_noise(fire->noise);
+    }
     return content_hash(text);
 }
 }

@@ -1,8 +1,9 @@
-// A fog recipe: noise, remapped to density, shaped by height, throughput by wind and stirred by swirl; a pure function
-// of point and time. Baked to VDB files, or grown in memory when a scene uses it directly.
+// A fog recipe: noise, remapped to density, shaped by height, throughput by wind and stirred by swirl; on request a
+// fire below. A pure function of point and time, baked to VDB files or grown in memory when a scene uses it directly.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
 #include "volume/noise/noise.h"
+#include "volume/recipe/fire.h"
 
 #include <filesystem>
 #include <functional>
@@ -30,10 +31,11 @@ struct FogRecipe {
     float shape_level = 0.5f; // 0..1; low = flat underneath
     // · exp(-(y - base) / falloff) above base, 1 below; falloff 0 = off
     float height_base = 0, height_falloff = 0;
-    vec3 wind{0};          // metres per second
-    float swirl = 0;       // metres (root mean square) that curl noise displaces the coordinates by
-    float swirl_scale = 1; // metres per cell of the curl noise
-    float swirl_speed = 0; // turns per second
+    vec3 wind{0};                   // metres per second
+    float swirl = 0;                // metres (root mean square) that curl noise displaces the coordinates by
+    float swirl_scale = 1;          // metres per cell of the curl noise
+    float swirl_speed = 0;          // turns per second
+    std::optional<FireRecipe> fire; // then the rest is its smoke
     // seconds; > 0 makes every motion repeat exactly after it: turns are rounded to whole ones per loop (at least one);
     // wind keeps its speed and carries two layers, each of which fades out before it starts over
     double period = 0;
@@ -47,12 +49,26 @@ struct FogRecipe {
 // Densities below this are 0: half floats lose their digits there.
 inline constexpr float min_density = 1.0f / 16384;
 
+// What grids are called beside that of the density.
+inline constexpr const char *temperature_name = "temperature", *velocity_name = "vel";
+
 // Throws Error (refused, unreadable) naming file and field.
 FogRecipe read_recipe(const std::filesystem::path& file);
 
 // Density at points at a moment (structure of arrays): the definition the bake samples at voxel centres.
 void recipe_density(const FogRecipe& recipe, double seconds, std::span<const float> x, std::span<const float> y,
                     std::span<const float> z, std::span<float> density);
+
+// Kelvin, the same way: of the fire's flame `edge` to `core`, of its smoke elsewhere `air`, 0 where there is neither.
+// All 0 without a fire.
+void recipe_temperature(const FogRecipe& recipe, double seconds, std::span<const float> x, std::span<const float> y,
+                        std::span<const float> z, std::span<float> kelvin);
+
+// Metres per second at which what is there is advected: in flames (where `kelvin` has a fire's edge or more) the fire's
+// rise, elsewhere the wind, both as the swirl bends them; with D its displacement, (1 + ∇D)⁻¹ (advection - ∂D/∂t), or
+// without the inverse where the swirl folds space. Not what `evolve` does, which changes places and moves nothing.
+void recipe_velocity(const FogRecipe& recipe, double seconds, std::span<const vec3> points,
+                     std::span<const float> kelvin, std::span<vec3> velocity);
 
 // How much work the bound of the noise spared.
 struct GrowReport {
@@ -68,6 +84,9 @@ struct GrowReport {
 // bounds.low + (i + ½) · voxel_size. Throws Error: refused (no voxel fits), out_of_memory (over 2^33 voxels in the
 // bounds).
 SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report = nullptr);
+
+// The same of the temperature, kelvin.
+SparseVolume grow_temperature(const FogRecipe& recipe, double seconds);
 
 // 32 hex digits over every field that changes the result, the voxel size and the program's format version.
 std::string recipe_hash(const FogRecipe& recipe);

@@ -117,37 +117,41 @@ Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
     return leaves;
 }
 
-// Puts a leaf into the tree with its mask but without values, which are encoded apart.
-void add_leaf(openvdb::FloatTree& tree, ivec3 origin, const VoxelMask& voxels) {
-    using Node = openvdb::FloatTree::LeafNodeType;
-    auto node = std::make_unique<Node>(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), 0.f);
-    Node::NodeMaskType mask;
-    for (openvdb::Index w = 0; w < 8; ++w) mask.getWord<openvdb::Index64>(w) = voxels[w];
-    node->setValueMask(mask);
-    tree.addLeaf(node.release());
+// Puts leaves into the tree with their masks but without values, which are encoded apart.
+template<class Tree> void add_leaves(Tree& tree, std::span<const ivec3> origins, std::span<const VoxelMask> masks) {
+    using Node = typename Tree::LeafNodeType;
+    size_t added = 0;
+    for (size_t n = 0; n < origins.size(); ++n) {
+        if (count_voxels(masks[n]) == 0) continue;
+        const openvdb::Coord origin(origins[n].x, origins[n].y, origins[n].z);
+        auto node = std::make_unique<Node>(openvdb::PartialCreate(), origin, typename Tree::ValueType(0));
+        typename Node::NodeMaskType mask;
+        for (openvdb::Index w = 0; w < 8; ++w) mask.template getWord<openvdb::Index64>(w) = masks[n][w];
+        node->setValueMask(mask);
+        tree.addLeaf(node.release());
+        ++added;
+    }
+    if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
 }
 
-// Tiles and leaves as a tree without the values of leaves; those, in its order.
-EncodedLeaves encode_tree(openvdb::FloatTree& tree, const VdbContent& content, bool half, uint32_t packing) {
-    fill_tiles(tree, content.tiles, half);
-    const Leaves more = leaves_of_tiles(tree);
+// The leaves of a file in the order of its trees, those included that tiles cover in part.
+struct OrderedLeaves {
+    std::vector<ivec3> origins;
+    EncodedLeaves encoded;
+};
+
+OrderedLeaves encode_in_order(const VdbContent& content, const Leaves& more, bool half, uint32_t packing) {
     const size_t given = content.origins.size();
     std::vector<ivec3> origins = content.origins;
     for (const Leaf& leaf : more) origins.push_back(leaf.origin);
     const std::vector<uint32_t> order = in_tree_order(origins);
-    const auto fill = [&](size_t n, Leaf& leaf) {
+    const auto fill = [&](size_t n, std::span<Leaf> leaves) {
         const size_t number = order[n];
-        number < given ? content.fill(number, leaf) : void(leaf = more[number - given]);
+        number < given ? content.fill(number, leaves) : void(leaves[0] = more[number - given]);
     };
-    EncodedLeaves leaves = encode_leaves(order.size(), fill, half, packing);
-    size_t added = 0;
-    for (size_t n = 0; n < order.size(); ++n) {
-        if (count_voxels(leaves.masks[n]) == 0) continue;
-        add_leaf(tree, origins[order[n]], leaves.masks[n]);
-        ++added;
-    }
-    if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
-    return leaves;
+    OrderedLeaves result{{}, encode_leaves(order.size(), content.grids, fill, half, packing)};
+    for (const uint32_t number : order) result.origins.push_back(origins[number]);
+    return result;
 }
 
 // Scale and translation as such, since some readers know no other map; anything else as a matrix.
@@ -168,25 +172,28 @@ openvdb::math::Transform make_transform(const dmat4& matrix) {
 
 // As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so. What follows the
 // topology are the values; the leaves hold none, but count as if they did in the memory that the grid says it takes.
-void write_grid(std::ostream& stream, openvdb::FloatGrid& grid, uint32_t compression,
+// `before`: bytes of the file that are not in the stream.
+void write_grid(std::ostream& stream, uint64_t before, openvdb::GridBase& grid, uint32_t compression,
                 std::span<const std::string_view> values) {
     using namespace openvdb;
     io::GridDescriptor descriptor(grid.getName(), grid.type(), grid.saveFloatAsHalf());
     descriptor.writeHeader(stream);
     const std::streampos offsets = stream.tellp();
     descriptor.writeStreamPos(stream);
+    const auto position = [&] { return stream.tellp() + static_cast<std::streamoff>(before); };
 
-    descriptor.setGridPos(stream.tellp());
+    descriptor.setGridPos(position());
     io::setDataCompression(stream, compression);
     write_value(stream, compression);
     grid.addStatsMetadata();
-    const auto memory = static_cast<int64_t>(grid.memUsage() + grid.tree().leafCount() * 512 * sizeof(float));
+    const size_t voxel_bytes = (grid.isType<openvdb::Vec3SGrid>() ? 3 : 1) * sizeof(float);
+    const auto memory = static_cast<int64_t>(grid.memUsage() + grid.baseTree().leafCount() * 512 * voxel_bytes);
     grid.insertMeta(GridBase::META_FILE_MEM_BYTES, Int64Metadata(memory));
     grid.insertMeta(GridBase::META_FILE_COMPRESSION, StringMetadata(io::compressionToString(compression)));
     grid.writeMeta(stream);
     grid.writeTransform(stream);
     grid.writeTopology(stream);
-    std::streamoff end = stream.tellp();
+    std::streamoff end = position();
     descriptor.setBlockPos(end);
     for (const std::string_view piece : values) end += static_cast<std::streamoff>(piece.size());
     descriptor.setEndPos(end);
@@ -212,8 +219,11 @@ DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const 
 }
 
 std::vector<std::string_view> EncodedFog::pieces() const {
-    std::vector<std::string_view> result{head};
-    result.insert(result.end(), leaves.pieces.begin(), leaves.pieces.end());
+    std::vector<std::string_view> result;
+    for (size_t g = 0; g < heads.size(); ++g) {
+        result.push_back(heads[g]);
+        result.insert(result.end(), leaves.grids[g].pieces.begin(), leaves.grids[g].pieces.end());
+    }
     return result;
 }
 
@@ -223,31 +233,61 @@ uint64_t EncodedFog::voxels() const {
     return sum;
 }
 
+namespace {
+openvdb::GridBase::Ptr empty_grid(const VdbGridContent& content, const dmat4& index_to_world,
+                                  const VdbWriteOptions& options) {
+    using namespace openvdb;
+    const GridBase::Ptr grid = GridBase::createGrid(content.vector ? Vec3SGrid::gridType() : FloatGrid::gridType());
+    grid->setName(content.name);
+    if (content.vector)
+        grid->setVectorType(VEC_CONTRAVARIANT_RELATIVE); // a velocity
+    else
+        grid->setGridClass(GRID_FOG_VOLUME);
+    grid->setCreator(options.creator);
+    grid->setSaveFloatAsHalf(options.half);
+    grid->setTransform(std::make_shared<math::Transform>(make_transform(index_to_world)));
+    return grid;
+}
+
+// What stands before the values of one grid, which follow `before` bytes of others.
+std::string encode_head(const VdbContent& content, size_t number, uint64_t before, openvdb::GridBase& grid,
+                        const EncodedFog& fog, const VdbWriteOptions& options, uint32_t packing) {
+    std::ostringstream stream(std::ios::binary);
+    stream.exceptions(std::ios::failbit | std::ios::badbit);
+    if (number == 0) write_head(stream, content.metadata, options.creator, content.grids.size());
+    write_grid(stream, before, grid, openvdb::io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.grids[number].pieces);
+    return std::move(stream).str();
+}
+}
+
 EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where) {
     return guarded(ExitCode::internal, where, [&] {
         using namespace openvdb;
         initialize();
-        const GridBase::Ptr base = GridBase::createGrid(FloatGrid::gridType());
-        auto& grid = static_cast<FloatGrid&>(*base);
-        grid.setName(content.name);
-        grid.setGridClass(GRID_FOG_VOLUME);
-        grid.setCreator(options.creator);
-        grid.setSaveFloatAsHalf(options.half);
-        grid.setTransform(std::make_shared<math::Transform>(make_transform(content.index_to_world)));
+        std::vector<GridBase::Ptr> grids;
+        for (const VdbGridContent& grid : content.grids)
+            grids.push_back(empty_grid(grid, content.index_to_world, options));
+        const auto numbers = [&](size_t g) -> FloatTree& { return static_cast<FloatGrid&>(*grids[g]).tree(); };
+        fill_tiles(numbers(0), content.tiles, options.half);
 
         // The values first: how many bytes they take stands before them.
         const uint32_t packing = options.blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP;
-        EncodedFog fog;
-        fog.leaves = encode_tree(grid.tree(), content, options.half, packing);
-
-        std::ostringstream stream(std::ios::binary);
-        stream.exceptions(std::ios::failbit | std::ios::badbit);
-        write_head(stream, content.metadata, options.creator);
-        write_grid(stream, grid, io::COMPRESS_ACTIVE_MASK | packing, fog.leaves.pieces);
-        fog.head = std::move(stream).str();
+        OrderedLeaves leaves = encode_in_order(content, leaves_of_tiles(numbers(0)), options.half, packing);
+        EncodedFog fog{{}, std::move(leaves.encoded)};
+        uint64_t before = 0;
+        for (size_t g = 0; g < grids.size(); ++g) {
+            if (content.grids[g].vector)
+                add_leaves(static_cast<Vec3SGrid&>(*grids[g]).tree(), leaves.origins, fog.leaves.masks);
+            else
+                add_leaves(numbers(g), leaves.origins, fog.leaves.masks);
+            fog.heads.push_back(encode_head(content, g, before, *grids[g], fog, options, packing));
+            before += fog.heads.back().size();
+            for (const std::string_view piece : fog.leaves.grids[g].pieces) before += piece.size();
+            grids[g].reset();
+        }
 
         // The same content gets the same identity.
-        set_identity(fog.head, content_hash(fog.pieces()));
+        set_identity(fog.heads[0], content_hash(fog.pieces()));
         return fog;
     });
 }

@@ -24,13 +24,13 @@ struct DecodedTree {
 DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
                         uint32_t file_version, const std::string& where, int component = 0);
 
-// The bytes of a file with one fog grid, in order.
+// The bytes of a file, in order: for each grid what stands before the values of its leaves, and those.
 struct EncodedFog {
-    std::string head; // everything before the values of the leaves
+    std::vector<std::string> heads; // the first begins with that of the file
     EncodedLeaves leaves;
 
     std::vector<std::string_view> pieces() const;
-    uint64_t voxels() const; // in leaves
+    uint64_t voxels() const; // active, in leaves of one grid
 };
 
 // Throws Error (out_of_memory).

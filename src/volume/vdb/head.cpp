@@ -53,10 +53,10 @@ void write_header(std::ostream& stream) {
 }
 }
 
-void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator) {
+void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator, size_t grids) {
     write_header(stream);
     metadata_map(metadata, creator).writeMeta(stream);
-    write_value<int32_t>(stream, 1);
+    write_value(stream, static_cast<int32_t>(grids));
 }
 
 void set_identity(std::string& head, std::string digits) {

@@ -6,8 +6,8 @@
 #include <string>
 
 namespace tyndall {
-// Up to and including the number of grids, which is one. The identity is still nought.
-void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator);
+// Up to and including the number of grids. The identity is still nought.
+void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator, size_t grids);
 
 // Puts 32 hex digits in the place of the file's UUID.
 void set_identity(std::string& head, std::string digits);

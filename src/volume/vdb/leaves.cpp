@@ -11,16 +11,22 @@
 
 #include <algorithm>
 #include <cassert>
+#include <deque>
 #include <limits>
 #include <stdexcept>
+#include <type_traits>
 
 namespace tyndall {
 namespace {
 constexpr size_t leaves_at_once = 256; // a chunk of work; the pieces of a file do not show it
 constexpr float largest_float = std::numeric_limits<float>::max();
 
+size_t components(const VdbGridContent& grid) { return grid.vector ? 3 : 1; }
+
 // Mask, kind of inactive values, length of the chunk, values, and what blosc may add to those it cannot pack.
-constexpr size_t max_bytes(bool half) { return sizeof(VoxelMask) + 1 + 8 + 512 * (half ? 2 : 4) + 16; }
+size_t max_bytes(const VdbGridContent& grid, bool half) {
+    return sizeof(VoxelMask) + 1 + 8 + 512 * components(grid) * (half ? 2 : 4) + 16;
+}
 
 // The values of the voxels in a mask, closed up. Returns their number.
 size_t pack(const Leaf& leaf, const VoxelMask& mask, float* to) {
@@ -35,13 +41,24 @@ size_t pack(const Leaf& leaf, const VoxelMask& mask, float* to) {
     return static_cast<size_t>(to - begin);
 }
 
-void encode(const Leaf& leaf, bool half, uint32_t compression, VoxelMask& mask, std::ostream& stream) {
-    mask = voxels_above(leaf.values, half ? smallest_half / 2 : 0); // half of the smallest is rounded to 0
+// Where one of the numbers is not 0 as stored.
+VoxelMask active_voxels(std::span<const Leaf> leaves, std::span<const VdbGridContent> grids, bool half) {
+    VoxelMask mask{};
+    size_t at = 0;
+    for (const VdbGridContent& grid : grids) {
+        if (!grid.vector) {
+            // Half of the smallest half is rounded to 0.
+            const VoxelMask some = voxels_above(leaves[at].values, half ? smallest_half / 2 : 0);
+            for (size_t w = 0; w < mask.size(); ++w) mask[w] |= some[w];
+        }
+        at += components(grid);
+    }
+    return mask;
+}
+
+void encode_numbers(const Leaf& leaf, const VoxelMask& mask, bool half, uint32_t compression, std::ostream& stream) {
     std::array<float, 512> values;
     const size_t count = pack(leaf, mask, values.data());
-    if (count == 0) return;
-    stream.write(reinterpret_cast<const char*>(mask.data()), sizeof mask);
-    stream.put(openvdb::io::NO_MASK_OR_INACTIVE_VALS);
     const auto size = static_cast<openvdb::Index>(count);
     if (half) {
         std::array<uint16_t, 512> halves;
@@ -51,6 +68,38 @@ void encode(const Leaf& leaf, bool half, uint32_t compression, VoxelMask& mask, 
         for (size_t v = 0; v < count; ++v) values[v] = std::min(values[v], largest_float);
         openvdb::io::writeData(stream, values.data(), size, compression);
     }
+}
+
+void encode_vectors(std::span<const Leaf, 3> leaves, const VoxelMask& mask, bool half, uint32_t compression,
+                    std::ostream& stream) {
+    std::array<std::array<float, 512>, 3> parts;
+    size_t count = 0;
+    for (size_t c = 0; c < 3; ++c) count = pack(leaves[c], mask, parts[c].data());
+    const auto size = static_cast<openvdb::Index>(count);
+    const auto write = [&]<class Vector>(float most, std::type_identity<Vector>) {
+        using Number = typename Vector::ValueType;
+        std::array<Vector, 512> vectors;
+        for (size_t v = 0; v < count; ++v)
+            for (size_t c = 0; c < 3; ++c)
+                vectors[v][static_cast<int>(c)] = Number(std::clamp(parts[c][v], -most, most));
+        openvdb::io::writeData(stream, vectors.data(), size, compression);
+    };
+    if (half)
+        write(largest_half, std::type_identity<openvdb::Vec3H>());
+    else
+        write(largest_float, std::type_identity<openvdb::Vec3s>());
+}
+
+// The leaf of one grid; nothing where no voxel is active.
+void encode(std::span<const Leaf> leaves, const VoxelMask& mask, bool half, uint32_t compression,
+            std::ostream& stream) {
+    if (count_voxels(mask) == 0) return;
+    stream.write(reinterpret_cast<const char*>(mask.data()), sizeof mask);
+    stream.put(openvdb::io::NO_MASK_OR_INACTIVE_VALS);
+    if (leaves.size() == 1)
+        encode_numbers(leaves[0], mask, half, compression, stream);
+    else
+        encode_vectors(leaves.first<3>(), mask, half, compression, stream);
 }
 
 template<class T> constexpr bool is_three = !std::is_floating_point_v<T>;
@@ -105,26 +154,49 @@ float stored_value(float value, bool half) {
     return half ? float_from_half(half_from_float(value)) : std::min(value, largest_float);
 }
 
-EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression) {
+namespace {
+// Bytes of one grid's piece: they go where its piece is as large as it can become, so that nothing is moved later, and
+// untouched pages cost nothing.
+struct Piece {
+    ByteSink sink;
+    std::ostream stream;
+
+    Piece(char* room, size_t bytes) : sink(room, bytes), stream(&sink) {
+        stream.exceptions(std::ios::failbit | std::ios::badbit);
+    }
+};
+}
+
+EncodedLeaves encode_leaves(size_t count, std::span<const VdbGridContent> grids, const LeafFill& fill, bool half,
+                            uint32_t compression) {
     EncodedLeaves result;
     result.masks.resize(count);
-    result.pieces.resize((count + leaves_at_once - 1) / leaves_at_once);
-
-    // Every piece has a place as large as it can become: nothing is moved later, and untouched pages cost nothing.
-    const size_t room = max_bytes(half);
-    result.memory = std::make_unique_for_overwrite<char[]>(count * room);
-    parallel_for(static_cast<int64_t>(result.pieces.size()), [&](int64_t i) {
+    const size_t pieces = (count + leaves_at_once - 1) / leaves_at_once;
+    size_t width = 0;
+    for (const VdbGridContent& grid : grids) {
+        EncodedValues& values = result.grids.emplace_back();
+        values.pieces.resize(pieces);
+        values.memory = std::make_unique_for_overwrite<char[]>(count * max_bytes(grid, half));
+        width += components(grid);
+    }
+    parallel_for(static_cast<int64_t>(pieces), [&](int64_t i) {
         const size_t first = static_cast<size_t>(i) * leaves_at_once, last = std::min(first + leaves_at_once, count);
-        char* const to = result.memory.get() + first * room;
-        ByteSink sink(to, (last - first) * room);
-        std::ostream stream(&sink);
-        stream.exceptions(std::ios::failbit | std::ios::badbit);
-        Leaf leaf;
-        for (size_t n = first; n < last; ++n) {
-            fill(n, leaf);
-            encode(leaf, half, compression, result.masks[n], stream);
+        std::deque<Piece> open;
+        for (size_t g = 0; g < grids.size(); ++g) {
+            const size_t room = max_bytes(grids[g], half);
+            open.emplace_back(result.grids[g].memory.get() + first * room, (last - first) * room);
         }
-        result.pieces[static_cast<size_t>(i)] = {to, sink.size()};
+        std::vector<Leaf> leaves(width);
+        for (size_t n = first; n < last; ++n) {
+            fill(n, leaves);
+            const VoxelMask mask = result.masks[n] = active_voxels(leaves, grids, half);
+            size_t at = 0;
+            for (size_t g = 0; g < grids.size(); at += components(grids[g]), ++g)
+                encode(std::span(leaves).subspan(at, components(grids[g])), mask, half, compression, open[g].stream);
+        }
+        for (size_t g = 0; g < grids.size(); ++g)
+            result.grids[g].pieces[static_cast<size_t>(i)] = {
+                result.grids[g].memory.get() + first * max_bytes(grids[g], half), open[g].sink.size()};
     });
     return result;
 }

@@ -14,15 +14,21 @@ namespace tyndall {
 // The value a reader will see: what half cannot hold is clamped, what it rounds to nothing is nothing.
 float stored_value(float value, bool half);
 
-struct EncodedLeaves {
-    std::vector<VoxelMask> masks;         // voxels that are not 0 as stored, of every leaf asked for
-    std::vector<std::string_view> pieces; // bytes of the leaves that hold any, in order; they live in `memory`
+// The values of one grid.
+struct EncodedValues {
+    std::vector<std::string_view> pieces; // bytes of the leaves with active voxels, in order; they live in `memory`
     std::unique_ptr<char[]> memory;
 };
 
-// Encodes `count` leaves, each filled when its turn comes, on several threads. `compression` is one of vdb_zip and
-// vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
-EncodedLeaves encode_leaves(size_t count, const LeafFill& fill, bool half, uint32_t compression);
+struct EncodedLeaves {
+    std::vector<VoxelMask> masks; // active voxels, of every leaf asked for
+    std::vector<EncodedValues> grids;
+};
+
+// Encodes `count` leaves of each grid, filled when their turn comes, on several threads. `compression` is one of
+// vdb_zip and vdb_blosc; inactive voxels are 0. The same bytes at any thread count.
+EncodedLeaves encode_leaves(size_t count, std::span<const VdbGridContent> grids, const LeafFill& fill, bool half,
+                            uint32_t compression);
 
 // How a file holds the leaves of a tree of floats, doubles or three of them, and which of the three is wanted.
 enum class LeafValue { single, wide, three_single, three_wide };

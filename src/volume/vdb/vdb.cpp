@@ -198,10 +198,10 @@ void VdbImage::write(const std::filesystem::path& file) const { write_file_atomi
 uint64_t VdbImage::voxels() const { return fog_->voxels(); }
 
 void write_vdb(const std::filesystem::path& path, const SparseVolume& volume, const VdbWriteOptions& options) {
-    VdbContent content{volume.name, volume.index_to_world, volume.metadata, volume.tiles, {}, {}};
+    VdbContent content{{{volume.name}}, volume.index_to_world, volume.metadata, volume.tiles, {}, {}};
     content.origins.reserve(volume.leaves.size());
     for (const Leaf& leaf : volume.leaves) content.origins.push_back(leaf.origin);
-    content.fill = [&](size_t number, Leaf& leaf) { leaf = volume.leaves[number]; };
+    content.fill = [&](size_t number, std::span<Leaf> leaves) { leaves[0] = volume.leaves[number]; };
     VdbImage(content, options, path.string()).write(path);
 }
 

@@ -23,16 +23,23 @@ struct VdbWriteOptions {
     std::string creator = "tyndall " TYNDALL_VERSION;
 };
 
-using LeafFill = std::function<void(size_t number, Leaf& leaf)>;
+// The leaves of one place: of numbers one, of vectors three, grid after grid.
+using LeafFill = std::function<void(size_t number, std::span<Leaf> leaves)>;
 
-// A fog grid whose leaves are computed while they are written, so that no more than a few exist at a time.
-struct VdbContent {
+struct VdbGridContent {
     std::string name = "density";
+    bool vector = false; // a velocity in metres per second, else a number that is never negative
+};
+
+// Grids on the same voxels whose leaves are computed while they are written, so that no more than a few exist at a
+// time. Active are the voxels where any of the numbers is not 0.
+struct VdbContent {
+    std::vector<VdbGridContent> grids; // the first holds numbers
     dmat4 index_to_world{1};
     std::vector<std::pair<std::string, std::string>> metadata;
-    std::vector<Tile> tiles;    // disjoint from the leaves and each other
+    std::vector<Tile> tiles;    // of a lone grid; disjoint from the leaves and each other
     std::vector<ivec3> origins; // of the leaves, multiples of 8, no two alike
-    LeafFill fill;              // every value of a leaf; called once for each, on several threads
+    LeafFill fill;              // every value of the leaves; called once for each place, on several threads
 };
 
 // Writes one fog grid (class fog volume, background 0, zero voxels inactive) atomically. Same input, same bytes.
@@ -47,7 +54,7 @@ public:
     ~VdbImage();
 
     void write(const std::filesystem::path& file) const;
-    uint64_t voxels() const; // that are not 0, in leaves
+    uint64_t voxels() const; // that are active, in leaves of one grid
 
 private:
     std::unique_ptr<struct EncodedFog> fog_;

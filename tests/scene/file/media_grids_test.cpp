@@ -10,8 +10,10 @@
 
 namespace tyndall {
 namespace {
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 // A grid of one voxel of a value.
 SparseVolume voxel(const std::string& name, float value) {
@@ -27,6 +29,28 @@ LoadAnswer load_medium(const Scratch& folder, const std::string& members) {
     return load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "vdb", "file": "fire.vdb", )"
                                          R"("extinction": 1, )" +
                                              members + "}]}"));
+}
+
+TEST(MediaGrids, ARecipeHasItsTemperatureFromItsFire) {
+    const Scratch folder;
+    const std::string bounds = R"({"bounds": {"low": [-1, 0, -1], "high": [1, 2, 1]}, "voxel_size": 0.1)";
+    folder.put("fog.json", bounds + "}");
+    folder.put("fire.json", bounds + R"(, "fire": {"height": 1}})");
+    const auto load_recipe = [&](const std::string& members) {
+        return load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "noise", )" + members + "}]}"));
+    };
+    const std::string blackbody = R"(, "blackbody": {"convention": "kelvin", "emission_scale": 2})";
+    const LoadAnswer fire = load_recipe(R"("recipe": "fire.json")" + blackbody);
+    ASSERT_TRUE(fire.loaded) << fire.message;
+    EXPECT_THAT(fire.scene.warnings, Not(Contains(HasSubstr("gives no light"))));
+    EXPECT_EQ(fire.scene.media[0].blackbody->scale.at(0), 2);
+    EXPECT_TRUE(emits_light(fire.scene.media[0]));
+    const LoadAnswer fog = load_recipe(R"("recipe": "fog.json")" + blackbody);
+    EXPECT_FALSE(fog.loaded);
+    EXPECT_THAT(fog.message, HasSubstr("/media/0/blackbody"));
+    EXPECT_THAT(fog.message, HasSubstr("\"fire\""));
+    const LoadAnswer dark = load_recipe(R"("recipe": "fire.json")");
+    EXPECT_THAT(dark.scene.warnings, Contains(HasSubstr("gives no light")));
 }
 
 TEST(MediaGrids, AreReadAsTheyAreWritten) {

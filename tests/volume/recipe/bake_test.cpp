@@ -60,6 +60,82 @@ TEST(Bake, WritesWhatTheRecipeSays) {
     EXPECT_EQ(report.voxels, voxels);
 }
 
+FogRecipe small_fire() {
+    FogRecipe recipe = small_fog();
+    recipe.threshold = 0.4f;
+    recipe.fire = FireRecipe{.base = vec3(0, -0.5f, 0), .height = 1.2f, .radius = 0.5f};
+    return recipe;
+}
+
+TEST(Bake, FireHasItsGridsOnTheSameVoxels) {
+    const Scratch scratch;
+    const FogRecipe recipe = small_fire();
+    const std::string file = scratch.path() / "fire.vdb";
+    for (const bool half : {true, false})
+        for (const bool blosc : {true, false}) {
+            BakeOptions options;
+            options.velocity = true, options.write.half = half, options.write.blosc = blosc;
+            const BakeReport report = baked(recipe, file, {9}, options);
+            const VdbInfo info = vdb_info(file);
+            ASSERT_EQ(info.grids.size(), 3u);
+            const std::array<GridRole, 3> roles{GridRole::density, GridRole::temperature, GridRole::velocity};
+            for (size_t g = 0; g < 3; ++g) {
+                EXPECT_EQ(info.grids[g].role, roles[g]) << g;
+                EXPECT_EQ(info.grids[g].active_voxels, report.voxels) << g;
+                EXPECT_EQ(info.grids[g].leaves, info.grids[0].leaves) << g;
+                EXPECT_EQ(info.grids[g].active_low, info.grids[0].active_low) << g;
+                EXPECT_EQ(info.grids[g].active_high, info.grids[0].active_high) << g;
+            }
+            EXPECT_EQ(info.grids[1].grid_class, "fog volume");
+            EXPECT_EQ(info.grids[2].type, "vec3s");
+            EXPECT_TRUE(info.grids[0].is_fog);
+
+            // Values as grown, in the precision asked for; velocities, which may be negative, are read above 64.
+            const double rounding = half ? 1.0 / 2048 : 1e-6, seconds = 9 / 24.0;
+            const SparseVolume density = read_vdb(file), kelvin = read_vdb(file, "temperature");
+            const SparseVolume grown = grow(recipe, seconds), hot = grow_temperature(recipe, seconds);
+            const std::string name = "vel";
+            ValueMap map;
+            map.offset = 64;
+            const ColorVolume velocity = read_color_vdb(file, {&name, 1}, map, infinity, nullptr);
+            size_t compared = 0;
+            for (const Leaf& leaf : hot.leaves)
+                for (int v = 0; v < 512; v += 5) {
+                    const ivec3 at = leaf.origin + ivec3(v / 64, v / 8 % 8, v % 8);
+                    ASSERT_NEAR(value_at(kelvin, at), leaf.values[v], rounding * leaf.values[v]);
+                    ASSERT_NEAR(value_at(density, at), value_at(grown, at), rounding);
+                    if (leaf.values[v] == 0) continue;
+                    const std::vector<vec3> point{vec3(grown.index_to_world * glm::dvec4(dvec3(at), 1))};
+                    vec3 expected;
+                    recipe_velocity(recipe, seconds, point, {&leaf.values[v], 1}, {&expected, 1});
+                    for (int axis = 0; axis < 3; ++axis)
+                        ASSERT_NEAR(value_at(velocity.channels[axis], at) - 64, expected[axis],
+                                    1e-4 + rounding * std::abs(expected[axis]));
+                    ++compared;
+                }
+            EXPECT_GT(compared, 300u);
+        }
+}
+
+TEST(Bake, VelocityGoesWithAnyFog) {
+    const Scratch scratch;
+    const std::string file = scratch.path() / "fog.vdb";
+    FogRecipe recipe = small_fog();
+    BakeOptions options;
+    options.velocity = true;
+    baked(recipe, file, {1}, options);
+    const VdbInfo info = vdb_info(file);
+    ASSERT_EQ(info.grids.size(), 2u);
+    EXPECT_EQ(info.grids[1].name, "vel");
+    EXPECT_EQ(info.grids[1].active_voxels, info.grids[0].active_voxels);
+    BakeOptions resume;
+    resume.resume = true;
+    EXPECT_EQ(baked(recipe, file, {1}, resume).kept, 0) << "other grids were asked for";
+    EXPECT_EQ(vdb_info(file).grids.size(), 1u);
+    recipe.name = "vel";
+    EXPECT_EQ(error_of([&] { baked(recipe, file, {1}, options); }).code, ExitCode::refused);
+}
+
 TEST(Bake, SaysHowItWasMade) {
     const Scratch scratch;
     FogRecipe recipe = small_fog();
@@ -147,7 +223,10 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
 TEST(Bake, ThreadsGiveTheSameFiles) {
     const auto files = [] {
         const Scratch scratch;
-        baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4, 5});
+        baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4});
+        BakeOptions options;
+        options.velocity = true;
+        baked(small_fire(), scratch.path() / "fire.vdb", {5}, options);
         return scratch.contents();
     };
     const auto alone = on_threads(1, files);

@@ -30,6 +30,9 @@ TEST(Recipe, EveryFieldIsRead) {
         "shape": {"kind": "ellipsoid", "strength": 0.375, "level": 0.75},
         "height": {"base": 1.5, "falloff": 2.25},
         "wind": [1, 0.5, -0.25], "swirl": {"amount": 0.0625, "scale": 1.25, "speed": 0.75}, "period": 4.5,
+        "fire": {"base": [1, 2, 3], "height": 1.25, "radius": 0.375, "taper": 0.5, "core": 1850, "edge": 1000, "air": 290,
+                 "flicker": 0.75, "rise": 2.5, "stretch": 3.5, "noise": {"scale": 0.125, "seed": 7}, "soot": 0.0625,
+                 "smoke": {"start": 0.25, "spread": 0.1875}},
         "optics": {"extinction": 0.875, "albedo": [0.5, 0.25, 1], "g": -0.5}, "frame_rate": 30})");
     EXPECT_EQ(recipe.name, "dust");
     EXPECT_EQ(recipe.bounds.low, vec3(-1, -2, -3));
@@ -60,6 +63,22 @@ TEST(Recipe, EveryFieldIsRead) {
     EXPECT_EQ(recipe.albedo, vec3(0.5f, 0.25f, 1));
     EXPECT_EQ(recipe.g, -0.5f);
     EXPECT_EQ(recipe.frame_rate, 30);
+    ASSERT_TRUE(recipe.fire);
+    EXPECT_EQ(recipe.fire->base, vec3(1, 2, 3));
+    EXPECT_EQ(recipe.fire->height, 1.25f);
+    EXPECT_EQ(recipe.fire->radius, 0.375f);
+    EXPECT_EQ(recipe.fire->taper, 0.5f);
+    EXPECT_EQ(recipe.fire->core, 1850);
+    EXPECT_EQ(recipe.fire->edge, 1000);
+    EXPECT_EQ(recipe.fire->air, 290);
+    EXPECT_EQ(recipe.fire->flicker, 0.75f);
+    EXPECT_EQ(recipe.fire->rise, 2.5f);
+    EXPECT_EQ(recipe.fire->stretch, 3.5f);
+    EXPECT_EQ(recipe.fire->noise.scale, 0.125f);
+    EXPECT_EQ(recipe.fire->noise.seed, 7u);
+    EXPECT_EQ(recipe.fire->soot, 0.0625f);
+    EXPECT_EQ(recipe.fire->smoke_start, 0.25f);
+    EXPECT_EQ(recipe.fire->smoke_spread, 0.1875f);
 }
 
 TEST(Recipe, WhatIsNotSaidStaysAtItsDefault) {
@@ -69,6 +88,12 @@ TEST(Recipe, WhatIsNotSaidStaysAtItsDefault) {
     EXPECT_EQ(recipe_hash(recipe_of(shortest + "}")), recipe_hash(expected));
     EXPECT_EQ(recipe_of(shortest + R"(, "density": {"border": 0.5}})").border, vec3(0.5f));
     EXPECT_EQ(recipe_of(shortest + R"(, "optics": {"albedo": 0.5}})").albedo, vec3(0.5f));
+    expected.fire = FireRecipe{.height = 2, .radius = 0.5f};
+    expected.fire->noise.scale = 0.4f;
+    EXPECT_EQ(recipe_hash(recipe_of(shortest + R"(, "fire": {"height": 2, "radius": 0.5}})")), recipe_hash(expected));
+    const FogRecipe cool = recipe_of(shortest + R"(, "fire": {"height": 1, "core": 250}})");
+    EXPECT_EQ(cool.fire->edge, 250);
+    EXPECT_EQ(cool.fire->air, 250);
 }
 
 TEST(Recipe, MistakesAreNamed) {
@@ -92,6 +117,17 @@ TEST(Recipe, MistakesAreNamed) {
                  {R"(, "optics": {"albedo": 1.5}})", "/optics/albedo"},
                  {R"(, "optics": {"g": 1}})", "/optics/g"},
                  {R"(, "frame_rate": 0})", "/frame_rate"},
+                 {R"(, "fire": {}})", "height"},
+                 {R"(, "fire": {"height": 0}})", "/fire/height"},
+                 {R"(, "fire": {"height": 1, "radius": -1}})", "/fire/radius"},
+                 {R"(, "fire": {"height": 1, "core": -1}})", "/fire/core"},
+                 {R"(, "fire": {"height": 1, "core": 1e9}})", "/fire/core"},
+                 {R"(, "fire": {"height": 1, "edge": 2000}})", "/fire/edge"},
+                 {R"(, "fire": {"height": 1, "air": 1200}})", "/fire/air"},
+                 {R"(, "fire": {"height": 1, "noise": {"octaves": 0}}})", "/fire/noise/octaves"},
+                 {R"(, "fire": {"height": 1, "smoke": {"spread": -1}}})", "/fire/smoke/spread"},
+                 {R"(, "fire": {"height": 1, "stretch": 0}})", "/fire/stretch"},
+                 {R"(, "fire": {"height": 1}, "name": "temperature"})", "/name"},
                  {R"(, "name": "a/b"})", "/name"}};
     for (const auto& [rest, word] : cases) {
         const std::string message = refusal(shortest + rest);
@@ -148,6 +184,23 @@ TEST(Recipe, TheHashKnowsEveryField) {
     changed([](FogRecipe& r) { r.extinction = 5; });
     changed([](FogRecipe& r) { r.g = 0.75f; });
     changed([](FogRecipe& r) { r.frame_rate = 25; });
+    const auto burning = [&](auto change) { changed([&](FogRecipe& r) { change(r.fire.emplace()); }); };
+    burning([](FireRecipe&) {});
+    for (int axis = 0; axis < 3; ++axis) burning([&](FireRecipe& f) { f.base[axis] = 0.5f; });
+    burning([](FireRecipe& f) { f.height = 0.5f; });
+    burning([](FireRecipe& f) { f.radius = 0.5f; });
+    burning([](FireRecipe& f) { f.taper = 0.5f; });
+    burning([](FireRecipe& f) { f.core = 1800; });
+    burning([](FireRecipe& f) { f.edge = 1000; });
+    burning([](FireRecipe& f) { f.air = 280; });
+    burning([](FireRecipe& f) { f.flicker = 0.25f; });
+    burning([](FireRecipe& f) { f.rise = 0.25f; });
+    burning([](FireRecipe& f) { f.stretch = 0.25f; });
+    burning([](FireRecipe& f) { f.soot = 0.25f; });
+    burning([](FireRecipe& f) { f.smoke_start = 0.25f; });
+    burning([](FireRecipe& f) { f.smoke_spread = 0.25f; });
+    burning([](FireRecipe& f) { f.noise.seed = 5; });
+    burning([](FireRecipe& f) { f.noise.scale = 5; });
 }
 
 TEST(Recipe, ThoseThatComeWithTheProgramMakeFog) {

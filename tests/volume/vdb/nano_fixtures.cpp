@@ -1,5 +1,8 @@
 #include "volume/vdb/nano_fixtures.h"
 
+#include "base/io/file.h"
+#include "support/scratch.h"
+
 #define NANOVDB_USE_ZIP
 #define NANOVDB_USE_BLOSC
 #include <nanovdb/util/IO.h>
@@ -29,11 +32,12 @@ std::string nano_authored(const std::vector<AuthoredGrid>& specs, NanoPacking pa
     std::vector<nanovdb::GridHandle<>> handles;
     for (const openvdb::GridBase::Ptr& grid : *grids) handles.push_back(converted(grid, store));
     using enum nanovdb::io::Codec;
-    std::ostringstream stream(std::ios::binary);
-    nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(stream, handles,
+    const Scratch scratch;
+    const std::string file = scratch.file("out.nvdb");
+    nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(file, handles,
                                                               packing == NanoPacking::zip     ? ZIP
                                                               : packing == NanoPacking::blosc ? BLOSC
                                                                                               : NONE);
-    return stream.str();
+    return read_file(file);
 }
 }

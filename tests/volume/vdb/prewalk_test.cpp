@@ -116,7 +116,7 @@ TEST_P(Hostile, TheFileItselfIsGood) {
 }
 
 TEST_P(Hostile, Header) {
-    EXPECT_REFUSED(patched(good, 0, 'x'), "not an OpenVDB file");
+    EXPECT_REFUSED(patched(good, 0, 'x'), "neither an OpenVDB nor a NanoVDB file");
     for (const uint32_t version : {0u, 100u, 221u, 226u, 999u})
         EXPECT_REFUSED(patched(good, 8, version), "file version");
     EXPECT_REFUSED(patched(good, 20, uint8_t{2}), "header");
@@ -300,7 +300,7 @@ TEST_P(Cut, IsAlwaysRefused) {
         const Error read = error_of([&] { read_vdb(file); });
         EXPECT_EQ(read.code, ExitCode::refused) << "cut to " << length << " of " << good.size();
         EXPECT_EQ(error_of([&] { vdb_metadata(file); }).code, ExitCode::refused) << length;
-        EXPECT_THAT(read.what(), AnyOf(HasSubstr("cut"), HasSubstr("not an OpenVDB file")));
+        EXPECT_THAT(read.what(), AnyOf(HasSubstr("cut"), HasSubstr("neither an OpenVDB nor a NanoVDB file")));
     }
 }
 

@@ -81,6 +81,52 @@ TEST(VdbLibrary, WritesTheSameBytes) {
         }
 }
 
+// The bytes of every tree of a file.
+std::vector<std::string> trees_of(const std::filesystem::path& path) {
+    ByteCursor file(path);
+    std::vector<std::string> trees;
+    for (const VdbGridEntry& grid : read_directory(file).grids) {
+        file.seek(grid.tree_begin, "the tree");
+        trees.push_back(file.bytes(grid.tree_end - grid.tree_begin, "the tree"));
+    }
+    return trees;
+}
+
+TEST(VdbLibrary, WritesTheSameVectors) {
+    // Numbers, and vectors of both signs on their voxels, some of them nought.
+    const Scratch scratch;
+    const SparseVolume volume = many_leaves(0x1p-10f);
+    const auto vector_of = [](float value) { return vec3(value - 0.75f, value < 1 ? 0 : -2 * value, 0.5f * value); };
+    VdbContent content{{{"density"}, {"vel", true}}, dmat4(1), {}, {}, {}, {}};
+    for (const Leaf& leaf : volume.leaves) content.origins.push_back(leaf.origin);
+    content.fill = [&](size_t number, std::span<Leaf> leaves) {
+        leaves[0] = volume.leaves[number];
+        for (size_t v = 0; v < 512; ++v)
+            for (int axis = 0; axis < 3; ++axis)
+                leaves[1 + static_cast<size_t>(axis)].values[v] = vector_of(leaves[0].values[v])[axis];
+    };
+    for (const bool half : {true, false})
+        for (const bool blosc : {true, false}) {
+            AuthoredGrid density, velocity;
+            velocity.name = "vel", velocity.type = "vec3s", density.half = velocity.half = half;
+            for (const Leaf& leaf : volume.leaves)
+                for (int v = 0; v < 512; ++v)
+                    if (const float value = leaf.values[static_cast<size_t>(v)]; value > 0) {
+                        const ivec3 at = leaf.origin + ivec3(v >> 6, v >> 3 & 7, v & 7);
+                        density.voxels.emplace_back(at, value), velocity.colors.emplace_back(at, vector_of(value));
+                    }
+            const auto path =
+                scratch.put("library.vdb", authored({density, velocity}, pack_mask | (blosc ? pack_blosc : pack_zip)));
+            const auto ours = scratch.path() / "ours.vdb";
+            for (const int threads : {1, 3}) {
+                const Threads limit(threads);
+                VdbImage(content, {.half = half, .blosc = blosc}, "ours").write(ours);
+                EXPECT_TRUE(trees_of(ours) == trees_of(path)) << half << blosc << threads;
+            }
+            EXPECT_TRUE(is_as_written(ours));
+        }
+}
+
 TEST(VdbLibrary, ReadsWhatTheLibraryWrote) {
     const Scratch scratch;
     for (const std::string type : {"float", "double"})
