@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, metres, no textures."""
+"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, metres."""
 import json
 import math
 import pathlib
@@ -11,20 +11,28 @@ class Model:
     """Triangles by material and node, written as one GLB."""
 
     def __init__(self):
-        self.materials, self.nodes, self.animations = [], [], []
+        self.materials, self.nodes, self.animations, self.images = [], [], [], []
 
-    def material(self, name, color, emission=None):
+    def material(self, name, color, emission=None, leaf=None):
+        """leaf: the bytes of a PNG whose alpha cuts out what is there, seen from both sides; one PNG may serve several."""
         entry = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": 0}}
         if emission:
             peak = max(emission)
             entry["emissiveFactor"] = [c / peak for c in emission]
             entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": peak}}
+        if leaf:
+            if leaf not in self.images:
+                self.images.append(leaf)
+            entry["pbrMetallicRoughness"]["baseColorTexture"] = {"index": self.images.index(leaf)}
+            entry.update(alphaMode="MASK", doubleSided=True)
         self.materials.append(entry)
         return len(self.materials) - 1
 
-    def node(self, name, parts, translation=(0, 0, 0), spin=None):
-        """parts: list of (material, triangles); spin: (axis, [(seconds, degrees), ...]) animates the rotation."""
-        self.nodes.append({"name": name, "parts": parts, "translation": list(translation), "spin": spin})
+    def node(self, name, parts, translation=(0, 0, 0), spin=None, turn=0, scale=1):
+        """parts: list of (material, triangles), a mesh that nodes given the same list share; spin: (axis, [(seconds, degrees),
+        ...]) animates the rotation; turn: degrees about Y."""
+        self.nodes.append({"name": name, "parts": parts, "translation": list(translation), "spin": spin, "turn": turn,
+                           "scale": scale})
 
     def write(self, path):
         blob, views, accessors, meshes, nodes = bytearray(), [], [], [], []
@@ -45,21 +53,31 @@ class Model:
             accessors.append(entry)
             return len(accessors) - 1
 
-        samplers, channels = [], []
+        def primitive(material, triangles):
+            points, index = {}, []
+            for triangle in triangles:
+                for vertex in triangle:
+                    key = tuple(round(c, 6) for part in vertex for c in part)
+                    index.append(points.setdefault(key, len(points)))
+            rows = list(points)
+            entry = {"material": material, "indices": accessor(index, "SCALAR", "I"),
+                     "attributes": {"POSITION": accessor([r[:3] for r in rows], "VEC3", limits=True),
+                                    "NORMAL": accessor([r[3:6] for r in rows], "VEC3")}}
+            if len(rows[0]) > 6:
+                entry["attributes"]["TEXCOORD_0"] = accessor([r[6:] for r in rows], "VEC2")
+            return entry
+
+        samplers, channels, known = [], [], {}
         for node in self.nodes:
-            primitives = []
-            for material, triangles in node["parts"]:
-                points, index = {}, []
-                for triangle in triangles:
-                    for vertex in triangle:
-                        key = tuple(round(c, 6) for c in (*vertex[0], *vertex[1]))
-                        index.append(points.setdefault(key, len(points)))
-                rows = list(points)
-                primitives.append({"material": material, "indices": accessor(index, "SCALAR", "I"),
-                                   "attributes": {"POSITION": accessor([r[:3] for r in rows], "VEC3", limits=True),
-                                                  "NORMAL": accessor([r[3:] for r in rows], "VEC3")}})
-            meshes.append({"name": node["name"], "primitives": primitives})
-            nodes.append({"name": node["name"], "mesh": len(meshes) - 1, "translation": node["translation"]})
+            if id(node["parts"]) not in known:
+                known[id(node["parts"])] = len(meshes)
+                meshes.append({"name": node["name"], "primitives": [primitive(*part) for part in node["parts"]]})
+            nodes.append({"name": node["name"], "mesh": known[id(node["parts"])], "translation": node["translation"]})
+            if node["turn"]:
+                half = math.radians(node["turn"]) / 2
+                nodes[-1]["rotation"] = [0, round(math.sin(half), 6), 0, round(math.cos(half), 6)]
+            if node["scale"] != 1:
+                nodes[-1]["scale"] = [node["scale"]] * 3
             if node["spin"]:
                 axis, keys = node["spin"]
                 times = accessor([k[0] for k in keys], "SCALAR", limits=True)
@@ -68,12 +86,20 @@ class Model:
                 samplers.append({"input": times, "output": turns, "interpolation": "LINEAR"})
                 channels.append({"sampler": len(samplers) - 1,
                                  "target": {"node": len(nodes) - 1, "path": "rotation"}})
+        images = []
+        for png in self.images:
+            blob.extend(b"\0" * (-len(blob) % 4))
+            images.append({"mimeType": "image/png", "bufferView": len(views)})
+            views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(png)})
+            blob.extend(png)
         document = {"asset": {"version": "2.0", "generator": "tyndall make_geometry.py"}, "scene": 0,
                     "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes,
                     "materials": self.materials, "accessors": accessors, "bufferViews": views,
                     "buffers": [{"byteLength": len(blob)}]}
         if any("extensions" in m for m in self.materials):
             document["extensionsUsed"] = ["KHR_materials_emissive_strength"]
+        if images:
+            document.update(images=images, textures=[{"source": i} for i in range(len(images))])
         if channels:
             document["animations"] = [{"name": "motion", "samplers": samplers, "channels": channels}]
         text = json.dumps(document, separators=(",", ":")).encode()
@@ -116,7 +142,7 @@ def moved(triangles, offset=(0, 0, 0), turn=(0, 1, 0), degrees=0.0):
         k, d = cross(turn, v), sum(a * b for a, b in zip(turn, v))
         return tuple(v[i] * c + k[i] * s + turn[i] * d * (1 - c) for i in range(3))
 
-    return [tuple((tuple(p + o for p, o in zip(turned(v), offset)), turned(n)) for v, n in t) for t in triangles]
+    return [tuple((tuple(p + o for p, o in zip(turned(v), offset)), turned(n), *uv) for v, n, *uv in t) for t in triangles]
 
 
 def lathe(profile, sides, hole=None, inward=False):
@@ -313,6 +339,9 @@ def lantern():
 
 
 if __name__ == "__main__":
-    makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern}
+    from forest import forest_morning
+
+    makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern,
+              "forest_morning": forest_morning}
     for name in sys.argv[1:] or makers:
         makers[name]().write(pathlib.Path(__file__).parent / f"{name}.glb")
