@@ -53,3 +53,26 @@ def twig(size=256):
         return tuple(round(20 * c) / 20 for c in color[:3]) + color[3:]  # few colors, a small file
 
     return png(size, pixel)
+
+
+def breakup(size=192):
+    """A gobo of soft-edged blots with light between them, in rings around the middle."""
+    blots = [(0.5 + r * math.cos(a), 0.5 + r * math.sin(a), s) for r, count, s in ((0.14, 5, 0.062), (0.28, 9, 0.070), (0.41, 13, 0.066))
+             for a in [2 * math.pi * (k + 0.37 * r * 10) / count for k in range(count)]]
+
+    def pixel(x, y):
+        edge = min(max((0.49 - math.hypot(x - 0.5, y - 0.5)) * 60, 0), 1)
+        lit = max(min(max((s - math.hypot(x - bx, y - by)) * 60, 0), 1) for bx, by, s in blots)
+        return (edge * lit,)
+
+    return png(size, pixel, 1)
+
+
+def spokes(size=192):
+    """A gobo of nine bright spokes that leave the middle dark."""
+    def pixel(x, y):
+        away, turn = math.hypot(x - 0.5, y - 0.5), math.atan2(y - 0.5, x - 0.5)
+        sides = min(max((0.32 - abs((turn * 9 / (2 * math.pi)) % 1 - 0.5)) * away * 40, 0), 1)
+        return (sides * min(max((0.48 - away) * 60, 0), 1) * min(max((away - 0.1) * 60, 0), 1),)
+
+    return png(size, pixel, 1)

@@ -4,7 +4,7 @@ import math
 import random
 
 from drawing import twig
-from make_geometry import Model, cross, unit
+from make_geometry import Model, add, cross, limb, unit
 
 TO_SUN = unit((-0.27, 0.33, -0.90))  # against the sun's `direction` in forest_morning.json
 EYE = (0.5, 1.55, 11.5)
@@ -19,10 +19,6 @@ def ground_height(x, z):
     aside = abs(x - path_center(z))
     bank = 0.75 * (1 - math.exp(-((aside / 4.5) ** 2)))
     return 0.16 * math.sin(0.55 * x + 0.3 * z) * math.sin(0.4 * z - 0.2 * x) + bank + 0.012 * max(0, -z - 12) * min(aside, 12)
-
-
-def add(a, b, k=1.0):
-    return tuple(p + k * q for p, q in zip(a, b))
 
 
 def dot(a, b):
@@ -43,26 +39,6 @@ def ground():
         for i in range(nx):
             a, b, c, d = vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)
             triangles += [(a, b, c), (a, c, d)]
-    return triangles
-
-
-def limb(places, radii, sides):
-    """A tapered tube along places, open at its ends."""
-    rings, axis = [], unit(add(places[-1], places[0], -1))
-    across = unit(cross(axis, (0.3, 0.1, 0.9)))
-    deep = cross(axis, across)
-    for place, radius in zip(places, radii):
-        ring = []
-        for k in range(sides):
-            a = 2 * math.pi * k / sides
-            out = add(tuple(c * math.cos(a) for c in across), deep, math.sin(a))
-            ring.append((add(place, out, radius), out))
-        rings.append(ring)
-    triangles = []
-    for low, high in zip(rings, rings[1:]):
-        for k in range(sides):
-            n = (k + 1) % sides
-            triangles += [(low[k], low[n], high[n]), (low[k], high[n], high[k])]
     return triangles
 
 

@@ -121,6 +121,10 @@ def unit(v):
     return tuple(c / length for c in v)
 
 
+def add(a, b, k=1.0):
+    return tuple(p + k * q for p, q in zip(a, b))
+
+
 def quad(a, b, c, d, normals=None):
     if normals is None:
         n = unit(cross([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, d)]))
@@ -177,6 +181,26 @@ def area(triangle):
     a, b, c = (v[0] for v in triangle)
     n = cross([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)])
     return 0.5 * math.sqrt(sum(x * x for x in n))
+
+
+def limb(places, radii, sides):
+    """A tapered tube along places, open at its ends."""
+    rings, axis = [], unit(add(places[-1], places[0], -1))
+    across = unit(cross(axis, (0.3, 0.1, 0.9)))
+    deep = cross(axis, across)
+    for place, radius in zip(places, radii):
+        ring = []
+        for k in range(sides):
+            a = 2 * math.pi * k / sides
+            out = add(tuple(c * math.cos(a) for c in across), deep, math.sin(a))
+            ring.append((add(place, out, radius), out))
+        rings.append(ring)
+    triangles = []
+    for low, high in zip(rings, rings[1:]):
+        for k in range(sides):
+            n = (k + 1) % sides
+            triangles += [(low[k], low[n], high[n]), (low[k], high[n], high[k])]
+    return triangles
 
 
 def sphere(radius, center, sides=32, rings=16):
@@ -339,9 +363,10 @@ def lantern():
 
 
 if __name__ == "__main__":
+    from concert import concert
     from forest import forest_morning
 
     makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern,
-              "forest_morning": forest_morning}
+              "forest_morning": forest_morning, "concert": concert}
     for name in sys.argv[1:] or makers:
         makers[name]().write(pathlib.Path(__file__).parent / f"{name}.glb")
