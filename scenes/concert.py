@@ -92,7 +92,7 @@ def concert():
     m.node("drapes", [(drape, folds)])
     m.node("truss", [(steel, truss(8.1, 0.6) + truss(8.3, -4) + truss(7.9, -8))])
     towers = []
-    for x in (-8.2, 8.2):
+    for x in (-7.0, 7.0):
         for y in range(6):
             towers += moved(box((-0.7, -0.24, -0.4), (0.7, 0.24, 0.4)), (x, 5.0 + 0.5 * y, 0.4 - 0.06 * (5 - y) ** 1.6), (1, 0, 0), 2.5 * (5 - y))
         towers += box((x - 0.75, 0, 0.1), (x + 0.75, 1.1, 1.0))

@@ -83,7 +83,8 @@ TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
 }
 
 TEST(ExampleScenes, AllLoadWithoutWarnings) {
-    for (const char* name : {"window", "spotlight", "pillars", "lantern", "cloud"}) {
+    for (const char* name :
+         {"window", "spotlight", "pillars", "lantern", "cloud", "forest_morning", "concert", "cumulus_sky"}) {
         const Scene scene = load_scene(source_dir / "scenes" / (std::string(name) + ".json"));
         EXPECT_TRUE(scene.warnings.empty()) << name << ": " << scene.warnings.front();
         EXPECT_FALSE(scene.media.empty());
