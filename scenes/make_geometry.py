@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, metres, no textures."""
+"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, metres."""
 import json
 import math
 import pathlib
@@ -12,21 +12,28 @@ class Model:
     """Triangles by material and node, written as one GLB."""
 
     def __init__(self):
-        self.materials, self.nodes, self.animations = [], [], []
+        self.materials, self.nodes, self.animations, self.images = [], [], [], []
 
-    def material(self, name, color, emission=None):
+    def material(self, name, color, emission=None, leaf=None):
+        """leaf: the bytes of a PNG whose alpha cuts out what is there, seen from both sides; one PNG may serve several."""
         entry = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": 0}}
         if emission:
             peak = max(emission)
             entry["emissiveFactor"] = [c / peak for c in emission]
             entry["extensions"] = {"KHR_materials_emissive_strength": {"emissiveStrength": peak}}
+        if leaf:
+            if leaf not in self.images:
+                self.images.append(leaf)
+            entry["pbrMetallicRoughness"]["baseColorTexture"] = {"index": self.images.index(leaf)}
+            entry.update(alphaMode="MASK", doubleSided=True)
         self.materials.append(entry)
         return len(self.materials) - 1
 
-    def node(self, name, parts, translation=(0, 0, 0), spin=None, path=None):
-        """parts: list of (material, triangles), which nodes may share; spin: (axis, [(seconds, degrees), ...]) animates the
-        rotation, path: [(seconds, place, scale), ...] the rest."""
-        self.nodes.append({"name": name, "parts": parts, "translation": list(translation), "spin": spin, "path": path})
+    def node(self, name, parts, translation=(0, 0, 0), spin=None, path=None, turn=0, scale=1):
+        """parts: list of (material, triangles), a mesh that nodes given the same list share; spin: (axis, [(seconds, degrees),
+        ...]) animates the rotation, path: [(seconds, place, scale), ...] the rest; turn: degrees about Y."""
+        self.nodes.append({"name": name, "parts": parts, "translation": list(translation), "spin": spin, "path": path,
+                           "turn": turn, "scale": scale})
 
     def write(self, path):
         blob, views, accessors, meshes, nodes = bytearray(), [], [], [], []
@@ -47,32 +54,36 @@ class Model:
             accessors.append(entry)
             return len(accessors) - 1
 
-        samplers, channels, shared = [], [], {}
+        def primitive(material, triangles):
+            points, index = {}, []
+            for triangle in triangles:
+                for vertex in triangle:
+                    key = tuple(round(c, 6) for part in vertex for c in part)
+                    index.append(points.setdefault(key, len(points)))
+            rows = list(points)
+            entry = {"material": material, "indices": accessor(index, "SCALAR", "I"),
+                     "attributes": {"POSITION": accessor([r[:3] for r in rows], "VEC3", limits=True),
+                                    "NORMAL": accessor([r[3:6] for r in rows], "VEC3")}}
+            if len(rows[0]) > 6:
+                entry["attributes"]["TEXCOORD_0"] = accessor([r[6:] for r in rows], "VEC2")
+            return entry
+
+        samplers, channels, known = [], [], {}
 
         def animate(path, times, values, kind):
             samplers.append({"input": times, "output": accessor(values, kind), "interpolation": "LINEAR"})
             channels.append({"sampler": len(samplers) - 1, "target": {"node": len(nodes) - 1, "path": path}})
 
-        def mesh(node):
-            if id(node["parts"]) in shared:
-                return shared[id(node["parts"])]
-            primitives = []
-            for material, triangles in node["parts"]:
-                points, index = {}, []
-                for triangle in triangles:
-                    for vertex in triangle:
-                        key = tuple(round(c, 6) for c in (*vertex[0], *vertex[1]))
-                        index.append(points.setdefault(key, len(points)))
-                rows = list(points)
-                primitives.append({"material": material, "indices": accessor(index, "SCALAR", "I"),
-                                   "attributes": {"POSITION": accessor([r[:3] for r in rows], "VEC3", limits=True),
-                                                  "NORMAL": accessor([r[3:] for r in rows], "VEC3")}})
-            meshes.append({"name": node["name"], "primitives": primitives})
-            shared[id(node["parts"])] = len(meshes) - 1
-            return len(meshes) - 1
-
         for node in self.nodes:
-            nodes.append({"name": node["name"], "mesh": mesh(node), "translation": node["translation"]})
+            if id(node["parts"]) not in known:
+                known[id(node["parts"])] = len(meshes)
+                meshes.append({"name": node["name"], "primitives": [primitive(*part) for part in node["parts"]]})
+            nodes.append({"name": node["name"], "mesh": known[id(node["parts"])], "translation": node["translation"]})
+            if node["turn"]:
+                half = math.radians(node["turn"]) / 2
+                nodes[-1]["rotation"] = [0, round(math.sin(half), 6), 0, round(math.cos(half), 6)]
+            if node["scale"] != 1:
+                nodes[-1]["scale"] = [node["scale"]] * 3
             if node["spin"]:
                 axis, keys = node["spin"]
                 times = accessor([k[0] for k in keys], "SCALAR", limits=True)
@@ -82,12 +93,20 @@ class Model:
                 times = accessor([k[0] for k in node["path"]], "SCALAR", limits=True)
                 animate("translation", times, [k[1] for k in node["path"]], "VEC3")
                 animate("scale", times, [(k[2],) * 3 for k in node["path"]], "VEC3")
+        images = []
+        for png in self.images:
+            blob.extend(b"\0" * (-len(blob) % 4))
+            images.append({"mimeType": "image/png", "bufferView": len(views)})
+            views.append({"buffer": 0, "byteOffset": len(blob), "byteLength": len(png)})
+            blob.extend(png)
         document = {"asset": {"version": "2.0", "generator": "tyndall make_geometry.py"}, "scene": 0,
                     "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes, "meshes": meshes,
                     "materials": self.materials, "accessors": accessors, "bufferViews": views,
                     "buffers": [{"byteLength": len(blob)}]}
         if any("extensions" in m for m in self.materials):
             document["extensionsUsed"] = ["KHR_materials_emissive_strength"]
+        if images:
+            document.update(images=images, textures=[{"source": i} for i in range(len(images))])
         if channels:
             document["animations"] = [{"name": "motion", "samplers": samplers, "channels": channels}]
         text = json.dumps(document, separators=(",", ":")).encode()
@@ -107,6 +126,10 @@ def cross(a, b):
 def unit(v):
     length = math.sqrt(sum(c * c for c in v))
     return tuple(c / length for c in v)
+
+
+def add(a, b, k=1.0):
+    return tuple(p + k * q for p, q in zip(a, b))
 
 
 def quad(a, b, c, d, normals=None):
@@ -130,7 +153,7 @@ def moved(triangles, offset=(0, 0, 0), turn=(0, 1, 0), degrees=0.0):
         k, d = cross(turn, v), sum(a * b for a, b in zip(turn, v))
         return tuple(v[i] * c + k[i] * s + turn[i] * d * (1 - c) for i in range(3))
 
-    return [tuple((tuple(p + o for p, o in zip(turned(v), offset)), turned(n)) for v, n in t) for t in triangles]
+    return [tuple((tuple(p + o for p, o in zip(turned(v), offset)), turned(n), *uv) for v, n, *uv in t) for t in triangles]
 
 
 def lathe(profile, sides, hole=None, inward=False):
@@ -165,6 +188,26 @@ def area(triangle):
     a, b, c = (v[0] for v in triangle)
     n = cross([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)])
     return 0.5 * math.sqrt(sum(x * x for x in n))
+
+
+def limb(places, radii, sides):
+    """A tapered tube along places, open at its ends."""
+    rings, axis = [], unit(add(places[-1], places[0], -1))
+    across = unit(cross(axis, (0.3, 0.1, 0.9)))
+    deep = cross(axis, across)
+    for place, radius in zip(places, radii):
+        ring = []
+        for k in range(sides):
+            a = 2 * math.pi * k / sides
+            out = add(tuple(c * math.cos(a) for c in across), deep, math.sin(a))
+            ring.append((add(place, out, radius), out))
+        rings.append(ring)
+    triangles = []
+    for low, high in zip(rings, rings[1:]):
+        for k in range(sides):
+            n = (k + 1) % sides
+            triangles += [(low[k], low[n], high[n]), (low[k], high[n], high[k])]
+    return triangles
 
 
 def sphere(radius, center, sides=32, rings=16):
@@ -520,6 +563,10 @@ def campfire():
 
 
 if __name__ == "__main__":
-    makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern, "campfire": campfire}
+    from concert import concert
+    from forest import forest_morning
+
+    makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern, "campfire": campfire,
+              "forest_morning": forest_morning, "concert": concert}
     for name in sys.argv[1:] or makers:
         makers[name]().write(pathlib.Path(__file__).parent / f"{name}.glb")

@@ -1,4 +1,4 @@
-"""Says whether two builds of tyndall make the same pictures, bit for bit: the five example scenes in every mode, at every
+"""Says whether two builds of tyndall make the same pictures, bit for bit: the example scenes in every mode, at every
 quality, for every instruction set that this processor has.
 
     same_pictures.py OLD NEW [--size 160x90] [--modes M,M] [--qualities Q,Q] [--isas I,I] [--scenes FILE,FILE] [--stress]
@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 SOURCE = pathlib.Path(__file__).parents[2]
-SCENES = ["window", "spotlight", "pillars", "lantern", "cloud"]
+SCENES = ["window", "spotlight", "pillars", "lantern", "cloud", "forest_morning", "concert", "cumulus_sky"]
 MODES = ["march", "froxel", "path", "billboard", "radial-blur", "cone", "shadow-volume", "shadow-map"]
 PATH_SAMPLES = 4
 SHOWN_ERROR = 300  # characters of an error message

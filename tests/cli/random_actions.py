@@ -18,7 +18,7 @@ import time
 from viewer import display
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SCENES = ("window", "spotlight", "pillars", "lantern", "cloud")
+SCENES = ("window", "spotlight", "pillars", "lantern", "cloud", "forest_morning", "concert", "cumulus_sky")
 WINDOW = (1280, 800)
 KEYS = ["space", "left", "right", "home", "tab", "f1", "f5", "[", "]", "ctrl+z", "ctrl+y", "ctrl+s", *"12345678lvpwsadqegt"]
 LARGEST = {"pixel.samples": 16}  # what else would only take long

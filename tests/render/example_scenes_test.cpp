@@ -105,7 +105,8 @@ TEST(ExampleScenes, AFireRenderedDirectlyEqualsItsBake) {
 }
 
 TEST(ExampleScenes, AllLoadWithoutWarnings) {
-    for (const char* name : {"window", "spotlight", "pillars", "lantern", "cloud", "campfire"}) {
+    for (const char* name : {"window", "spotlight", "pillars", "lantern", "cloud", "campfire", "forest_morning",
+                             "concert", "cumulus_sky"}) {
         const Scene scene = load_scene(source_dir / "scenes" / (std::string(name) + ".json"));
         EXPECT_TRUE(scene.warnings.empty()) << name << ": " << scene.warnings.front();
         EXPECT_FALSE(scene.media.empty());

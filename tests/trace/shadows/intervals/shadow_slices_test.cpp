@@ -304,7 +304,7 @@ TEST(ShadowSlices, LeavesNearSomeRaysAnswerAsAllDo) {
 }
 
 TEST(ShadowSlices, AgreeWithShadowRaysInTheExampleScenes) {
-    for (const char* name : {"window", "spotlight", "pillars", "lantern"}) {
+    for (const char* name : {"window", "spotlight", "pillars", "lantern", "concert"}) {
         Stage stage;
         stage.scene = load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / "scenes" / (std::string(name) + ".json"));
         stage.build(0.5);
