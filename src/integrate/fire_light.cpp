@@ -9,7 +9,6 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_distance = 0x3f12, use_brick, use_in_brick, use_phase, use_on_line };
 
-constexpr int rounds_for_a_point = 2;  // of one path each way
 constexpr double closest_share = 1e-5; // closest distance that angles are measured from, of the ray's length in fog
 
 // One ray through the fog.
@@ -103,7 +102,7 @@ void append_ray(const FireLight& light, const RayBatch& batch, size_t i, FogPiec
     const Ray& ray = batch.rays[i];
     find_fog(ray, light.fog.media, light.fog.min_transmittance, pieces);
     if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
-    const int rounds = light.fog.points * rounds_for_a_point;
+    const int rounds = light.fog.points; // of one path each way
     const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
     const FireRay on{light, ray, i, seen_fog(pieces, light.fog.style.view_depth), double(rounds), min_height, paths};
     for (int k = 0; k < rounds; ++k) append_round(on, batch, static_cast<uint32_t>(k));

@@ -13,7 +13,7 @@ struct EmissiveBricks;
 struct FireLight {
     std::shared_ptr<const EmissiveBricks> fire; // null = none
     std::shared_ptr<const Occluders> occluders; // null = nothing shadows it
-    ScatteringFog fog;                          // points: on each ray, a sixth of those asked for
+    ScatteringFog fog;                          // points: on each ray, a third of those asked for
 };
 
 // Of a snapshot as the settings see it, with the media that only emit in it.

@@ -10,7 +10,6 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_distance = 0x4e54, use_triangle, use_place };
 
-constexpr int pairs_for_a_point = 2;   // of distances, one by angle and one by fog
 constexpr double closest_share = 1e-5; // from where angles are measured, of the ray's length in fog
 
 EmissivePoint pick_point(const MeshLight& light, const RayBatch& batch, size_t i, uint32_t k, uint32_t count) {
@@ -48,7 +47,7 @@ void append_ray(const MeshLight& light, const RayBatch& batch, size_t i, FogPiec
     if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
     const SeenFog seen = seen_fog(pieces, light.fog.style.view_depth);
     const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
-    const auto pairs = static_cast<uint32_t>(light.fog.points * pairs_for_a_point);
+    const auto pairs = static_cast<uint32_t>(light.fog.points); // of distances, one by angle and one by fog
     for (uint32_t k = 0; k < pairs; ++k) {
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance);
         const auto append = [&](bool by_angle, uint32_t point) {

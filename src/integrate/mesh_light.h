@@ -13,7 +13,7 @@ struct MeshLight {
     std::shared_ptr<const EmissiveTriangles> surfaces; // null = none
     std::shared_ptr<const Occluders> occluders;        // which they are of
     bool shadows = true;                               // of all of them
-    ScatteringFog fog;                                 // points: on each ray, a quarter of those asked for
+    ScatteringFog fog;                                 // points: on each ray, half of those asked for
 };
 
 // Of a snapshot as the settings see it.

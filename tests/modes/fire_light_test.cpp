@@ -87,7 +87,7 @@ TEST(FireLight, SlabBesideABallIsAsByQuadrature) {
                 homogeneous_medium(extinction, {{0.8f, -3, -2}, {2.5f, 3, 2}}, phase, {0.9f, 0.8f, 0.7f});
             const Snapshot snapshot = snapshot_of({slab, ball});
             const dvec3 expected = light_by_quadrature(ball, slab, ray);
-            for (const RayEstimate& found : {traced(snapshot, ray, 1 << 13, 1), marched_light(snapshot, ray, 1 << 10)})
+            for (const RayEstimate& found : {traced(snapshot, ray, 1 << 13, 1), marched_light(snapshot, ray, 1 << 11)})
                 for (int c = 0; c < 3; ++c) {
                     EXPECT_NEAR(found.value[c], expected[c], 0.005 * expected[c] + sigmas * found.error[c]);
                     EXPECT_LT(found.error[c], 0.005 * expected[c]);

@@ -65,7 +65,7 @@ TEST(MeshLight, FogScattersOnceAsByQuadrature) {
                 const Stage stage = glowing_stage({homogeneous_medium(extinction, {vec3(-50), vec3(50)}, phase)});
                 const dvec3 expected = light_by_quadrature(double{extinction}, phase, ray);
                 for (const RayEstimate& found :
-                     {traced(stage.snapshot, ray, 1 << 12, 1), marched_light(stage.snapshot, ray, 1 << 10)})
+                     {traced(stage.snapshot, ray, 1 << 12, 1), marched_light(stage.snapshot, ray, 1 << 11)})
                     for (int c = 0; c < 3; ++c) {
                         EXPECT_NEAR(found.value[c], expected[c], 0.003 * expected[c] + sigmas * found.error[c]);
                         EXPECT_LT(found.error[c], 0.01 * expected[c]);
