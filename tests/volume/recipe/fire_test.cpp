@@ -139,7 +139,10 @@ TEST(Fire, LoopsToTheLastBit) {
 TEST(Fire, GrowsEveryVoxelOfFlameAndSmoke) {
     for (uint32_t seed = 0; seed < 6; ++seed) {
         FogRecipe recipe = busy_fire(seed);
-        if (seed == 5) recipe.swirl = 0;
+        if (seed == 5) { // leaves much smaller than a tongue, alone: nothing but the bound of the noise decides
+            recipe.swirl = 0, recipe.threshold = 1, recipe.voxel_size = 0.015625;
+            recipe.bounds = {vec3(-0.5f, 0, -0.5f), vec3(0.5f, 1.5f, 0.5f)};
+        }
         const ivec3 size = ivec3(glm::ceil(recipe.bounds.size() / static_cast<float>(recipe.voxel_size) - 0.5f));
         Points points;
         for (int x = 0; x < size.x; ++x)
