@@ -436,13 +436,13 @@ FAMILIES = [slats, foliage, headlights, soft_lamps, keyhole, cathedral, underwat
             moving, others, street]
 
 
-def family_of(seed):
-    return FAMILIES[seed % len(FAMILIES)]
+def family_of(seed, families=FAMILIES):
+    return families[seed % len(families)]
 
 
-def draw(seed, attempt=0):
+def draw(seed, attempt=0, families=FAMILIES):
     """The scene of a seed, the same on every machine; `attempt` counts how often it was drawn anew. With it the size of
     its picture."""
     chance = Chance(f"{seed} {attempt}")
-    size, family = chance.choice(SIZES), family_of(seed)
+    size, family = chance.choice(SIZES), family_of(seed, families)
     return family(chance), SIZES[SIZES.index(size) // 2] if family in SLOW else size

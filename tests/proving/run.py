@@ -1,9 +1,10 @@
 """The proving ground: scenes drawn by chance, each rendered to an error that was asked for, held against the truth.
 
     run.py --seeds 1-20 [--targets .05,.02] [--modes march,auto] [--program build/release/tyndall] [-o DIR] [--jobs 2] [--ladder]
+           [--authored]
 
 Writes DIR/proving.json, a row a promise, and prints the table and what it adds up to. --ladder also looks for the cheapest
-plain run that gets to each target. Ends with 1 when promises are broken more often than they may be."""
+plain run that gets to each target. --authored draws other families. Ends with 1 when promises are broken more often than they may be."""
 import argparse
 import concurrent.futures
 import json
@@ -15,7 +16,8 @@ import time
 
 import numpy as np
 
-from families import draw, family_of
+from authored import AUTHORED
+from families import FAMILIES, draw, family_of
 from pictures import error_against, load_truth, render, save_truth
 from scene_files import write_scene
 from truths import find_truth
@@ -32,13 +34,14 @@ LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 
 def scene_with_truth(seed, folder, wanted, options):
     """The first drawing of a seed whose truth can be had with one of the errors wanted: scene file, frame, truth and how many
     drawings went before. Truths are kept in a folder, where there is one."""
+    families = AUTHORED if getattr(options, "authored", False) else FAMILIES
     program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
     if known and known.exists():
         truth, attempt = load_truth(known)
-        drawn, size = draw(seed, attempt)
+        drawn, size = draw(seed, attempt, families)
         return write_scene(drawn, options.size or size, folder / f"{seed}.{attempt}", program), drawn.frame, truth, attempt
     for attempt in range(ATTEMPTS):
-        drawn, size = draw(seed, attempt)
+        drawn, size = draw(seed, attempt, families)
         size = options.size or size
         place = folder / f"{seed}.{attempt}"
         scene = write_scene(drawn, size, place, program)
@@ -75,7 +78,7 @@ def prove(seed, options):
     try:
         errors = {target: TRUTH_SHARE * target for target in options.targets}
         scene, frame, truth, redrawn = scene_with_truth(seed, folder, list(errors.values()), options)
-        common = {"seed": seed, "family": family_of(seed).__name__, "redrawn": redrawn}
+        common = {"seed": seed, "family": family_of(seed, AUTHORED if options.authored else FAMILIES).__name__, "redrawn": redrawn}
         known = [target for target, error in errors.items() if truth and truth.bound <= error]
         rows = [common | {"asked": target, "no_truth": True} for target in options.targets if target not in known]
         if truth is None:
@@ -190,6 +193,7 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("proving"))
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once; each takes two threads")
     parser.add_argument("--ladder", action="store_true")
+    parser.add_argument("--authored", action="store_true", help="skies, faces, fire, glowing meshes, colored fog, open shutters")
     parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), help="of all pictures")
     parser.add_argument("--truth-seconds", type=float, default=120,
                         help="of processor time that a truth may take: by default a minute on two cores")

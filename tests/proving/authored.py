@@ -1,0 +1,92 @@
+"""More kinds of scenes: skies, faces, fire, glowing meshes, colored water, an open shutter. They stand apart so that the
+seeds of the others keep their scenes."""
+import numpy as np
+
+from families import Drawn, foliage, hall, headlights, keyhole, moving, slats, smoke, soft_lamps, underwater
+from geometry import Material, Mesh, box, cylinder, sphere
+
+
+def gradient(c, brightness):
+    return {"sky": {name: [brightness * part for part in c.color()] for name in ("zenith", "horizon", "ground")}}
+
+
+def sky(c):
+    """Light from all around in open places, beside what was there or alone."""
+    drawn = c.choice([foliage, headlights, smoke])(c)
+    drawn.background = gradient(c, c.log(0.5, 20)) if c.happens(0.7) else {"color": c.color(0.5, 5)}
+    drawn.ambient = 0
+    if c.happens(0.3):
+        drawn.lights = []
+    drawn.lights.append({"type": "environment", "intensity": c.log(0.3, 3)})
+    return drawn
+
+
+def faces(c):
+    """Rectangles, discs and balls in a room, some of them seen, and boxes between them."""
+    drawn = soft_lamps(c)
+    for light in drawn.lights:
+        radius = c.log(0.01, 0.5)
+        light |= {"type": c.choice(["rectangle", "rectangle", "disc", "sphere"]), "radius": radius,
+                  "intensity": light["intensity"] / (4 * radius * radius), "visible": c.happens(0.5)}
+        if light["type"] != "sphere":
+            light |= {"target": c.point((-3, 0, -3), (3, 2, 3)), "two_sided": c.happens(0.3)}
+        if light["type"] == "rectangle":
+            light |= {"width": 2 * radius, "height": 2 * radius * c.log(0.1, 3)}
+            del light["radius"]
+    return drawn
+
+
+def fire(c):
+    """A flame of a recipe in a hall or in the open, that lights its smoke, pillars and the fog around."""
+    height = c.log(0.3, 3)
+    radius, wide = height * c.uniform(0.15, 0.5), height * c.uniform(1.2, 3)
+    core = c.uniform(1300, 2200)
+    recipe = {"bounds": {"low": [-radius * 2, 0, -radius * 2], "high": [radius * 2, 1.8 * height, radius * 2]},
+              "voxel_size": height / c.uniform(20, 60),
+              "fire": {"base": [0, 0.03 * height, 0], "height": height, "radius": radius, "taper": c.uniform(0, 3), "core": core,
+                       "edge": core * c.uniform(0.5, 0.8), "flicker": c.uniform(0, 1.5), "rise": height,
+                       "noise": {"octaves": c.randint(1, 4), "scale": height * c.log(0.1, 0.4), "seed": c.randrange(1000)},
+                       "soot": c.uniform(0, 0.3)},
+              "noise": {"octaves": 3, "scale": height * 0.4}, "density": {"threshold": c.uniform(0.4, 0.6), "gain": 3}}
+    media = [{"type": "noise", **c.optics(c.log(0.1, 3) / height), "recipe": recipe,
+              "blackbody": {"convention": "kelvin", "emission_scale": c.log(1e-4, 1e-2) / height}},
+             c.fog((-2 * wide, 0, -2 * wide), (2 * wide, 2 * height, 2 * wide), c.log(0.03, 1))]
+    pillars = [cylinder((x := wide * c.choice([-1, 1]) * c.uniform(0.3, 1), 0, z := wide * c.uniform(-1, 0.5)),
+                        (x, height * c.uniform(0.4, 2), z), height * c.log(0.03, 0.2)) for _ in range(c.randint(1, 8))]
+    ground = box((-4 * wide, -0.1, -4 * wide), (4 * wide, 0, 4 * wide))
+    return Drawn(c.camera((c.uniform(-0.5, 0.5) * wide, height * c.uniform(0.2, 1), wide * c.uniform(1, 1.9)),
+                          (0, 0.5 * height, 0)),
+                 [], media, [Mesh(Material(c.color()), np.concatenate([ground, *pillars]))], frame=c.randint(1, 48))
+
+
+def glowing(c):
+    """Meshes that glow in a room, of many sizes."""
+    drawn = soft_lamps(c)
+    for light in drawn.lights:
+        radius = c.log(0.02, 0.3)
+        nits = light["intensity"] / (3 * radius * radius)
+        shape = (sphere(light["position"], radius, c.randint(3, 10)) if c.happens(0.6) else
+                 box([p - radius for p in light["position"]], [p + radius * c.log(0.05, 1) for p in light["position"]]))
+        drawn.meshes.append(Mesh(Material((0, 0, 0), emission=tuple(nits * part for part in light["color"])), shape))
+    drawn.lights = []
+    return drawn
+
+
+def colored(c):
+    """Water or fog that dims red, green and blue differently."""
+    drawn = c.choice([underwater, underwater, keyhole, slats])(c)
+    for medium in drawn.media:
+        if c.happens(0.8):
+            medium["extinction"] = [medium["extinction"] * c.log(0.3, 3) for _ in range(3)]
+    return drawn
+
+
+def open_shutter(c):
+    """What moves is seen while it does."""
+    drawn = moving(c)
+    middle, half = c.uniform(-0.5, 0.5), c.uniform(0.1, 0.5)
+    drawn.camera["shutter"] = {"open": middle - half, "close": middle + half, "curve": c.choice(["box", "triangle"])}
+    return drawn
+
+
+AUTHORED = [sky, faces, fire, glowing, colored, open_shutter]
