@@ -1,5 +1,5 @@
-"""Deliberate faults in the code that promises errors and times, one after the other: a test or the proving ground must find
-each of them.
+"""Deliberate faults in the code that promises errors and times, and in that of lights, media and motion, one after the
+other: a test or the proving ground must find each of them.
 
     mutations.py -o FOLDER [--only NAME,...] [--seeds 4,18,27,42,55,69] [--truths DIR]
 
@@ -18,6 +18,7 @@ SOURCE = pathlib.Path(__file__).parents[2]
 TESTS = r"^render\."  # whole programs miss times on a busy machine, whatever the fault
 OF_PARTS = r"^(render\.|cli\.test_cli_parts$|proving\.parts$)"
 TARGETS = ["tyndall", "test_render"]
+OF_LIGHT = ["test_scene", "test_volume", "test_modes", "test_render"]
 
 
 @dataclasses.dataclass
@@ -27,6 +28,11 @@ class Fault:
     right: str
     wrong: str
     tests: str = TESTS
+    targets: list = dataclasses.field(default_factory=lambda: TARGETS)
+
+
+def of_light(name, file, right, wrong, tests):
+    return Fault(name, file, right, wrong, rf"^({tests})$", OF_LIGHT)
 
 
 ADAPTIVE = "src/render/adaptive/"
@@ -62,6 +68,33 @@ FAULTS = [
     Fault("planned-orders-left-out", ADAPTIVE + "planned.cpp", "if (planned.orders) stats.orders = planned.orders;", ""),
     Fault("variances-known-for-certain", "src/render/frame/layers.cpp", "squared_error += square;",
           "squared_error += 1e-6 * square;"),
+    of_light("fire-counted-twice", "src/integrate/fire_light.cpp", " + by_fog * by_phase * place.line_density);", ");",
+             r"modes\.fire_light"),
+    of_light("fire-without-its-distance", "src/trace/emission_surface.cpp", "place.density * away * away", "place.density * away",
+             r"modes\.fire_light"),
+    of_light("glowing-faces-without-cosine", "src/integrate/mesh_light.cpp",
+             "std::abs(glm::dot(target.normal, direction)) *", "", r"modes\.mesh_light"),
+    of_light("faces-by-angle-alone", "src/integrate/face_light.cpp",
+             "(distances.angles.density(t) + distances.fog.density(extinction, passing))", "distances.angles.density(t)",
+             r"modes\.face_light"),
+    of_light("rectangles-off-their-middle", "src/scene/spherical_rectangle.cpp", "middle - half, high = middle + half;",
+             "middle - half, high = middle + 0.9 * half;", r"modes\.face_light|scene\.area_shape"),
+    of_light("sky-without-its-phase", "src/integrate/environment_light.cpp", "(weight / (by_light + by_phase))",
+             "(weight / (by_light + by_light))", r"modes\.environment"),
+    of_light("sky-of-another-size", "src/trace/environment.cpp", "2 * std::numbers::pi / table.texels.x *",
+             "2.1 * std::numbers::pi / table.texels.x *", r"modes\.environment"),
+    of_light("channels-swapped", "src/render/frame/channels.cpp", "to.tint[c] = from.transmittance", "to.tint[2 - c] = from.transmittance",
+             r"render\.channels"),
+    of_light("shutter-late", "src/scene/shutter.cpp", "(k + 0.5) / count", "(k + 1.0) / count", r"scene\.shutter|render\.shutter"),
+    of_light("lens-in-focus-everywhere", "src/scene/lens.cpp", "- off / camera.lens.focus;", "- 0.0f * off;",
+             r"scene\.lens|modes\.lens|render\.lens_pictures"),
+    of_light("draine-by-henyey-greenstein", "src/volume/phase/lobe.cpp", "4 * std::numbers::pi * (1 + alpha * (1 + 2 * g * g) / 3);",
+             "4 * std::numbers::pi;", r"volume\.(phase|lobe)"),
+    of_light("gobo-a-texel-off", "src/scene/gobo.cpp", "at * texels + 0.5,", "at * texels + 1.5,", r"scene\.gobo"),
+    of_light("nanovdb-turned", "src/volume/vdb/nano_tree.cpp", "return {number >> 2 * bits, number >> bits & mask, number & mask};",
+             "return {number & mask, number >> bits & mask, number >> 2 * bits};", r"volume\.nano"),
+    of_light("lamps-brighter-than-their-fire", "src/integrate/fire_lamps.cpp", "part.candela += place.candela,",
+             "part.candela += 1.1 * place.candela,", r"modes\.fire_light"),
 ]
 
 
@@ -81,14 +114,14 @@ def run(command, folder, **more):
     return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, **more)
 
 
-def build(folder):
-    done = run(["cmake", "--build", "build/release", "--target", *TARGETS], folder)
+def build(folder, targets):
+    done = run(["cmake", "--build", "build/release", "--target", *targets], folder)
     return done.returncode == 0, done.stdout[-2000:]
 
 
-def who_finds(folder, options, tests):
+def who_finds(folder, options, tests, targets):
     """The tests that fail, or else the proving ground's word; nobody where all pass."""
-    ok, said = build(folder)
+    ok, said = build(folder, targets)
     if not ok:
         sys.exit(f"does not build:\n{said}")
     tested = run(["ctest", "--test-dir", "build/release", "-R", tests, "-LE", "nightly", "-j2"], folder)
@@ -116,7 +149,7 @@ def main():
         run(["cmake", "--preset", "release", "-D", "TYNDALL_VIEW=OFF", "-D", "TYNDALL_BENCHMARKS=OFF"], folder, check=True)
 
     missed = []
-    if not options.only and (found := who_finds(folder, options, OF_PARTS)):
+    if not options.only and (found := who_finds(folder, options, OF_PARTS, TARGETS)):
         sys.exit(f"without a fault: {found} fails")
     for fault in FAULTS:
         if options.only and fault.name not in options.only:
@@ -127,7 +160,7 @@ def main():
             sys.exit(f"{fault.name}: {fault.file} holds '{fault.right}' {text.count(fault.right)} times")
         place.write_text(text.replace(fault.right, fault.wrong))
         try:
-            found = who_finds(folder, options, fault.tests)
+            found = who_finds(folder, options, fault.tests, fault.targets)
         finally:
             place.write_text(text)
         print(f"{fault.name:36s} {found or 'FOUND BY NOBODY'}", flush=True)
