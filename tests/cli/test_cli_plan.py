@@ -27,6 +27,14 @@ class Plan(ProgramTest):
         self.assertIn("artistic: no error bound", text)
         self.assertIn("tyndall render", text.splitlines()[-1])
 
+    def test_an_environment_is_ambient_light(self):
+        def ambient(lights):
+            path = self.write("sky.json", {**hazy(), "lights": hazy()["lights"] + lights})
+            terms = json.loads(self.succeed("plan", path, "--json").stdout)["terms"]
+            return next(term for term in terms if term["name"] == "ambient light in fog")
+        self.assertEqual(ambient([])["bound"], 0)
+        self.assertTrue(ambient([{"type": "environment", "color": 5}])["needed"])
+
     def test_json_holds_terms_and_modes(self):
         plan = json.loads(self.succeed("plan", self.scene, "--target-error", "0.02", "--json").stdout)
         self.assertEqual(plan["target_error"], 0.02)

@@ -33,6 +33,13 @@ class Verify(ProgramTest):
         self.assertNotIn("white furnace", result.stdout)
         self.assertIn("two methods", result.stdout)
 
+    def test_an_environment_is_a_light_and_leaves_the_furnace(self):
+        sky = {"type": "environment", "sky": {"zenith": [1, 2, 5], "horizon": [4, 3, 2]}, "visible": False}
+        content = json.loads(self.scene.read_text())
+        content["lights"].append(sky)
+        result = self.succeed("verify", self.write("sky.json", content), *self.small)
+        self.assertNotIn("OFF", result.stdout)
+
     def test_example_scene_with_surfaces(self):
         self.succeed("verify", SOURCE / "scenes/window.json", "--res", "32x18", "--samples", "64", "--frame", "5")
 

@@ -25,6 +25,7 @@ INSTANTIATE_TEST_SUITE_P(Verify, ExampleScene, testing::Values("window", "spotli
 class EveryScene : public testing::TestWithParam<const char*> {};
 TEST_P(EveryScene, NightlyHoldsUnderProof) { expect_proof(GetParam(), {}); }
 INSTANTIATE_TEST_SUITE_P(Verify, EveryScene,
-                         testing::Values("window", "spotlight", "pillars", "lantern", "cloud", "campfire"));
+                         testing::Values("window", "spotlight", "pillars", "lantern", "cloud", "campfire",
+                                         "forest_morning", "concert", "cumulus_sky"));
 }
 }

@@ -174,7 +174,7 @@ void add_switches(Terms& terms) {
     const bool glows =
         any_medium([](const Medium& medium) { return max_component(medium.optics.emission.radiance) > 0; });
     terms.add({"emission", "", "left out"}, glows ? infinity : 0, &Terms::usual, without(&TermSettings::emission));
-    const bool ambient = max_component(snapshot.ambient) > 0;
+    const bool ambient = max_component(snapshot.ambient) > 0 || snapshot.environment;
     terms.add({"ambient light in fog", "", "left out"}, ambient ? infinity : 0, &Terms::usual,
               without(&TermSettings::ambient));
 }

@@ -96,7 +96,8 @@ void check_scale(const Scene& scene, const SceneProof& proof, const VerifyContro
     }
 }
 
-// The scene as single scattering of its lights: without light that modes treat differently, and without background.
+// The scene as single scattering of its lights and environment: without light that modes treat differently, and without
+// background.
 Scene only_lights(Scene scene) {
     scene.ambient = Keyed<vec3>(vec3(0));
     scene.background = {};
@@ -118,6 +119,7 @@ void check_lights(const Scene& scene, const SceneProof& proof, const VerifyContr
     Image<vec3> sum(layers.size, vec3(0));
     for (const auto& [name, light] : layers.lights)
         for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += light.pixels[i];
+    for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += layers.ambient.pixels[i]; // of the environment
     const Errors errors = measure_errors(sum, whole.inscatter);
     checks.add("rmse_rel of the sum over the lights' layers", relative(errors.rmse, errors.mean_reference), 0, 1e-5,
                "rounding");
@@ -127,7 +129,7 @@ void check_lights(const Scene& scene, const SceneProof& proof, const VerifyContr
 // surroundings of radiance 1. Light never leaves white fog without bounds.
 void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     Scene fog = only_lights(scene);
-    fog.instances.clear(), fog.lights.clear();
+    fog.instances.clear(), fog.lights.clear(), fog.environment.reset();
     fog.ambient = Keyed<vec3>(vec3(1));
     fog.background.color = Keyed<vec3>(vec3(1));
     for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1)), medium.albedo_grid.reset();
@@ -154,8 +156,9 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     const Snapshot snapshot = moment(lit, proof);
     Shot exact{proof, control, checks, settings_for(Quality::reference)};
     exact.settings.pixel.filter = PixelFilter::center;
-    // Points on soft lights are all that is random in it: batches of them tell how far their mean is to be trusted.
-    const bool soft = std::ranges::any_of(snapshot.lights, is_soft);
+    // Points on soft lights and of an environment are all that is random in it: batches of them tell how far their mean
+    // is to be trusted.
+    const bool soft = snapshot.environment || std::ranges::any_of(snapshot.lights, is_soft);
     exact.settings.pixel.samples = exact.batches = soft ? 8 : 1, exact.settings.terms.light_points = soft ? 16 : 1;
     const auto part = [&](double from, double to) {
         return [&checks, from, to](double done) {
