@@ -1,7 +1,7 @@
 // What every command shares: global options, stopping, checked option values, reports on stdout and lines on stderr.
 #pragma once
-#include "base/io/json_values.h"
 #include "base/io/progress.h"
+#include "base/json/json_values.h"
 #include "base/math.h"
 #include "base/text.h"
 #include "command_line.h"

@@ -1,6 +1,6 @@
 // What a file is, from its name and its first bytes.
 #pragma once
-#include "base/io/json.h"
+#include "base/json/json.h"
 
 #include <filesystem>
 

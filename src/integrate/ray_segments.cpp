@@ -1,5 +1,5 @@
 // Where rays are cut: where the fog changes its kind, or into steps.
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "volume/medium.h"
 
 #include "volume/rays/fog_reach.h"

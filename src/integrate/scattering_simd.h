@@ -9,7 +9,7 @@
 #include "base/simd/simd.h"
 #include "integrate/ray_batch.h"
 #include "trace/fluence/fluence_simd.h"
-#include "trace/light_simd.h"
+#include "trace/lights/light_simd.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth_simd.h"
 #include "volume/emission/emission_field_simd.h"

@@ -8,8 +8,8 @@
 
 #include "base/random.h"
 #include "base/simd/simd.h"
-#include "trace/light_ray.h"
-#include "trace/light_simd.h"
+#include "trace/lights/light_ray.h"
+#include "trace/lights/light_simd.h"
 #include "trace/occlusion/occluders.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,6 +1,6 @@
 #include "integrate/style.h"
 #include "scene/light.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 

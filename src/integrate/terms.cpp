@@ -1,7 +1,7 @@
 #include "integrate/terms.h"
 
 #include "integrate/style.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 #include "volume/medium.h"
 
 namespace tyndall {

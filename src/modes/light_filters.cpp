@@ -1,6 +1,6 @@
 #include "modes/light_filters.h"
 
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
 #include "trace/snapshot.h"

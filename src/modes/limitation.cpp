@@ -1,7 +1,7 @@
 #include "modes/limitation.h"
 
 #include "base/error.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Lambert surfaces under every light, through the fog between them.
 #include "trace/surface.h"
-#include "trace/environment.h"
-#include "trace/faces.h"
-#include "trace/light_ray.h"
+#include "trace/lights/environment.h"
+#include "trace/lights/faces.h"
+#include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"

@@ -8,7 +8,7 @@
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "scene/scene.h"
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"

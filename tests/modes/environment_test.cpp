@@ -7,7 +7,7 @@
 #include "scene/scene.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/surface.h"
 #include "trace/transmittance/light_depth.h"

@@ -1,7 +1,7 @@
 // Light of fog that glows by grids, in other fog and on surfaces: quadrature, march against paths, what stands for it.
 #include "base/gauss_legendre.h"
 #include "base/random.h"
-#include "integrate/fire_lamps.h"
+#include "integrate/lights/fire_lamps.h"
 #include "modes/fire_scenes.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
@@ -10,8 +10,8 @@
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
-#include "trace/emission_surface.h"
-#include "trace/emissive_bricks.h"
+#include "trace/lights/emission_surface.h"
+#include "trace/lights/emissive_bricks.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 

@@ -1,11 +1,11 @@
 // Light and colors from grids: closed forms for each convention, and modes against each other.
-#include "integrate/field_light.h"
+#include "integrate/lights/field_light.h"
 #include "modes/fire_scenes.h"
 #include "modes/mode.h"
 #include "modes/path/path_rays.h"
 #include "modes/path/tracer.h"
 #include "support/run_mode.h"
-#include "trace/emissive_bricks.h"
+#include "trace/lights/emissive_bricks.h"
 #include "trace/small_scenes.h"
 #include "volume/emission/blackbody.h"
 #include "volume/emission/emission_field.h"

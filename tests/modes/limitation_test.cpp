@@ -1,7 +1,7 @@
 // What modes say of themselves: alike is said once, with the worst numbers.
 #include "modes/limitation.h"
 
-#include "base/io/json.h"
+#include "base/json/json.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
-#include "trace/emission_surface.h"
+#include "trace/lights/emission_surface.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/small_scenes.h"
 #include "volume/medium.h"

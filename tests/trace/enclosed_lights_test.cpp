@@ -1,5 +1,5 @@
 // Lamps in bulbs are found; shades, housings and rooms are none.
-#include "trace/enclosed_lights.h"
+#include "trace/lights/enclosed_lights.h"
 
 #include "scene/scene.h"
 #include "support/meshes.h"

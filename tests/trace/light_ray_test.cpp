@@ -1,4 +1,4 @@
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 
 #include "base/random.h"
 #include "scene/light.h"

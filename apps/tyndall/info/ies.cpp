@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 #include "scene/file/scene_file.h"
 #include "scene/photometry/ies_file.h"

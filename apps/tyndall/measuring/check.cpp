@@ -9,7 +9,7 @@
 #include "scene/file/scene_file.h"
 #include "scene/gltf/gltf.h"
 #include "scene/photometry/ies_file.h"
-#include "trace/enclosed_lights.h"
+#include "trace/lights/enclosed_lights.h"
 #include "volume/vdb/vdb.h"
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 #include "rendering/render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "trace/enclosed_lights.h"
+#include "trace/lights/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -20,7 +20,7 @@
 #include "rendering/sheet.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "trace/enclosed_lights.h"
+#include "trace/lights/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 

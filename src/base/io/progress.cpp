@@ -2,7 +2,7 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "base/text.h"
 
 #include <sys/ioctl.h>

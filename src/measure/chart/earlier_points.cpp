@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/parallel.h"
 #include "base/shrink.h"
 #include "measure/metrics/heatmap.h"

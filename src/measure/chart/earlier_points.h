@@ -1,6 +1,6 @@
 // Points of a chart that an earlier run left in its directory. Internal to the chart.
 #pragma once
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "measure/chart/point.h"
 #include "render/image/view_transform.h"
 

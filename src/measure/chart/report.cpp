@@ -1,8 +1,8 @@
 // CSV, JSON and words.
 #include "measure/chart/report.h"
 
-#include "base/io/json.h"
-#include "base/io/json_values.h"
+#include "base/json/json.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 #include "measure/chart/earlier_points.h"
 #include "trace/snapshot.h"

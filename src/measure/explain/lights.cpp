@@ -2,7 +2,7 @@
 #include "measure/explain/parts.h"
 #include "volume/medium.h"
 
-#include "integrate/light_along.h"
+#include "integrate/lights/light_along.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 
 #include <algorithm>

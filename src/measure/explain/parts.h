@@ -1,6 +1,6 @@
 // What explain_ray() is made of. Internal to it.
 #pragma once
-#include "integrate/light_along.h"
+#include "integrate/lights/light_along.h"
 #include "measure/explain/explain.h"
 #include "render/frame/frame.h"
 #include "trace/snapshot.h"

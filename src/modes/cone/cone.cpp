@@ -4,7 +4,7 @@
 #include "modes/cone/settings.h"
 #include "modes/resolution.h"
 
-#include "integrate/fire_lamps.h"
+#include "integrate/lights/fire_lamps.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"

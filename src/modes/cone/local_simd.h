@@ -9,7 +9,7 @@
 
 #include "modes/cone/packet_simd.h"
 #include "modes/cone/settings.h"
-#include "trace/light_filter_simd.h"
+#include "trace/lights/light_filter_simd.h"
 #include "volume/noise/noise.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,8 +1,8 @@
 // Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
 // again for every camera ray.
 #include "base/simd/simd.h"
-#include "integrate/field_light.h"
-#include "integrate/fire_lamps.h"
+#include "integrate/lights/field_light.h"
+#include "integrate/lights/fire_lamps.h"
 #include "integrate/style.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"

@@ -1,7 +1,7 @@
 #include "modes/march/exact.h"
 
 #include "base/gauss_legendre.h"
-#include "integrate/light_along.h"
+#include "integrate/lights/light_along.h"
 #include "integrate/style.h"
 #include "scene/light_filter.h"
 #include "volume/medium.h"

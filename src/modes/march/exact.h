@@ -1,6 +1,6 @@
 // The deterministic reference: single scattering without a sampled shadow.
 #pragma once
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 
 namespace tyndall {
 // Fog along rays, integrated over exactly the stretches each light reaches (trace/shadows/intervals/shadow_slices.h),

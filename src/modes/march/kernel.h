@@ -1,6 +1,6 @@
 // The march in steps of one packet, apart from its preparation.
 #pragma once
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 
 namespace tyndall {
 // Fog along up to 16 rays, in the steps of the frame's rule, with shadows asked for in each step by rays or in maps, if

@@ -1,6 +1,6 @@
 #include "modes/march/limitations.h"
 
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "modes/light_filters.h"
 #include "modes/map_shadows.h"
 #include "modes/settings.h"

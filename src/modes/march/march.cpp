@@ -1,10 +1,10 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
-#include "integrate/environment_light.h"
-#include "integrate/face_light.h"
-#include "integrate/field_light.h"
-#include "integrate/fire_light.h"
-#include "integrate/mesh_light.h"
+#include "integrate/lights/environment_light.h"
+#include "integrate/lights/face_light.h"
+#include "integrate/lights/field_light.h"
+#include "integrate/lights/fire_light.h"
+#include "integrate/lights/mesh_light.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"

@@ -3,8 +3,8 @@
 
 #include "scene/area_shape.h"
 #include "scene/light.h"
-#include "trace/environment.h"
-#include "trace/light_ray.h"
+#include "trace/lights/environment.h"
+#include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 

@@ -1,5 +1,5 @@
 // The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
-#include "integrate/field_light.h"
+#include "integrate/lights/field_light.h"
 #include "modes/mode.h"
 #include "modes/path/limitations.h"
 #include "modes/path/settings.h"
@@ -7,7 +7,7 @@
 #include "scene/light.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 

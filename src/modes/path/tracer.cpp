@@ -3,7 +3,7 @@
 
 #include "modes/path/vertex.h"
 #include "scene/area_shape.h"
-#include "trace/faces.h"
+#include "trace/lights/faces.h"
 #include "trace/mattes.h"
 #include "trace/surface.h"
 

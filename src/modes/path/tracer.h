@@ -8,8 +8,8 @@
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
-#include "trace/emissive_bricks.h"
-#include "trace/emissive_triangles.h"
+#include "trace/lights/emissive_bricks.h"
+#include "trace/lights/emissive_triangles.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

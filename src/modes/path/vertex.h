@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "modes/path/connect.h"
 #include "modes/path/lights.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/medium.h"
 

@@ -13,7 +13,7 @@
 #include "integrate/style_simd.h"
 #include "modes/shadow_map/kernel.h"
 #include "scene/light.h"
-#include "trace/light_simd.h"
+#include "trace/lights/light_simd.h"
 #include "trace/shadows/maps/shadow_map_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
 #include "volume/medium_simd.h"

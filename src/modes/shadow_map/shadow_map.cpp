@@ -1,6 +1,6 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
-#include "integrate/field_light.h"
-#include "integrate/fire_lamps.h"
+#include "integrate/lights/field_light.h"
+#include "integrate/lights/fire_lamps.h"
 #include "integrate/lobe_cuts.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"

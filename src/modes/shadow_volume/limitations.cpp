@@ -1,6 +1,6 @@
 #include "modes/shadow_volume/limitations.h"
 
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/settings.h"

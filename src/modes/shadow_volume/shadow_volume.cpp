@@ -1,7 +1,7 @@
 // Shadow volumes: exact shafts without noise.
-#include "integrate/field_light.h"
-#include "integrate/fire_lamps.h"
-#include "integrate/single_scattering.h"
+#include "integrate/lights/field_light.h"
+#include "integrate/lights/fire_lamps.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/lens_fog.h"
 #include "modes/mode.h"

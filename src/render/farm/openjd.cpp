@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/frames.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "render/farm/commands.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "base/random.h"
 #include "scene/area_shape.h"
-#include "trace/faces.h"
+#include "trace/lights/faces.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

@@ -13,7 +13,7 @@
 #pragma once
 #include "integrate/ray_batch.h"
 #include "render/frame/layers.h"
-#include "trace/emission_surface.h"
+#include "trace/lights/emission_surface.h"
 
 #include <atomic>
 #include <functional>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 #include "cache_manifest_schema.h"
 #include "render/parts/plan_file.h"

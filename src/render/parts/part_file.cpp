@@ -1,7 +1,7 @@
 #include "render/parts/part_file.h"
 
 #include "base/error.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 #include "render/sequence/job.h"
 

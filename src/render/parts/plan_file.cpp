@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/io/frames.h"
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "plan_schema.h"

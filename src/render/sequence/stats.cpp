@@ -1,5 +1,5 @@
 // The report of a sequence as JSON.
-#include "base/io/json_values.h"
+#include "base/json/json_values.h"
 #include "modes/mode.h"
 #include "render/sequence/sequence.h"
 

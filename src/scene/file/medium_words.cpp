@@ -1,7 +1,7 @@
 #include "scene/file/medium_words.h"
 
 #include "base/error.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "base/text.h"
 #include "scene/file/scene_words.h"
 

@@ -1,7 +1,7 @@
 #include "scene/file/values.h"
 
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 
 #include <glm/gtc/quaternion.hpp>
 

@@ -1,6 +1,6 @@
 // Numbers, vectors, colours and their keys out of a scene file. The schema has checked shapes and ranges.
 #pragma once
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "scene/keyed.h"
 
 #include <string>

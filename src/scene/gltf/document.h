@@ -1,6 +1,6 @@
 // A glTF on its way into a Scene: parsed, checked, with its buffers at hand. Private to the gltf_*.cpp files.
 #pragma once
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "scene/scene.h"
 
 #include <tiny_gltf.h>

@@ -1,7 +1,7 @@
 #include "scene/gltf/gltf.h"
 
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 #include "scene/file/scene_file.h"
 #include "scene/gltf/document.h"
 #include "scene/gltf/shape.h"

@@ -1,6 +1,6 @@
 // The checked JSON through tinygltf.
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 #include "scene/gltf/document.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 #include "scene/gltf/shape.h"
 
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 #include "scene/gltf/shape_rules.h"
 
 #include <cmath>

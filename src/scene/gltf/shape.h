@@ -1,7 +1,7 @@
 // The shape of a glTF document: every member that is used has the right type, lies in its range, and every index points
 // to something. Checked on the raw JSON, before any library reads it.
 #pragma once
-#include "base/io/json.h"
+#include "base/json/json.h"
 
 namespace tyndall {
 // Throws Error (refused) naming file and JSON pointer.

@@ -6,11 +6,11 @@
 #include "scene/light.h"
 #include "scene/light_filter.h"
 #include "scene/photometry/ies_profile.h"
-#include "trace/environment.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"
 #include "trace/fluence/walls.h"
 #include "trace/frame_cache.h"
+#include "trace/lights/environment.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 

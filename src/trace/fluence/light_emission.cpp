@@ -2,7 +2,7 @@
 #include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
-#include "trace/environment.h"
+#include "trace/lights/environment.h"
 
 namespace tyndall {
 namespace {

@@ -12,7 +12,7 @@
 #pragma once
 #include "scene/camera.h"
 #include "scene/light.h"
-#include "trace/light_projection.h"
+#include "trace/lights/light_projection.h"
 #include "trace/transmittance/light_transmittance.h"
 #include "volume/medium.h"
 

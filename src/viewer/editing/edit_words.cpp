@@ -1,6 +1,6 @@
 // Edits as words of a script: "lights/lamp/intensity" and "400".
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 #include "base/text.h"
 #include "viewer/editing/scene_edit.h"
 

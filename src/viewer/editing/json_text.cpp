@@ -1,8 +1,8 @@
 #include "viewer/editing/json_text.h"
 
 #include "base/error.h"
-#include "base/io/json.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json.h"
+#include "base/json/json_pointer.h"
 #include "base/text.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "viewer/editing/scene_text.h"
 
 #include "base/error.h"
-#include "base/io/json.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json.h"
+#include "base/json/json_pointer.h"
 #include "scene/file/scene_words.h"
 #include "scene_schema.h"
 #include "viewer/editing/json_text.h"

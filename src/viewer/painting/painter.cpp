@@ -5,8 +5,8 @@
 #include "modes/history.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
-#include "trace/enclosed_lights.h"
 #include "trace/frame_cache.h"
+#include "trace/lights/enclosed_lights.h"
 #include "viewer/painting/painter_show.h"
 
 #include <algorithm>

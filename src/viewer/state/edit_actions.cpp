@@ -1,7 +1,7 @@
 #include "viewer/state/edit_actions.h"
 
 #include "base/error.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json_pointer.h"
 #include "base/text.h"
 #include "trace/moment.h"
 #include "viewer/editing/scene_session.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "base/text.h"
 #include "recipe_schema.h"
 

@@ -1,5 +1,5 @@
-#include "base/io/json.h"
 #include "base/io/progress.h"
+#include "base/json/json.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

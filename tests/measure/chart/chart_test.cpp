@@ -1,5 +1,5 @@
 // What a chart says about pictures whose errors are known.
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "base/random.h"
 #include "measure/chart/report.h"
 #include "modes/mode.h"

@@ -6,7 +6,7 @@
 #include "integrate/equi_angular.h"
 #include "modes/history.h"
 #include "scene/light_reach.h"
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "volume/phase.h"
 
 #include <gtest/gtest.h>

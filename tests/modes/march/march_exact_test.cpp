@@ -12,7 +12,7 @@
 #include "trace/view.h"
 
 #include "base/parallel.h"
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 
 #include <gtest/gtest.h>
 

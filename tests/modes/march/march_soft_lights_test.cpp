@@ -6,7 +6,7 @@
 #include "scene/light.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 

@@ -1,5 +1,5 @@
 // Fog between shadow volumes, against closed forms and the deterministic reference.
-#include "integrate/single_scattering.h"
+#include "integrate/single_scattering/single_scattering.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
 #include "modes/shadow_volume/limitations.h"

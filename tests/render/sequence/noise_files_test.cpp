@@ -2,7 +2,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/image.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/noise_fixtures.h"

@@ -1,6 +1,6 @@
 // Frames of a sequence, what is written with them and reported of them.
 #include "base/io/frames.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
 #include "render/sequence/sequence_fixtures.h"

@@ -1,6 +1,6 @@
 // glTF files by others: what is right loads, what is wrong is refused in one line or loads without harm.
 #include "base/io/file.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "support/corpus.h"
 #include "support/load_answer.h"
 

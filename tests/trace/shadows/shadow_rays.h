@@ -1,6 +1,6 @@
 // Shadow rays, the lights they go to, and what they say is lit.
 #pragma once
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/bricks/brick_walk.h"
 

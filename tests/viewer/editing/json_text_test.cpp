@@ -1,6 +1,6 @@
 #include "base/error.h"
-#include "base/io/json.h"
-#include "base/io/json_pointer.h"
+#include "base/json/json.h"
+#include "base/json/json_pointer.h"
 #include "base/random.h"
 #include "scene/file/scene_words.h"
 #include "support/expect.h"

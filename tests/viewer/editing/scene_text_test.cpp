@@ -1,5 +1,5 @@
 #include "base/error.h"
-#include "base/io/json.h"
+#include "base/json/json.h"
 #include "base/random.h"
 #include "scene/scene.h"
 #include "support/expect.h"

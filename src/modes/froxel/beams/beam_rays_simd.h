@@ -11,7 +11,7 @@
 #include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/beams/near_simd.h"
 #include "modes/froxel/lookup/place_simd.h"
-#include "trace/light_filter_simd.h"
+#include "trace/lights/light_filter_simd.h"
 #include "trace/transmittance/light_depth_simd.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -68,7 +68,7 @@ HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays
     return {select(ahead, length(from), far), select(ahead, length(to), -far)};
 }
 
-// What reaches a length along the rays, as arriving() of trace/light_simd.h.
+// What reaches a length along the rays, as arriving() of trace/lights/light_simd.h.
 HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
                               const Floats& distance) {
     const float reach = capped_radius(light);

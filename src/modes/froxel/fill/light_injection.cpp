@@ -2,7 +2,7 @@
 
 #include "base/gauss_legendre.h"
 #include "base/random.h"
-#include "integrate/light_along.h"
+#include "integrate/lights/light_along.h"
 #include "scene/light_reach.h"
 
 #include <array>

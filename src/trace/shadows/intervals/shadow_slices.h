@@ -2,7 +2,7 @@
 // segments, each segment shadows one stretch of the ray, and what no segment shadows is lit (after Max 1986). A union
 // of stretches needs no closed meshes: holes let light through, duplicated and coplanar faces change nothing.
 #pragma once
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/bricks/brick_walk.h"
 

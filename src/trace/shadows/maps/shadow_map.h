@@ -9,7 +9,7 @@
 // filters never meet its border.
 #pragma once
 #include "base/math.h"
-#include "trace/light_projection.h"
+#include "trace/lights/light_projection.h"
 
 #include <array>
 #include <vector>

@@ -6,7 +6,7 @@
 //
 // Volumes depend on mesh and light only; trace/shadows/volumes/shadow_view.h looks at them from a camera.
 #pragma once
-#include "trace/light_ray.h"
+#include "trace/lights/light_ray.h"
 #include "trace/shadows/volumes/shadow_mesh.h"
 
 namespace tyndall {

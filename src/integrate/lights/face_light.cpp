@@ -1,0 +1,104 @@
+#include "integrate/lights/face_light.h"
+
+#include "integrate/lights/fog_points.h"
+#include "scene/area_shape.h"
+#include "scene/light_reach.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+enum Use : uint32_t { use_distance = 0x7fac, use_point = 0x7fad };
+
+constexpr int pairs_for_a_point = 2; // of distances, one by angle and one by fog
+
+// The two ways to pick distances on a ray, for one light.
+struct Distances {
+    SeenFog fog;
+    AngleDistances angles;
+};
+
+// A way from a distance of the ray to a point of the light, one of `count`.
+void append_path(const ScatteringFog& fog, const Light& light, const Ray& ray, const Distances& distances, double t,
+                 size_t piece, double count, vec2 u, size_t number, std::vector<ScatterPath>& paths) {
+    static thread_local FogThere there;
+    const double extinction = look_at_fog(distances.fog.pieces, piece, ray, t, there);
+    if (!(extinction > 0)) return;
+    const double passing = distances.fog.passing(piece, t);
+    const double density = count * (distances.angles.density(t) + distances.fog.density(extinction, passing));
+    const AreaSample sample = sample_area(*light.area, there.point, u);
+    if (!(density > 0) || !(sample.steradians > 0)) return;
+    const double weight =
+        extinction * passing / density * (sample.steradians * shown_share(fog, there.point) * light.volume_scale);
+    const vec3 share = scattered(fog.media, there, sample.direction).first;
+    const ScatterPath path{number,
+                           {there.point, sample.direction, sample.distance * 0.9999f},
+                           share * radiance_of(light) * static_cast<float>(weight)};
+    if (max_component(path.light) > 0) paths.push_back(path);
+}
+
+void append_ray(const ScatteringFog& fog, const Light& light, size_t number, const RayBatch& batch, size_t i,
+                const FogPieces& pieces, std::vector<ScatterPath>& paths) {
+    const Ray& ray = batch.rays[i];
+    if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
+    // Only what the light reaches is worth asking for.
+    const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
+    const Distances distances{seen_fog(pieces, fog.style.view_depth),
+                              angle_distances(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};
+    if (distances.angles.empty()) return;
+    const auto pairs = static_cast<uint32_t>(fog.points * pairs_for_a_point);
+    const auto use = static_cast<uint32_t>(2 * number) * 0x9e37u;
+    for (uint32_t k = 0; k < pairs; ++k) {
+        const auto append = [&](double t, size_t piece, uint32_t point) {
+            append_path(fog, light, ray, distances, t, piece, pairs,
+                        point_numbers(batch, i, point, 2 * pairs, use_point + use), i, paths);
+        };
+        const vec2 u = point_numbers(batch, i, k, pairs, use_distance + use);
+        const double by_angle = distances.angles.angles.at(u.x).t;
+        if (const size_t piece = piece_at(pieces, by_angle); piece < pieces.pieces.size())
+            append(by_angle, piece, 2 * k);
+        size_t piece = 0;
+        const double by_fog = distances.fog.distance(double{u.y}, piece);
+        append(by_fog, piece, 2 * k + 1);
+    }
+}
+}
+
+FaceLight take_faces(Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms, const Camera& camera,
+                     bool shadows, float min_transmittance) {
+    FaceLight faces;
+    const auto first = std::ranges::find_if(snapshot.lights, [](const Light& light) { return light.area != nullptr; });
+    faces.first = static_cast<size_t>(first - snapshot.lights.begin());
+    faces.lights.assign(first, snapshot.lights.end());
+    snapshot.lights.erase(first, snapshot.lights.end());
+    for (const Light& light : faces.lights)
+        faces.casters.push_back(shadows ? shadow_casters(light, snapshot) : nullptr);
+    faces.fog = scattering_fog(snapshot, style, terms, camera, min_transmittance);
+    return faces;
+}
+
+void add_face_light(const FaceLight& faces, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local std::vector<FogPieces> pieces(16);
+    static thread_local std::vector<ScatterPath> paths;
+    for (size_t i = 0; i < batch.rays.size(); ++i)
+        find_fog(batch.rays[i], faces.fog.media, faces.fog.min_transmittance, pieces[i]);
+    for (size_t number = 0; number < faces.lights.size(); ++number) {
+        paths.clear();
+        if (!(faces.lights[number].volume_scale > 0)) continue;
+        for (size_t i = 0; i < batch.rays.size(); ++i)
+            append_ray(faces.fog, faces.lights[number], number, batch, i, pieces[i], paths);
+        add_scatter_paths(faces.fog, faces.casters[number].get(), paths, faces.first + number, batch, results);
+    }
+}
+
+ScatterFunction with_face_light(FaceLight faces, ScatterFunction scatter) {
+    if (faces.lights.empty() || !scatters(faces.fog)) return scatter;
+    return [faces = std::make_shared<const FaceLight>(std::move(faces)),
+            scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
+        scatter(batch, results);
+        add_face_light(*faces, batch, results);
+    };
+}
+}

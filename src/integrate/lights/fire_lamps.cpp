@@ -1,0 +1,121 @@
+#include "integrate/lights/fire_lamps.h"
+
+#include "base/random.h"
+#include "trace/lights/emissive_bricks.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tyndall {
+namespace {
+constexpr size_t max_lamps = 4;
+constexpr uint32_t places_asked = 1 << 14;
+constexpr float ball_by_spread = 5.0f / 3; // square of a ball's radius by the mean square of the distance to its middle
+
+struct FirePlace {
+    dvec3 position{0}, candela{0};
+    double weight = 0; // luminance
+};
+
+// Of one part of the fire.
+struct FirePart {
+    std::vector<FirePlace> places;
+    dvec3 middle{0}, candela{0}, spread{0}; // spread: mean squares of the distances to the middle
+    double weight = 0;
+};
+
+FirePart part_of(std::vector<FirePlace> places) {
+    FirePart part;
+    for (const FirePlace& place : places)
+        part.candela += place.candela, part.weight += place.weight, part.middle += place.weight * place.position;
+    part.middle /= part.weight;
+    for (const FirePlace& place : places) {
+        const dvec3 offset = place.position - part.middle;
+        part.spread += place.weight / part.weight * (offset * offset);
+    }
+    part.places = std::move(places);
+    return part;
+}
+
+// Across its longest side, in the middle; the second half is empty where it has no size.
+std::pair<FirePart, FirePart> halves(FirePart part) {
+    int axis = part.spread.x >= part.spread.y ? 0 : 1;
+    if (part.spread.z > part.spread[axis]) axis = 2;
+    const auto second = std::ranges::partition(
+        part.places, [&](const FirePlace& place) { return place.position[axis] <= part.middle[axis]; });
+    std::vector<FirePlace> after(second.begin(), second.end());
+    part.places.erase(second.begin(), second.end());
+    return {part_of(std::move(part.places)), after.empty() ? FirePart{} : part_of(std::move(after))};
+}
+
+std::vector<FirePlace> places_of(const EmissiveBricks& fire) {
+    std::vector<FirePlace> places;
+    for (uint32_t i = 0; i < places_asked; ++i) {
+        const Sample2 first = sample2(i, hash(0xf12eu)), second = sample2(i, hash(0xf12fu));
+        const EmissivePlace place = pick_emissive_place(fire, first.x, {first.y, second.x, second.y});
+        const double weight = double{luminance(place.emission)} / place.density / places_asked;
+        if (weight > 0)
+            places.push_back(
+                {dvec3(place.position), dvec3(place.emission) / double{place.density} / double{places_asked}, weight});
+    }
+    return places;
+}
+
+// The part whose size makes the most of its light come from elsewhere.
+double wrongness(const FirePart& part) { return part.weight * (part.spread.x + part.spread.y + part.spread.z); }
+}
+
+std::vector<Light> fire_lamps(const Snapshot& snapshot) {
+    const auto fire = emissive_bricks(snapshot);
+    std::vector<FirePlace> places = fire ? places_of(*fire) : std::vector<FirePlace>{};
+    if (places.empty()) return {};
+    std::vector<FirePart> parts{part_of(std::move(places))};
+    while (parts.size() < max_lamps) {
+        const auto worst = std::ranges::max_element(parts, {}, wrongness);
+        if (!(wrongness(*worst) > 0)) break;
+        auto [one, other] = halves(std::move(*worst));
+        *worst = std::move(one);
+        if (other.places.empty()) break;
+        parts.push_back(std::move(other));
+    }
+    std::vector<Light> lamps;
+    for (const FirePart& part : parts) {
+        Light lamp;
+        lamp.name = "fire " + std::to_string(lamps.size() + 1);
+        lamp.position = vec3(part.middle), lamp.intensity = vec3(part.candela);
+        lamp.radius = std::sqrt(ball_by_spread * float(part.spread.x + part.spread.y + part.spread.z));
+        lamp.core = 1e-5f * snapshot.extent;
+        lamp.surface_scale = 0;
+        lamps.push_back(lamp);
+    }
+    return lamps;
+}
+
+// The mean of 1/r² over a ball of radius R at distance d is 1/d² · (1 + R²/(5 d²) + ...): its variance along an axis is
+// R²/5, and ∇²(1/r²) = 2/r⁴.
+double far_enough(const Light& lamp, double share) { return double{lamp.radius} / std::sqrt(5 * share); }
+
+Snapshot with_fire_lamps(Snapshot snapshot) {
+    const std::vector<Light> lamps = fire_lamps(snapshot);
+    snapshot.lights.insert(snapshot.lights.end(), lamps.begin(), lamps.end());
+    return snapshot;
+}
+
+ScatterFunction with_lamps_as_emission(size_t lights, size_t lamps, ScatterFunction scatter) {
+    if (lamps == 0) return scatter;
+    return [lights, lamps, scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
+        if (batch.parts.empty()) return scatter(batch, results);
+        RayBatch own = batch;
+        std::vector<vec3> parts(batch.rays.size() * part_count(lights + lamps), vec3(0));
+        own.parts = parts;
+        scatter(own, results);
+        for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
+            for (size_t i = 0; i < lights; ++i) batch.part(ray, i) += own.part(ray, i);
+            for (size_t i = lights; i < lights + lamps; ++i)
+                batch.part(ray, batch.index_of(OtherLight::emission)) += own.part(ray, i);
+            for (const OtherLight other : {OtherLight::ambient, OtherLight::emission, OtherLight::multiple})
+                batch.part(ray, batch.index_of(other)) += own.part(ray, own.index_of(other));
+        }
+    };
+}
+}

@@ -1,0 +1,139 @@
+#include "integrate/lights/fire_light.h"
+
+#include "integrate/lights/fog_points.h"
+#include "trace/lights/emissive_bricks.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+
+namespace tyndall {
+namespace {
+enum Use : uint32_t { use_distance = 0x3f12, use_brick, use_in_brick, use_phase, use_on_line };
+
+constexpr double closest_share = 1e-5; // closest distance that angles are measured from, of the ray's length in fog
+
+// One ray through the fog.
+struct FireRay {
+    const FireLight& light;
+    const Ray& ray;
+    size_t number;
+    SeenFog seen;
+    double rounds;
+    double min_height;
+    std::vector<ScatterPath>& paths;
+
+    AngleDistances around(vec3 place) const { return angle_distances(ray, seen.pieces, dvec3(place), min_height); }
+};
+
+// A point of the ray.
+struct FirePoint {
+    double distance = 0, extinction = 0, passing = 0;
+    FogThere there;
+};
+
+bool look(const FireRay& on, double distance, size_t piece, FirePoint& point) {
+    point.distance = distance;
+    point.extinction = look_at_fog(on.seen.pieces, piece, on.ray, distance, point.there);
+    point.passing = on.seen.passing(piece, distance);
+    return point.extinction > 0 && point.passing > 0;
+}
+
+// What comes from a place to the eye by a point, over the chance that any of the three ways leads there. Both lack the
+// square of the distance between them, which may be 0.
+void append_path(const FireRay& on, const FirePoint& point, const EmissivePlace& place, const AngleDistances& angles,
+                 double share) {
+    const FogThere& there = point.there;
+    const vec3 offset = place.position - there.point;
+    const float away = glm::length(offset);
+    if (!(max_component(place.emission) > 0) || !(away > 0)) return;
+    const ScatteringFog& fog = on.light.fog;
+    const auto [albedo, by_phase] = scattered(fog.media, there, offset / away);
+    const double by_fog = on.seen.density(point.extinction, point.passing);
+    const double aimed = double{place.density} * away * away;
+    const double chance =
+        on.rounds * (aimed * (angles.density(point.distance) + by_fog) + by_fog * by_phase * place.line_density);
+    const double weight = share * point.extinction * point.passing * shown_share(fog, there.point) / chance;
+    if (!(chance > 0)) return;
+    const ScatterPath path{
+        on.number, {there.point, offset / away, away}, albedo * place.emission * static_cast<float>(weight)};
+    if (max_component(path.light) > 0) on.paths.push_back(path);
+}
+
+// From a point in a direction by the phase function. Its places have another chance than the guess that all ways share.
+void append_lines(const FireRay& on, const FirePoint& point, float which, vec2 u, float v) {
+    const FireLight& light = on.light;
+    const vec3 direction = direction_by_phase(light.fog.media, point.there, which, u);
+    for (size_t field = 0; field < light.fire->fields.size(); ++field) {
+        const EmissionOnLine hit = emission_on_line(*light.fire, field, {point.there.point, direction, infinity}, v);
+        if (!(hit.inverse_density > 0)) continue;
+        append_path(on, point, hit.place, on.around(hit.place.position),
+                    double{hit.inverse_density} * hit.place.line_density);
+    }
+}
+
+EmissivePlace pick_place(const FireRay& on, const RayBatch& batch, uint32_t k, uint32_t count) {
+    const vec2 first = point_numbers(batch, on.number, k, count, use_brick),
+               second = point_numbers(batch, on.number, k, count, use_in_brick);
+    return pick_emissive_place(*on.light.fire, first.x, {first.y, second.x, second.y});
+}
+
+// One path each way.
+void append_round(const FireRay& on, const RayBatch& batch, uint32_t k) {
+    static thread_local FirePoint point;
+    const auto rounds = static_cast<uint32_t>(on.rounds);
+    const vec2 u = point_numbers(batch, on.number, k, rounds, use_distance);
+    const EmissivePlace first = pick_place(on, batch, 2 * k, 2 * rounds);
+    if (const AngleDistances angles = on.around(first.position); !angles.empty()) {
+        const double t = angles.angles.at(u.x).t;
+        const size_t piece = piece_at(on.seen.pieces, t);
+        if (piece < on.seen.pieces.pieces.size() && look(on, t, piece, point)) append_path(on, point, first, angles, 1);
+    }
+
+    size_t piece = 0;
+    const double t = on.seen.distance(double{u.y}, piece);
+    if (!look(on, t, piece, point)) return;
+    const EmissivePlace second = pick_place(on, batch, 2 * k + 1, 2 * rounds);
+    append_path(on, point, second, on.around(second.position), 1);
+    const vec2 v = point_numbers(batch, on.number, k, rounds, use_on_line);
+    append_lines(on, point, v.x, point_numbers(batch, on.number, k, rounds, use_phase), v.y);
+}
+
+void append_ray(const FireLight& light, const RayBatch& batch, size_t i, FogPieces& pieces,
+                std::vector<ScatterPath>& paths) {
+    const Ray& ray = batch.rays[i];
+    find_fog(ray, light.fog.media, light.fog.min_transmittance, pieces);
+    if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
+    const int rounds = light.fog.points; // of one path each way
+    const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
+    const FireRay on{light, ray, i, seen_fog(pieces, light.fog.style.view_depth), double(rounds), min_height, paths};
+    for (int k = 0; k < rounds; ++k) append_round(on, batch, static_cast<uint32_t>(k));
+}
+}
+
+FireLight fire_light(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
+                     const Camera& camera, bool shadows, float min_transmittance) {
+    FireLight light;
+    light.fire = emissive_bricks(snapshot);
+    if (!light.fire) return light;
+    if (shadows && snapshot.occluders && !snapshot.occluders->empty()) light.occluders = snapshot.occluders;
+    light.fog = scattering_fog(snapshot, style, terms, camera, min_transmittance);
+    return light;
+}
+
+void add_fire_light(const FireLight& light, const RayBatch& batch, std::span<Scatter> results) {
+    static thread_local FogPieces pieces;
+    static thread_local std::vector<ScatterPath> paths;
+    paths.clear();
+    for (size_t i = 0; i < batch.rays.size(); ++i) append_ray(light, batch, i, pieces, paths);
+    const size_t part = batch.parts.empty() ? 0 : batch.index_of(OtherLight::emission);
+    add_scatter_paths(light.fog, light.occluders.get(), paths, part, batch, results);
+}
+
+ScatterFunction with_fire_light(FireLight light, ScatterFunction scatter) {
+    if (!light.fire || !scatters(light.fog)) return scatter;
+    return [light = std::make_shared<const FireLight>(std::move(light)),
+            scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
+        scatter(batch, results);
+        add_fire_light(*light, batch, results);
+    };
+}
+}

@@ -1,0 +1,59 @@
+// Whole steps in the light of a sun, the same step of all rays at once, inside the kernel of lit fog (see
+// base/simd/simd.h for how such files are compiled).
+#if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
+#undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
+#else
+#define TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
+#endif
+
+#include "integrate/single_scattering/single_scattering_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tyndall::HWY_NAMESPACE {
+namespace {
+// Adds the steps noted in `whole`, each by its middle, where the fog's extinction is known already.
+void add_full_steps(Packet& packet, size_t index) {
+    const SingleScattering& frame = packet.frame;
+    const Light& light = frame.snapshot.lights[index];
+    const std::vector<Medium>& media = frame.snapshot.media;
+    const Vec3s origin = Packet::rays(packet.origin), direction = Packet::rays(packet.direction);
+    const float* at = packet.scratch.cuts.at.data();
+    const float* depths = packet.scratch.depth.data();
+
+    // Light comes from the same side everywhere.
+    const Floats cosine = dot(splat(-light.direction), direction);
+    std::vector<std::array<float, 16>>& phase = packet.scratch.phase;
+    phase.resize(media.size());
+    for (size_t m = 0; m < media.size(); ++m) store(phase_value(media[m].optics.phase, cosine), phase[m].data());
+
+    Vec3s radiance = splat(vec3(0));
+    Floats asked = 0.0f;
+    for (size_t k = 0; k < static_cast<size_t>(packet.scratch.cuts.most); ++k) {
+        const Floats share = load(packet.scratch.whole.data() + 16 * k);
+        const Mask16 wanted = share > 0.0f;
+        if (!any(wanted)) continue;
+        asked = asked + select(wanted, 1.0f, 0.0f);
+        const Floats low = load(at + 16 * k), high = load(at + 16 * (k + 1));
+        const Vec3s position = fused(direction, (low + high) * 0.5f, origin);
+        const Floats before = (load(depths + 16 * k) + load(depths + 16 * (k + 1))) * (0.5f * frame.style.view_depth);
+        Floats weight = share * (high - low) * exp(-(before + light_depth16(frame.depths[index], position, wanted)));
+        if (frame.style.range < StyleSettings().range)
+            weight = weight * style_fade(frame.style, frame.camera, position);
+        const float* extinction = packet.scratch.extinction.data() + 16 * media.size() * k;
+        for (size_t m = 0; m < media.size(); ++m)
+            radiance = fused(albedo16(media[m].optics, position),
+                             weight * load(extinction + 16 * m) * load(phase[m].data()), radiance);
+    }
+    const vec3 color = light.intensity * light.volume_scale;
+    alignas(64) float rgb[3][16], counts[16];
+    store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(asked, counts);
+    for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
+        packet.radiance[i] += color * vec3(rgb[0][i], rgb[1][i], rgb[2][i]);
+        packet.asked[i] += static_cast<int>(counts[i]);
+    }
+}
+}
+}
+HWY_AFTER_NAMESPACE();
+#endif

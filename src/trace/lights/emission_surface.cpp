@@ -1,0 +1,108 @@
+#include "trace/lights/emission_surface.h"
+
+#include "base/random.h"
+#include "trace/lights/emissive_bricks.h"
+#include "trace/lights/emissive_triangles.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/snapshot.h"
+#include "trace/surface.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tyndall {
+namespace {
+// A way from each point to a place that glows, and what it sends on of its light with nothing in the way.
+struct EmittedRays {
+    Occluders::ShadowRays rays{};
+    vec3 light[16] = {};
+
+    void set(size_t i, const SurfacePoint& point, vec3 direction, float length, vec3 sent) {
+        if (!(max_component(sent) > 0)) return;
+        light[i] = sent;
+        rays.set(i, {off_surface(point.position, point.face_normal, direction), direction, length});
+    }
+};
+
+// `share`: of what is found here, over the chance of both ways that is found here alone.
+void set_place(const SurfacePoint& point, const EmissivePlace& place, float share, size_t i, EmittedRays& to) {
+    const vec3 offset = place.position - point.position;
+    const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
+    const float chance = place.density * away * away + cosine / pi * place.line_density;
+    if (!(cosine > 0) || !(chance > 0) || !(share > 0)) return;
+    to.set(i, point, offset / away, away, point.base_color / pi * place.emission * (cosine * share / chance));
+}
+
+void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const EmittedRays& to, float scale,
+           std::span<vec3> radiance) {
+    alignas(64) float shares[16];
+    std::fill_n(shares, 16, 1.0f);
+    if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->transmission(to.rays, shares);
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (!to.rays.active[i] || !(shares[i] > 0)) continue;
+        const vec3 direction(to.rays.dx[i], to.rays.dy[i], to.rays.dz[i]);
+        double depth = 0;
+        for (const Medium& medium : snapshot.media)
+            if (!only_emits(medium.optics))
+                depth += optical_depth(medium, {points[i].position, direction, to.rays.t_max[i]});
+        radiance[i] += to.light[i] * (scale * shares[i] * static_cast<float>(std::exp(-depth)));
+    }
+}
+
+// More numbers for the same point and pair.
+RandomStream numbers_after(vec2 pair) {
+    return {hash(std::bit_cast<uint32_t>(pair.x), std::bit_cast<uint32_t>(pair.y))};
+}
+
+void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<const SurfacePoint> points,
+              std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
+    EmittedRays picked;
+    std::vector<EmittedRays> on_lines(fire.fields.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+        const vec2 pair = pairs[i];
+        RandomStream random = numbers_after(pair);
+        const float x = random.next(), y = random.next(), along = random.next();
+        set_place(points[i], pick_emissive_place(fire, pair.x, {pair.y, x, y}), 1, i, picked);
+        const vec3 direction = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
+        for (size_t field = 0; field < fire.fields.size(); ++field) {
+            const EmissionOnLine hit = emission_on_line(fire, field, {points[i].position, direction, infinity}, along);
+            if (hit.inverse_density > 0)
+                set_place(points[i], hit.place, hit.inverse_density * hit.place.line_density, i, on_lines[field]);
+        }
+    }
+    shine(snapshot, points, picked, scale, radiance);
+    for (const EmittedRays& to : on_lines) shine(snapshot, points, to, scale, radiance);
+}
+
+void add_surfaces(const EmissiveTriangles& glow, const Snapshot& snapshot, std::span<const SurfacePoint> points,
+                  std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
+    EmittedRays picked;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const SurfacePoint& point = points[i];
+        const EmissivePoint target =
+            pick_glow_point(glow, *snapshot.occluders, numbers_after(pairs[i]).next(), pairs[i]);
+        const vec3 offset = target.position - point.position;
+        const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
+        if (!(cosine > 0)) continue;
+        const vec3 direction = offset / away;
+        const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.density * away * away);
+        picked.set(i, point, direction, away * 0.9999f, point.base_color / pi * target.emission * seen);
+    }
+    shine(snapshot, points, picked, scale, radiance);
+}
+}
+
+Emitters emitters_of(const Snapshot& snapshot) { return {emissive_bricks(snapshot), emissive_triangles(snapshot)}; }
+
+void add_emitted_light(const Emitters& emitters, const Snapshot& snapshot, std::span<const SurfacePoint> points,
+                       std::span<const vec2> u, std::span<vec3> radiance) {
+    const size_t count = u.size() / points.size();
+    const float scale = 1 / static_cast<float>(count);
+    std::vector<vec2> pairs(points.size());
+    for (size_t k = 0; k < count; ++k) {
+        for (size_t i = 0; i < points.size(); ++i) pairs[i] = u[i * count + k];
+        if (emitters.fire) add_fire(*emitters.fire, snapshot, points, pairs, scale, radiance);
+        if (emitters.surfaces) add_surfaces(*emitters.surfaces, snapshot, points, pairs, scale, radiance);
+    }
+}
+}

@@ -1,0 +1,167 @@
+// Tables of directions: the mean of the bilinear map over each cell, so that no direction with light is left out.
+#include "trace/lights/environment.h"
+
+#include "base/error.h"
+#include "base/image.h"
+#include "scene/scene.h"
+
+#include <algorithm>
+
+namespace tyndall {
+namespace {
+constexpr int max_cells = 2048; // across; larger maps are looked at in blocks
+constexpr int gradient_rows = 256;
+
+double row_edge(const DirectionTable& table, int cell_row) {
+    const int texel = std::min(cell_row * table.factor, table.texels.y);
+    return std::cos(std::numbers::pi * texel / table.texels.y);
+}
+
+double column_edge(const DirectionTable& table, int cell_column) {
+    return static_cast<double>(std::min(cell_column * table.factor, table.texels.x)) / table.texels.x;
+}
+
+// The bilinear picture averaged over one texel: its neighbours weigh 1/8, itself 3/4, each way.
+vec3 mean_in_texel(const Image<vec3>& image, int x, int y) {
+    const int columns[] = {(x + image.size.x - 1) % image.size.x, x, (x + 1) % image.size.x};
+    const int rows[] = {std::max(y - 1, 0), y, std::min(y + 1, image.size.y - 1)};
+    constexpr float weights[] = {0.125f, 0.75f, 0.125f};
+    vec3 sum(0);
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) sum += weights[i] * weights[j] * image.at(columns[i], rows[j]);
+    return sum;
+}
+
+// The map without its intensity, over one texel of the table.
+vec3 mean_in_texel(const BackgroundNow& map, const DirectionTable& table, int x, int y) {
+    if (map.kind == BackgroundKind::image) return mean_in_texel(*map.image, x, y);
+    const double high = std::cos(std::numbers::pi * y / table.texels.y),
+                 low = std::cos(std::numbers::pi * (y + 1) / table.texels.y);
+    BackgroundNow plain = map;
+    plain.intensity = 1;
+    return background_radiance(plain, vec3(0, 0.5 * (high + low), 0), vec2(0));
+}
+
+DirectionTable empty_table(const BackgroundNow& map) {
+    DirectionTable table;
+    if (map.kind == BackgroundKind::image) table.texels = map.image->size;
+    if (map.kind == BackgroundKind::sky) table.texels = {1, gradient_rows};
+    table.factor = (std::max(table.texels.x, table.texels.y) + max_cells - 1) / max_cells;
+    table.cells = (table.texels + table.factor - 1) / table.factor;
+    return table;
+}
+
+// Cumulative chances, and the densities of cells from what each holds.
+void add_chances(const std::vector<double>& powers, double total, DirectionTable& table) {
+    table.rows.push_back(0);
+    for (int y = 0; y < table.cells.y; ++y) {
+        const double* row = &powers[static_cast<size_t>(y) * table.cells.x];
+        double sum = 0;
+        for (int x = 0; x < table.cells.x; ++x) table.columns.push_back(sum), sum += row[x];
+        table.columns.push_back(sum);
+        for (int x = 0; x <= table.cells.x && sum > 0; ++x) table.columns.end()[x - table.cells.x - 1] /= sum;
+        table.rows.push_back(table.rows.back() + sum / total);
+        for (int x = 0; x < table.cells.x; ++x) {
+            const double width = 2 * std::numbers::pi * (column_edge(table, x + 1) - column_edge(table, x));
+            table.densities.push_back(
+                static_cast<float>(row[x] / (total * width * (row_edge(table, y) - row_edge(table, y + 1)))));
+        }
+    }
+    for (double& chance : table.rows) chance /= table.rows.back();
+}
+
+std::shared_ptr<const DirectionTable> make_table(const BackgroundNow& map) {
+    DirectionTable table = empty_table(map);
+    std::vector<double> powers(static_cast<size_t>(table.cells.x) * table.cells.y);
+    dvec3 sum(0);
+    double total = 0;
+    for (int y = 0; y < table.texels.y; ++y) {
+        const double angle =
+            2 * std::numbers::pi / table.texels.x *
+            (std::cos(std::numbers::pi * y / table.texels.y) - std::cos(std::numbers::pi * (y + 1) / table.texels.y));
+        for (int x = 0; x < table.texels.x; ++x) {
+            const dvec3 light = angle * dvec3(mean_in_texel(map, table, x, y));
+            const double power = std::max(double(luminance(vec3(light))), 0.0);
+            powers[static_cast<size_t>(y / table.factor) * table.cells.x + x / table.factor] += power;
+            sum += light, total += power;
+        }
+    }
+    table.mean = vec3(sum / (4 * std::numbers::pi));
+    if (!(total > 0)) return nullptr;
+    add_chances(powers, total, table);
+    for (size_t i = 0; i < powers.size(); ++i) {
+        const double even = table.densities[i] > 0 ? powers[i] / (table.densities[i] * 4 * std::numbers::pi) : 0;
+        table.uneven += std::max(powers[i] - even, 0.0) / total;
+    }
+    return std::make_shared<const DirectionTable>(std::move(table));
+}
+
+// The place of a number among cumulative ones, and how far it is from there to the next.
+struct PlaceInTable {
+    int index = 0;
+    double share = 0;
+};
+PlaceInTable place_in(const double* cumulative, int count, double u) {
+    const double* next = std::upper_bound(cumulative + 1, cumulative + count, u);
+    const double low = next[-1], width = next[0] - low;
+    return {static_cast<int>(next - cumulative) - 1, width > 0 ? std::clamp((u - low) / width, 0.0, 1.0) : 0.5};
+}
+}
+
+std::shared_ptr<const Environment> make_environment(BackgroundNow map, const Environment* previous) {
+    auto environment = std::make_shared<Environment>();
+    if (map.kind == BackgroundKind::image && (!map.image || map.image->empty())) return nullptr;
+    if (!(map.intensity > 0)) return nullptr;
+    const bool same = previous && map.kind == BackgroundKind::image && previous->map.image == map.image;
+    environment->table = same ? previous->table : make_table(map);
+    environment->map = std::move(map);
+    return environment->table ? environment : nullptr;
+}
+
+vec3 environment_radiance(const Environment& environment, vec3 direction) {
+    return background_radiance(environment.map, direction, vec2(0)) * environment.scale;
+}
+
+EnvironmentSample sample_environment(const Environment& environment, vec2 u) {
+    const DirectionTable& table = *environment.table;
+    const PlaceInTable row = place_in(table.rows.data(), table.cells.y, u.x);
+    const double* columns = &table.columns[static_cast<size_t>(row.index) * (table.cells.x + 1)];
+    const PlaceInTable column = place_in(columns, table.cells.x, u.y);
+    const double height =
+        row_edge(table, row.index) + row.share * (row_edge(table, row.index + 1) - row_edge(table, row.index));
+    const double left = column_edge(table, column.index), right = column_edge(table, column.index + 1);
+    const double turn = 2 * std::numbers::pi * (left + column.share * (right - left) - 0.5) - environment.map.rotation;
+    const double across = std::sqrt(std::max(1 - height * height, 0.0));
+    EnvironmentSample sample;
+    sample.direction = glm::normalize(vec3(across * std::sin(turn), height, -across * std::cos(turn)));
+    sample.radiance = environment_radiance(environment, sample.direction);
+    sample.density = table.densities[static_cast<size_t>(row.index) * table.cells.x + column.index];
+    return sample;
+}
+
+float environment_density(const Environment& environment, vec3 direction) {
+    const DirectionTable& table = *environment.table;
+    const vec2 uv = lat_long_position(direction, environment.map.rotation);
+    const ivec2 texel = glm::clamp(ivec2(uv * vec2(table.texels)), ivec2(0), table.texels - 1);
+    const ivec2 cell = texel / table.factor;
+    return table.densities[static_cast<size_t>(cell.y) * table.cells.x + cell.x];
+}
+
+std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, const Environment* previous) {
+    if (!scene.environment) return nullptr;
+    const EnvironmentSource& source = *scene.environment;
+    const auto made = make_environment(background_at(source.map, seconds), previous);
+    if (!made) return nullptr;
+    auto environment = std::make_shared<Environment>(*made);
+    environment->name = source.name;
+    environment->scale = vec3(source.intensity.at(seconds) * std::exp2(source.exposure.at(seconds)));
+    environment->volume_scale = source.volume_scale.at(seconds);
+    environment->surface_scale = source.surface_scale.at(seconds);
+    environment->shadows = source.shadows;
+    if (!is_finite(environment->mean()))
+        refuse(scene.file.string(), "light " + source.name + ": it is brighter than numbers can be");
+    const bool shines =
+        max_component(environment->mean()) > 0 && std::max(environment->volume_scale, environment->surface_scale) > 0;
+    return shines ? environment : nullptr;
+}
+}

@@ -1,0 +1,65 @@
+// Light from all around on Lambert surfaces, through the fog.
+#include "trace/lights/environment.h"
+#include "trace/occlusion/occluders.h"
+#include "trace/surface.h"
+#include "volume/medium.h"
+
+namespace tyndall {
+namespace {
+// A direction for each point, and what comes from there with nothing in the way.
+struct SkyDirections {
+    vec3 direction[16], light[16];
+};
+
+// What a point scatters of the light from a direction that is picked with a chance of `density`, 1/sr, by the light,
+// and by the cosine.
+vec3 weighted(const SurfacePoint& point, vec3 direction, vec3 radiance, float density) {
+    const float cosine = std::max(glm::dot(point.normal, direction), 0.0f);
+    return density + cosine > 0 ? point.base_color * radiance * (cosine / pi / (density + cosine / pi)) : vec3(0);
+}
+
+void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const SkyDirections& sky,
+           std::span<vec3> radiance, float scale) {
+    Occluders::ShadowRays rays{};
+    alignas(64) float shares[16];
+    std::fill_n(shares, 16, 1.0f);
+    for (size_t i = 0; i < points.size(); ++i)
+        if (max_component(sky.light[i]) > 0)
+            rays.set(i, {off_surface(points[i].position, points[i].face_normal, sky.direction[i]), sky.direction[i],
+                         infinity});
+    if (snapshot.environment->shadows && snapshot.occluders) snapshot.occluders->transmission(rays, shares);
+    for (size_t i = 0; i < points.size(); ++i) {
+        if (!rays.active[i] || !(shares[i] > 0)) continue;
+        double depth = 0;
+        for (const Medium& medium : snapshot.media)
+            if (!only_emits(medium.optics))
+                depth += optical_depth(medium, {points[i].position, sky.direction[i], infinity});
+        radiance[i] += sky.light[i] * (scale * shares[i] * static_cast<float>(std::exp(-depth)));
+    }
+}
+}
+
+void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> points, std::span<const vec2> u,
+                     std::span<vec3> radiance) {
+    const Environment& environment = *snapshot.environment;
+    const size_t count = u.size() / points.size();
+    const float scale = environment.surface_scale / static_cast<float>(count);
+    if (!(environment.surface_scale > 0)) return;
+    SkyDirections by_light, by_surface;
+    for (size_t k = 0; k < count; ++k) {
+        for (size_t i = 0; i < points.size(); ++i) {
+            const vec2 pair = u[i * count + k];
+            const EnvironmentSample sample = sample_environment(environment, pair);
+            by_light.direction[i] = sample.direction;
+            by_light.light[i] =
+                sample.density > 0 ? weighted(points[i], sample.direction, sample.radiance, sample.density) : vec3(0);
+            by_surface.direction[i] = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
+            by_surface.light[i] =
+                weighted(points[i], by_surface.direction[i], environment_radiance(environment, by_surface.direction[i]),
+                         environment_density(environment, by_surface.direction[i]));
+        }
+        shine(snapshot, points, by_light, radiance, scale);
+        shine(snapshot, points, by_surface, radiance, scale);
+    }
+}
+}

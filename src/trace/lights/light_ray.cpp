@@ -1,0 +1,28 @@
+#include "trace/lights/light_ray.h"
+#include "scene/light.h"
+
+namespace tyndall {
+LightPoint center_of(const Light& light) {
+    if (is_distant(light)) return {-glm::normalize(dvec3(light.direction)), true};
+    return {dvec3(light.position), false, dvec3(light.position), light.radius};
+}
+
+LightPoint point_on(const Light& light, const Ray& ray, vec3 u) {
+    LightPoint result = center_of(light);
+    if (is_distant(light)) {
+        result.at = glm::normalize(dvec3(ray_to_light(light, ray.origin, vec2(u)).direction));
+        return result;
+    }
+    // The sphere in four dimensions has this density when seen in three, and an even disc when seen in two.
+    const float nearest = std::clamp(glm::dot(light.position - ray.origin, ray.direction), 0.0f, ray.t_max);
+    const vec3 towards = light.position - ray.at(nearest);
+    const float distance = glm::length(towards);
+    const vec3 z = distance > 0 ? towards / distance : ray.direction;
+    vec3 x, y;
+    make_frame(z, x, y);
+    const float across = light.radius * std::sqrt(u.x), along = light.radius * std::sqrt(1 - u.x);
+    result.at += dvec3(across * std::cos(2 * pi * u.y) * x + across * std::sin(2 * pi * u.y) * y +
+                       along * std::cos(2 * pi * u.z) * z);
+    return result;
+}
+}
