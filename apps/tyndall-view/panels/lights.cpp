@@ -1,8 +1,8 @@
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "property_controls.h"
-#include "theme.h"
 #include "viewer/editing/scene_session.h"
 #include "viewer/state/edit_actions.h"
 
