@@ -1,5 +1,6 @@
 #include "modes/shared_limitations.h"
 
+#include "integrate/lights/environment_light.h"
 #include "integrate/lights/fire_lamps.h"
 #include "modes/settings.h"
 #include "scene/area_shape.h"
@@ -17,6 +18,7 @@
 #include "volume/rays/fog_reach.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace tyndall {
 namespace {
@@ -24,6 +26,7 @@ constexpr float deep_cell = 0.3f;    // optical depths, across which the dimming
 constexpr float deep_step = 0.15f;   // optical depths
 constexpr float detail_voxels = 2;   // of fog that changes from voxel to voxel
 constexpr float seen_offset = 0.25f; // pixels
+constexpr double seen_share = 0.02, wrong_share = 0.5; // of light that is off
 
 // How thick a medium can be at most across its own bounds, as optical depth.
 float thickness(const Medium& medium, const Box& scene_bounds) {
@@ -58,11 +61,13 @@ void add_table(const Medium& medium, Limitations& limitations) {
                            {ratio}});
 }
 
-bool scatters(const Medium& medium) { return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0; }
+bool scatters_light(const Medium& medium) {
+    return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0;
+}
 
 // Luminance of the environment's light in fog, where there is some to light; else 0.
 double nits_in_fog(const Snapshot& snapshot) {
-    if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters)) return 0;
+    if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters_light)) return 0;
     return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
 }
 
@@ -72,8 +77,16 @@ void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) 
 }
 }
 
+std::vector<Medium> thickest_media(const Snapshot& snapshot) {
+    std::vector<Medium> media = snapshot.media;
+    for (const std::vector<Medium>& channel : snapshot.channel_media)
+        for (size_t m = 0; m < channel.size(); ++m)
+            media[m].optics.extinction = glm::max(media[m].optics.extinction, channel[m].optics.extinction);
+    return media;
+}
+
 void add_single_scattering(const View& view, const Snapshot& snapshot, Limitations& limitations) {
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         const float scattered = thickness(medium, snapshot.bounds) * max_component(medium.optics.albedo);
         if (scattered <= 0.5f) continue;
         limitations.push_back(
@@ -89,7 +102,7 @@ void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limi
         if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
     if (fog.empty() || snapshot.lights.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         const float depth = medium.majorant() * cell;
         if (medium.density.kind == DensityKind::bricks && depth > deep_cell)
             limitations.push_back(
@@ -115,7 +128,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
 
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         if (only_emits(medium.optics)) continue; // is asked at nodes of its own
         float length = 0;
         for (const Ray& ray : rays)
@@ -231,7 +244,7 @@ template<class Visit> void for_emitting_materials(const Snapshot& snapshot, cons
 
 // Whether there is something that light could fall on.
 bool can_be_lit(const Snapshot& snapshot) {
-    return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters);
+    return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters_light);
 }
 }
 
@@ -249,14 +262,56 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
     }
 }
 
-void add_mean_environment(const Snapshot& snapshot, Limitations& limitations) {
+namespace {
+// What fog scatters of the environment's light along a ray: as it is, and as the mean from all around, unshadowed.
+struct ScatteredSky {
+    double as_it_is = 0, by_mean = 0;
+};
+ScatteredSky scattered_sky(const Snapshot& snapshot, const EnvironmentLight& light, Ray ray, uint32_t id) {
+    Hits hits;
+    if (snapshot.occluders) snapshot.occluders->closest({&ray, 1}, 0, hits), ray.t_max = std::min(ray.t_max, hits.t[0]);
+    Scatter exact;
+    add_environment_light(light, {.rays = {&ray, 1}, .ids = {&id, 1}}, {&exact, 1});
+
+    constexpr int points = 16;
+    double scattered = 0, dimmed = 0;
+    for (int i = 0; i < points; ++i)
+        for (const Medium& medium : snapshot.media) {
+            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
+            const double extinction = double(density_at(medium, point)) * grey_extinction(medium.optics);
+            scattered += extinction * luminance(albedo_at(medium.optics, point)), dimmed += extinction;
+        }
+    const double share = dimmed > 0 ? scattered / dimmed * -std::expm1(-optical_depth(snapshot.media, ray)) : 0;
+    const Environment& sky = *snapshot.environment;
+    return {luminance(exact.radiance), share * luminance(sky.mean()) * sky.volume_scale};
+}
+
+// How far the mean is off over rays that probe the picture: root mean square, as a share of what is right.
+double off_by_mean(const View& view, const Snapshot& snapshot) {
+    TermSettings terms;
+    terms.light_points = 64;
+    const EnvironmentLight light = environment_light(snapshot, {}, terms, view.camera, true, 0);
+    double squares = 0, sum = 0, rays = 0;
+    for (const Ray& ray : probing_rays(view, snapshot)) {
+        const ScatteredSky found = scattered_sky(snapshot, light, ray, static_cast<uint32_t>(rays));
+        const double off = found.by_mean - found.as_it_is;
+        squares += off * off, sum += found.as_it_is, rays += 1;
+    }
+    return sum > 0 ? std::sqrt(squares * rays) / sum : 0;
+}
+}
+
+void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     const double nits = nits_in_fog(snapshot);
     if (!(nits > 0)) return;
-    limitations.push_back({Severity::degraded,
+    const double off = off_by_mean(view, snapshot);
+    limitations.push_back({off > wrong_share  ? Severity::wrong
+                           : off > seen_share ? Severity::degraded
+                                              : Severity::info,
                            &limitation::mean_environment,
                            Subject::light,
                            snapshot.environment->name,
-                           {100 * snapshot.environment->table->uneven, nits}});
+                           {100 * off, nits}});
 }
 
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations) {
@@ -265,31 +320,61 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
             {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
 }
 
-void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations) {
+namespace {
+// The share of the picture's height that a ball takes; 0 where none of it is in the picture.
+double share_of_picture(const View& view, vec3 center, double radius) {
+    const Camera& camera = view.camera;
+    const double depth = glm::dot(center - camera.position, camera.forward);
+    if (glm::distance(center, camera.position) < radius) return 1;
+    const double height =
+        camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5 * camera.vertical_fov);
+    const std::optional<vec2> at = pixel_of(camera, view.size, center);
+    if (!at || !(height > 0)) return 0;
+    const vec2 beyond = glm::max(glm::max(-*at, *at - vec2(view.size)), vec2(0));
+    const double share = 2 * radius / height;
+    return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
+}
+
+// Of what is off within a distance of a light: much of the picture shows that fog, or light hardly gets beyond.
+Severity severity_near(const View& view, const Snapshot& snapshot, vec3 center, double distance) {
+    constexpr double much = 0.2, deep = 0.5; // of the picture; optical depths
+    double extinction = 0;
+    for (const Medium& medium : snapshot.media)
+        extinction += double(density_at(medium, center)) * grey_extinction(medium.optics);
+    const bool wrong = share_of_picture(view, center, distance) > much || extinction * distance > deep;
+    return wrong ? Severity::wrong : Severity::degraded;
+}
+}
+
+void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     for (const Light& light : snapshot.lights)
-        if (light.area && light.volume_scale > 0)
-            limitations.push_back({Severity::degraded,
+        if (light.area && light.volume_scale > 0) {
+            const double within = far_enough(*light.area, tolerated);
+            limitations.push_back({severity_near(view, snapshot, light.position, within),
                                    &limitation::lamp_for_face,
                                    Subject::light,
                                    light.name,
-                                   {light.radius, far_enough(*light.area, tolerated)}});
+                                   {light.radius, within}});
+        }
 }
 
-void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
+void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const std::vector<Light> lamps = fire_lamps(snapshot);
     double reach = 0;
-    for (const Light& lamp : lamps) reach = std::max(reach, far_enough(lamp, tolerated));
+    Severity severity = Severity::degraded;
+    for (const Light& lamp : lamps) {
+        const double within = far_enough(lamp, tolerated);
+        reach = std::max(reach, within);
+        severity = std::max(severity, severity_near(view, snapshot, lamp.position, within));
+    }
     for (const Medium& medium : snapshot.media)
         if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
-            limitations.push_back({Severity::degraded,
-                                   &limitation::lamps_for_fire,
-                                   Subject::medium,
-                                   medium.name,
-                                   {reach, double(lamps.size())}});
+            limitations.push_back(
+                {severity, &limitation::lamps_for_fire, Subject::medium, medium.name, {reach, double(lamps.size())}});
 }
 
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
@@ -301,11 +386,11 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
 }
 
 void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     for_emitting_materials(snapshot, [&](const Material& material) {
         if (material.alpha_mode == AlphaMode::opaque)
             limitations.push_back(
-                {Severity::degraded, &limitation::emission_lights_no_fog, Subject::material, material.name});
+                {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
     });
 }
 

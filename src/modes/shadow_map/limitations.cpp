@@ -46,10 +46,10 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_mean_albedo(snapshot, limitations);
     if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
-    add_mean_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_mean_environment(view, snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
-        add_lamps_for_fire(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
+        add_lamps_for_fire(view, snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
     return limitations;
 }
 }
