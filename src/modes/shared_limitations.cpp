@@ -183,9 +183,29 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
 }
 
+namespace {
+// Lights that change so much from moment to moment that their sum is no integral: of light that fades by a factor r
+// between two, the middle is off by (ln r)² / 24.
+void add_fading(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Light& light : snapshot.lights) {
+        double largest = 0, before = 0;
+        for (const Snapshot& moment : *snapshot.moments) {
+            const auto found = std::ranges::find(moment.lights, light.name, &Light::name);
+            const double now = found == moment.lights.end() ? 0 : luminance(found->intensity);
+            if (before > 0 && now > 0) largest = std::max(largest, std::abs(std::log(now / before)));
+            before = now;
+        }
+        if (const double off = largest * largest / 24; off > seen_share)
+            limitations.push_back(
+                {Severity::degraded, &limitation::shutter_fades, Subject::light, light.name, {100 * off}});
+    }
+}
+}
+
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double separate = 2; // pixels: then edges show as steps
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
+    add_fading(snapshot, limitations);
     const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
     limitations.push_back({between > separate ? Severity::degraded : Severity::info,
                            &limitation::shutter_moments,
@@ -263,16 +283,19 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
 }
 
 namespace {
-// What fog scatters of the environment's light along a ray: as it is, and as the mean from all around, unshadowed.
-struct ScatteredSky {
-    double as_it_is = 0, by_mean = 0;
-};
-ScatteredSky scattered_sky(const Snapshot& snapshot, const EnvironmentLight& light, Ray ray, uint32_t id) {
-    Hits hits;
-    if (snapshot.occluders) snapshot.occluders->closest({&ray, 1}, 0, hits), ray.t_max = std::min(ray.t_max, hits.t[0]);
-    Scatter exact;
-    add_environment_light(light, {.rays = {&ray, 1}, .ids = {&id, 1}}, {&exact, 1});
+// What fog scatters of the environment's light, as a march finds it, by so many ways for each ray.
+ScatterFunction scattered_sky(const View& view, const Snapshot& snapshot) {
+    TermSettings terms;
+    terms.light_points = 16;
+    const auto fog = scattering_fog(snapshot, {}, terms, view.camera, 0);
+    std::vector<PathLight> lights;
+    append_environment_light(snapshot, fog, true, lights);
+    return with_path_lights(fog, std::move(lights),
+                            [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
+}
 
+// The same as its mean from all around that nothing dims: of the light that fog keeps from a ray, what it scatters.
+double scattered_mean(const Snapshot& snapshot, const Ray& ray) {
     constexpr int points = 16;
     double scattered = 0, dimmed = 0;
     for (int i = 0; i < points; ++i)
@@ -282,22 +305,28 @@ ScatteredSky scattered_sky(const Snapshot& snapshot, const EnvironmentLight& lig
             scattered += extinction * luminance(albedo_at(medium.optics, point)), dimmed += extinction;
         }
     const double share = dimmed > 0 ? scattered / dimmed * -std::expm1(-optical_depth(snapshot.media, ray)) : 0;
-    const Environment& sky = *snapshot.environment;
-    return {luminance(exact.radiance), share * luminance(sky.mean()) * sky.volume_scale};
+    return share * luminance(snapshot.environment->mean()) * snapshot.environment->volume_scale;
 }
 
-// How far the mean is off over rays that probe the picture: root mean square, as a share of what is right.
+// How far the mean is off, as E has it: over 8×6 rays of the picture, up to its surfaces.
 double off_by_mean(const View& view, const Snapshot& snapshot) {
-    TermSettings terms;
-    terms.light_points = 64;
-    const EnvironmentLight light = environment_light(snapshot, {}, terms, view.camera, true, 0);
-    double squares = 0, sum = 0, rays = 0;
-    for (const Ray& ray : probing_rays(view, snapshot)) {
-        const ScatteredSky found = scattered_sky(snapshot, light, ray, static_cast<uint32_t>(rays));
-        const double off = found.by_mean - found.as_it_is;
-        squares += off * off, sum += found.as_it_is, rays += 1;
+    constexpr int across = 8, down = 6;
+    const ScatterFunction exact = scattered_sky(view, snapshot);
+    double squares = 0, sum = 0;
+    for (uint32_t i = 0; i < across * down; ++i) {
+        const vec2 at((static_cast<float>(i % across) + 0.5f) / across, (static_cast<float>(i / across) + 0.5f) / down);
+        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
+        ray.t_max = std::min(fog_reach(snapshot.media, ray), view.camera.far);
+        Hits hits;
+        if (snapshot.occluders)
+            snapshot.occluders->closest({&ray, 1}, 0, hits), ray.t_max = std::min(ray.t_max, hits.t[0]);
+        if (!(ray.t_max > 0)) continue;
+        Scatter found;
+        exact({.rays = {&ray, 1}, .ids = {&i, 1}}, {&found, 1});
+        const double off = scattered_mean(snapshot, ray) - luminance(found.radiance);
+        squares += off * off, sum += luminance(found.radiance);
     }
-    return sum > 0 ? std::sqrt(squares * rays) / sum : 0;
+    return sum > 0 ? std::sqrt(squares * across * down) / sum : 0;
 }
 }
 

@@ -68,6 +68,9 @@ inline constexpr LimitationKind emission_left_out{"emission_left_out", "its ligh
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
                        "made of (--time-samples)"};
+inline constexpr LimitationKind shutter_fades{
+    "shutter_fades", "its brightness changes so much between two of the moments that motion blur is made of that it is "
+                     "off by up to {}% (--time-samples)"};
 inline constexpr LimitationKind still_volumes{
     "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};

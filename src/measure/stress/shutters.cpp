@@ -4,6 +4,7 @@
 #include "modes/froxel/limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
+#include "modes/limitation.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
@@ -14,11 +15,13 @@
 
 namespace tyndall {
 namespace {
-const std::vector<Excuse> excuses{
-    {&limitation::fog_through_middle},  {&limitation::shutter_moments},   {&limitation::few_steps_for_glow, 2},
-    {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5}, {&limitation::no_shadows, 3},
-    {&limitation::sun_without_shadows}, {&limitation::moving_light},      {&limitation::moving_camera},
-    {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
+double stated(const Limitation& limitation) { return limitation.amounts[0] / 100; }
+const std::vector<Excuse> excuses{{&limitation::fog_through_middle},  {&limitation::shutter_fades, 0, stated},
+                                  {&limitation::shutter_moments},     {&limitation::few_steps_for_glow, 2},
+                                  {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5},
+                                  {&limitation::no_shadows, 3},       {&limitation::sun_without_shadows},
+                                  {&limitation::moving_light},        {&limitation::moving_camera},
+                                  {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
 
 // --- lenses --------------------------------------------------------------------------------------------------------
 // A spot's beam two metres behind a post.

@@ -189,7 +189,7 @@ Layers sampled_truth(Trial& trial, int samples, uint32_t seed) {
 // against both is free of it.
 Truth sampled_truths(Trial& trial) {
     constexpr double noise = 0.15;
-    for (int samples = 32;; samples *= 2) {
+    for (int samples = 64;; samples *= 2) {
         Layers first = sampled_truth(trial, samples, 1001), second = sampled_truth(trial, samples, 1002);
         if (2 * samples > max_samples || difference(first, second) < std::numbers::sqrt2 * noise)
             return {std::move(first), {}, std::move(second)};
@@ -239,12 +239,13 @@ double error_to_truth(Trial& trial) {
 
 double error_and_bias(Trial& trial) {
     constexpr int few = 256; // of light that no technique samples well
-    if (is_noise(trial)) return bias_to_truth(trial, few, false);
+    if (is_noise(trial)) return std::max(bias_to_truth(trial, few, false), trial.bias);
     const Layers &truth = trial.truth(), &other = trial.other_truth(), found = trial.render();
     trial.bias = bias_of_means(found.inscatter, found.inscatter, truth.inscatter, other.inscatter);
-    const double squares[] = {bias_of(found.color, found.color, truth.color, other.color).squared,
+    const double squares[] = {trial.bias * trial.bias,
+                              bias_of(found.color, found.color, truth.color, other.color).squared,
                               bias_of(found.inscatter, found.inscatter, truth.inscatter, other.inscatter).squared};
-    return std::sqrt(std::max({squares[0], squares[1], 0.0}));
+    return std::sqrt(std::ranges::max(squares));
 }
 
 double error_of_mean(Trial& trial) {
