@@ -368,8 +368,12 @@ double share_of_picture(const View& view, vec3 center, double radius) {
 Severity severity_near(const View& view, const Snapshot& snapshot, vec3 center, double distance) {
     constexpr double much = 0.2, deep = 0.5; // of the picture; optical depths
     double extinction = 0;
-    for (const Medium& medium : snapshot.media)
-        extinction += double(density_at(medium, center)) * grey_extinction(medium.optics);
+    for (const Medium& medium : snapshot.media) {
+        const Box& box = medium.world_bounds;
+        const bool inside =
+            glm::all(glm::lessThanEqual(box.low, center)) && glm::all(glm::lessThanEqual(center, box.high));
+        if (inside) extinction += medium.majorant();
+    }
     const bool wrong = share_of_picture(view, center, distance) > much || extinction * distance > deep;
     return wrong ? Severity::wrong : Severity::degraded;
 }

@@ -63,7 +63,7 @@ StressScene at_moments(std::shared_ptr<Scene> scene, int count) {
     RenderRequest request;
     request.resolution = authored_size, request.time_samples = count;
     request.settings.path.orders = 1, request.settings.of<FroxelSettings>().tile = 1;
-    request.settings.pixel.filter = PixelFilter::center;
+    request.settings.pixel.filter = PixelFilter::box, request.settings.pixel.filter_radius = 0.5f;
     request.settings.pixel.lamp_samples = request.settings.pixel.edge_samples = 1;
     StressScene result;
     result.snapshot = make_snapshot(*scene, moments_of(*scene, request, 0));

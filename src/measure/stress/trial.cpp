@@ -240,7 +240,9 @@ double error_to_truth(Trial& trial) {
 double error_and_bias(Trial& trial) {
     constexpr int few = 256; // of light that no technique samples well
     if (is_noise(trial)) return std::max(bias_to_truth(trial, few, false), trial.bias);
-    const Layers &truth = trial.truth(), &other = trial.other_truth(), found = trial.render();
+    StressScene preview = trial.scene;
+    preview.view.pixel_samples = preview.settings.pixel.samples;
+    const Layers &truth = trial.truth(), &other = trial.other_truth(), found = trial.render(preview);
     trial.bias = bias_of_means(found.inscatter, found.inscatter, truth.inscatter, other.inscatter);
     const double squares[] = {trial.bias * trial.bias,
                               bias_of(found.color, found.color, truth.color, other.color).squared,

@@ -53,9 +53,8 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     const size_t lights = snapshot.lights.size();
     scatter = with_lamps_as_emission(lights, march->snapshot.lights.size() - lights, std::move(scatter));
     scatter = with_field_light(std::move(fields), std::move(scatter));
-    // A blur over 4×4 pixels would spread the glow of a narrow lobe, too.
     const FogBufferOptions picture{settings.of<ShadowMapSettings>().fog_resolution,
-                                   settings.of<ShadowMapSettings>().blur && !march->narrow_lobe};
+                                   settings.of<ShadowMapSettings>().blur};
     if (history) follow(*history, view, snapshot, settings);
     if (picture.share == Resolution::full && !picture.blur && !history) return scatter;
     return from_fog_buffer(view, snapshot, picture, std::move(scatter), history);
