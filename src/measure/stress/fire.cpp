@@ -14,7 +14,7 @@ namespace {
 const std::vector<Excuse> excuses{
     {&limitation::lamps_for_fire}, {&limitation::drawn_as_homogeneous}, {&limitation::mean_emission_color},
     {&limitation::long_steps},     {&limitation::deep_steps},           {&limitation::deep_froxels},
-    {&limitation::coarse_shafts},  {&limitation::hard_shadows, 0.5},    {&limitation::few_steps_for_glow}};
+    {&limitation::coarse_shafts},  {&limitation::hard_shadows, 0.5},    {&limitation::few_steps_for_glow, 2}};
 const Camera beside = camera_from({0.4f, 0.7f, 3.5f}, {0, 0.6f, 0});
 
 StressScene fire_scene(const Flame& flame, Camera camera = beside, Medium haze = thin_haze(),
