@@ -366,7 +366,7 @@ double share_of_picture(const View& view, vec3 center, double radius) {
 
 // Of what is off within a distance of a light: much of the picture shows that fog, or light hardly gets beyond.
 Severity severity_near(const View& view, const Snapshot& snapshot, vec3 center, double distance) {
-    constexpr double much = 0.2, deep = 0.5; // of the picture; optical depths
+    constexpr double much = 0.2, deep = 0.3; // of the picture; optical depths
     double extinction = 0;
     for (const Medium& medium : snapshot.media) {
         const Box& box = medium.world_bounds;

@@ -17,7 +17,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_samples = 1024; // per pixel, of a mode whose error is noise
+// Per pixel, of a mode whose error is noise; and of one where light that is authored is sampled by chance.
+constexpr int max_samples = 1024, max_authored = 256;
 
 uint64_t negative_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(
@@ -238,8 +239,7 @@ double error_to_truth(Trial& trial) {
 }
 
 double error_and_bias(Trial& trial) {
-    constexpr int few = 256; // of light that no technique samples well
-    if (is_noise(trial)) return std::max(bias_to_truth(trial, few, false), trial.bias);
+    if (is_noise(trial)) return std::max(bias_to_truth(trial, max_authored, false), trial.bias);
     StressScene preview = trial.scene;
     preview.view.pixel_samples = preview.settings.pixel.samples;
     const Layers &truth = trial.truth(), &other = trial.other_truth(), found = trial.render(preview);
