@@ -130,6 +130,21 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
     EXPECT_NEAR(term_named(terms, "phase function").error, expected, 2e-3 * expected);
 }
 
+TEST(Plan, NothingGetsThereByMoreSamplesThanThereMayBe) {
+    const Snapshot snapshot =
+        snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
+    const Plan plan = plan_of(snapshot, 1e-5);
+    for (const Standing& standing : plan.standings)
+        if (standing.best && standing.best->gets_there()) {
+            EXPECT_LE(standing.best->samples, max_target_samples) << standing.mode->name;
+        }
+    const auto path = std::ranges::find(plan.standings, std::string_view("path"),
+                                        [](const Standing& standing) { return standing.mode->name; });
+    ASSERT_NE(path, plan.standings.end());
+    ASSERT_TRUE(path->best);
+    EXPECT_FALSE(path->best->gets_there());
+}
+
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
     const Plan plan = plan_of(
         snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), 0.02);
