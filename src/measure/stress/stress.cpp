@@ -154,9 +154,9 @@ const std::vector<StressCase>& stress_cases() {
     static const std::vector<StressCase> cases = [] {
         std::vector<StressCase> all;
         for (auto* group :
-             {stress_lamps, stress_filters, stress_fog, stress_shadows, stress_history, stress_scattering,
-              stress_orders, stress_files, stress_data, stress_looks, stress_fire, stress_glow, stress_faces,
-              stress_beams, stress_skies, stress_lobes, stress_colors, stress_shutters, stress_program})
+             {stress_lamps, stress_filters, stress_beams, stress_fog, stress_shadows, stress_history, stress_scattering,
+              stress_lobes, stress_colors, stress_orders, stress_fire, stress_glow, stress_faces, stress_skies,
+              stress_shutters, stress_files, stress_data, stress_looks, stress_program})
             for (StressCase& stress : group()) all.push_back(std::move(stress));
         return all;
     }();
