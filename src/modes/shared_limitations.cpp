@@ -22,10 +22,11 @@
 
 namespace tyndall {
 namespace {
-constexpr float deep_cell = 0.3f;    // optical depths, across which the dimming of light is far from linear
-constexpr float deep_step = 0.15f;   // optical depths
-constexpr float detail_voxels = 2;   // of fog that changes from voxel to voxel
-constexpr float seen_offset = 0.25f; // pixels
+constexpr float deep_cell = 0.3f;       // optical depths, across which the dimming of light is far from linear
+constexpr float deep_step = 0.15f;      // optical depths
+constexpr float detail_voxels = 2;      // of fog that changes from voxel to voxel
+constexpr float seen_offset = 0.25f;    // pixels
+constexpr double much_of_picture = 0.2; // of its height
 constexpr double seen_share = 0.02, wrong_share = 0.5; // of light that is off
 
 // How thick a medium can be at most across its own bounds, as optical depth.
@@ -364,18 +365,13 @@ double share_of_picture(const View& view, vec3 center, double radius) {
     return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
 }
 
-// Of what is off within a distance of a light: much of the picture shows that fog, or light hardly gets beyond.
-Severity severity_near(const View& view, const Snapshot& snapshot, vec3 center, double distance) {
-    constexpr double much = 0.2, deep = 0.3; // of the picture; optical depths
+// Whether most of what fog scatters of a light is scattered within a distance of it: it hardly gets beyond.
+bool is_short_of(const Snapshot& snapshot, vec3 center, double distance) {
+    constexpr double deep = 0.3; // optical depths
     double extinction = 0;
-    for (const Medium& medium : snapshot.media) {
-        const Box& box = medium.world_bounds;
-        const bool inside =
-            glm::all(glm::lessThanEqual(box.low, center)) && glm::all(glm::lessThanEqual(center, box.high));
-        if (inside) extinction += medium.majorant();
-    }
-    const bool wrong = share_of_picture(view, center, distance) > much || extinction * distance > deep;
-    return wrong ? Severity::wrong : Severity::degraded;
+    for (const Medium& medium : snapshot.media)
+        extinction += double(density_at(medium, center)) * grey_extinction(medium.optics);
+    return extinction * distance > deep;
 }
 }
 
@@ -385,7 +381,9 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
     for (const Light& light : snapshot.lights)
         if (light.area && light.volume_scale > 0) {
             const double within = far_enough(*light.area, tolerated);
-            limitations.push_back({severity_near(view, snapshot, light.position, within),
+            const bool wrong = share_of_picture(view, light.position, within) > much_of_picture ||
+                               is_short_of(snapshot, light.position, within);
+            limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
                                    &limitation::lamp_for_face,
                                    Subject::light,
                                    light.name,
@@ -393,7 +391,7 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
         }
 }
 
-void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations& limitations) {
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
     if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const std::vector<Light> lamps = fire_lamps(snapshot);
@@ -402,7 +400,7 @@ void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations&
     for (const Light& lamp : lamps) {
         const double within = far_enough(lamp, tolerated);
         reach = std::max(reach, within);
-        severity = std::max(severity, severity_near(view, snapshot, lamp.position, within));
+        if (is_short_of(snapshot, lamp.position, within)) severity = Severity::wrong;
     }
     for (const Medium& medium : snapshot.media)
         if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))

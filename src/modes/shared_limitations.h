@@ -118,15 +118,16 @@ void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 // comes from no grid.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
 
-// Where lamps stand for glowing fog. `wrong`, as with faces, where fog that they are off in takes much of the picture.
-void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations& limitations);
+// Where lamps stand for glowing fog. `wrong` where most of their light is scattered in the fog that they are off in.
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the fog has the environment's light as its mean, or none of it. How far the mean is off is measured on a few
 // rays.
 void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations);
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for the faces of rectangles, discs and spheres.
+// Where lamps stand for the faces of rectangles, discs and spheres. `wrong` also where that fog takes much of the
+// picture.
 void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Materials whose emission lights nothing; and those for which it does so in the fog alone.
