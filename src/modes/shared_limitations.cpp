@@ -365,13 +365,17 @@ double share_of_picture(const View& view, vec3 center, double radius) {
     return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
 }
 
-// Whether most of what fog scatters of a light is scattered within a distance of it: it hardly gets beyond.
+// Whether a light hardly gets beyond a distance from it: by the fog on six ways.
 bool is_short_of(const Snapshot& snapshot, vec3 center, double distance) {
     constexpr double deep = 0.3; // optical depths
-    double extinction = 0;
-    for (const Medium& medium : snapshot.media)
-        extinction += double(density_at(medium, center)) * grey_extinction(medium.optics);
-    return extinction * distance > deep;
+    double depth = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float way : {-1.0f, 1.0f}) {
+            Ray ray{center, vec3(0), static_cast<float>(distance)};
+            ray.direction[axis] = way;
+            depth += optical_depth(snapshot.media, ray) / 6;
+        }
+    return depth > deep;
 }
 }
 
