@@ -3,6 +3,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
+#include "trace/fog_motion.h"
 #include "trace/moment.h"
 
 #include <algorithm>
@@ -89,7 +90,7 @@ bool changes(const Scene& scene, const LightSource& light) {
 
 bool changes(const MediumSource& medium) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
-    if (medium.recipe && recipe_speed(*medium.recipe) > 0) return true;
+    if ((medium.recipe && recipe_speed(*medium.recipe) > 0) || moves(medium)) return true;
     if (medium.blackbody && !all(medium.blackbody->scale, medium.blackbody->tint)) return true;
     return !all(medium.extinction, medium.g, medium.albedo, medium.emission, medium.translation, medium.scale,
                 medium.rotate, medium.rotation, medium.height_base, medium.height_falloff);
