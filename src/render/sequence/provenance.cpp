@@ -33,7 +33,7 @@ std::string scene_text(const Scene& scene) {
 
 std::string fog_text(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
     std::string text;
-    for (const FrameFile& file : frame_files(scene, frame, request.missing))
+    for (const FrameFile& file : frame_files(scene, frame, request.missing, shutter_of(scene, request)))
         text +=
             (file.volume ? "fog=" : "gobo=") + (file.path ? file_hash(*file.path, files) : std::string("none")) + "\n";
     return text;
