@@ -147,7 +147,7 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) 
            std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one.node); });
 }
 
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
+int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, int finer) {
     if (!changes_while_open(scene, camera, shutter)) return 1;
     const float motion = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
     const unsigned wanted = std::bit_ceil(static_cast<unsigned>(std::min(motion, float(max_usual_moments)) + 0.999f));
@@ -157,6 +157,7 @@ int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const S
             triangles += static_cast<double>(scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size());
     const double affordable = max_bytes / std::max(triangles * bytes_per_triangle, 1.0);
     const int most = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(affordable, 1.0, 32.0))));
-    return std::min(std::clamp(static_cast<int>(wanted), fewest_moments, max_usual_moments), most);
+    const int usual = std::clamp(static_cast<int>(wanted), fewest_moments, max_usual_moments);
+    return std::min({finer * usual, max_usual_moments, most});
 }
 }

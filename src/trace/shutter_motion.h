@@ -16,6 +16,7 @@ float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, c
 bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
 
 // A power of two: so many that the moments lie no more than 1.5 pixels apart, or max_usual_moments; at least 4 where
-// anything changes, else 1. Fewer where moving triangles would take more than 1 GiB.
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter);
+// anything changes, else 1; `finer` times as many, up to max_usual_moments, where the error counts. Fewer where moving
+// triangles would take more than 1 GiB.
+int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, int finer = 1);
 }

@@ -127,8 +127,9 @@ FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int fr
     const int camera = find_camera(scene, request.camera);
     if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    const int finer = request.target_error > 0 ? 2 : 1; // what moments leave is part of the error asked for
     const int count =
-        request.time_samples > 0 ? request.time_samples : usual_moments(scene, camera, size, frame, shutter);
+        request.time_samples > 0 ? request.time_samples : usual_moments(scene, camera, size, frame, shutter, finer);
     return frame_moments(scene, frame, shutter, count);
 }
 
