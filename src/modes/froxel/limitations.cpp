@@ -147,7 +147,8 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     if (std::ranges::any_of(snapshot.media, unbounded))
         limitations.push_back({Severity::info, &limitation::few_far_slices, Subject::setting, "froxel.depth_slices"});
     if (froxel.visibility == FroxelVisibility::intervals && has_alpha_shadows(snapshot))
-        limitations.push_back({Severity::info, &limitation::rays_for_alpha, Subject::setting, "froxel.visibility"});
+        limitations.push_back(
+            {Severity::info, &limitation::coarse_alpha_shadows, Subject::setting, "froxel.visibility"});
     return limitations;
 }
 }
