@@ -13,7 +13,7 @@
 namespace tyndall {
 namespace {
 constexpr int looks = 5;          // moments at which places are compared
-constexpr float spacing = 0.75f;  // pixels between neighbouring moments: moments_error() is 6.4 %
+constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
 constexpr int fewest_moments = 4; // of what changes at all
 constexpr double gibibyte = 1 << 30, max_triangle_bytes = gibibyte, bytes_per_triangle = 200;
 // Measured: 8 MiB of light grids in march, 33 of beams in froxel.
@@ -192,28 +192,5 @@ int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const S
         keeps_pictures ? within(max_picture_bytes / (pixels * bytes_per_pixel), max_costly_moments) : max_usual_moments;
     return std::min({std::clamp(count, fewest_moments, max_usual_moments), affordable_by_surfaces(scene),
                      affordable_by_lights(scene, everything), by_pixels});
-}
-
-namespace {
-// The filter's spectrum at a frequency per pixel: its density along one axis is that at the middle of the other.
-double spectrum(PixelFilter filter, float radius, double frequency) {
-    if (filter == PixelFilter::center) return 1;
-    constexpr int steps = 256;
-    double sum = 0, all = 0;
-    for (int i = 0; i < steps; ++i) {
-        const double at = (i + 0.5) / steps;
-        const double density = double{filter_density(filter, vec2(static_cast<float>(at), 0))};
-        sum += density * std::cos(2 * double{pi} * frequency * double{radius} * at), all += density;
-    }
-    return sum / all;
-}
-}
-
-double moments_error(PixelFilter filter, float filter_radius, double apart) {
-    constexpr int harmonics = 64;
-    if (!(apart > 0)) return 0;
-    double squares = 0;
-    for (int k = 1; k <= harmonics; ++k) squares += std::pow(spectrum(filter, filter_radius, k / apart), 2);
-    return std::sqrt(2 * squares);
 }
 }

@@ -1,7 +1,6 @@
 // How far things move on the picture while the shutter is open, and how many moments show that as one blur.
 #pragma once
 #include "base/math.h"
-#include "trace/sampling/pixel_filter.h"
 
 namespace tyndall {
 struct Scene;
@@ -24,9 +23,4 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
 // yet.
 int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
                   bool keeps_pictures = false);
-
-// How far the mean of moments is at most from that of all times, where things move so many pixels between two of them:
-// RMSE, relative to the mean, across a line as thin as can be. The ripple of a comb of lines seen through the pixel
-// filter: sqrt(2 Σ F(k / apart)²), F its Fourier transform. Whatever is wider is off by less.
-double moments_error(PixelFilter filter, float filter_radius, double apart);
 }
