@@ -7,6 +7,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/fluence/light_paths.h"
+#include "trace/fog_motion.h"
 #include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -201,10 +202,38 @@ void add_fading(const Snapshot& snapshot, Limitations& limitations) {
                 {Severity::degraded, &limitation::shutter_fades, Subject::light, light.name, {100 * off}});
     }
 }
+
+// The largest share that the lesser of two files has at a moment, percent.
+double lesser_share(const Snapshot& snapshot) {
+    double largest = 0;
+    for (const Snapshot& moment : *snapshot.moments) {
+        const double frames = moment.seconds * snapshot.scene->frame_rate;
+        largest = std::max(largest, std::abs(frames - std::round(frames)));
+    }
+    return 100 * largest;
+}
+
+void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& limitations) {
+    const MediumSource& source = snapshot.scene->media[medium];
+    const auto add = [&](Severity severity, const LimitationKind& kind, double amount, double count = 0) {
+        limitations.push_back({severity, &kind, Subject::medium, source.name, {amount, count}});
+    };
+    if (source.velocity) {
+        const FogTravel travel = fog_travel(snapshot, medium);
+        if (travel.voxels == 0) return;
+        const bool in_steps = travel.voxels > travel.places; // of more than two voxels, there and back
+        add(in_steps ? Severity::degraded : Severity::info, limitation::advected_volumes, travel.voxels, travel.places);
+    } else if (moves(source)) {
+        add(Severity::degraded, limitation::blended_volumes, lesser_share(snapshot));
+    } else if (source.kind == MediumKind::vdb && source.sequence.files.size() > 1) {
+        const double open = snapshot.moments->back().seconds - snapshot.moments->front().seconds;
+        add(Severity::degraded, limitation::still_volumes, open);
+    }
+}
 }
 
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
-    constexpr double separate = 2; // pixels: then edges show as steps
+    constexpr double separate = 1; // pixels: then thin lines are seen apart
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
     add_fading(snapshot, limitations);
     const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
@@ -213,11 +242,7 @@ void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limita
                            Subject::camera,
                            view.camera.name,
                            {between, moments}});
-    const double open = snapshot.moments->back().seconds - snapshot.moments->front().seconds;
-    for (const MediumSource& medium : snapshot.scene->media)
-        if (medium.kind == MediumKind::vdb && medium.sequence.files.size() > 1)
-            limitations.push_back(
-                {Severity::degraded, &limitation::still_volumes, Subject::medium, medium.name, {open}});
+    for (size_t i = 0; i < snapshot.scene->media.size(); ++i) add_volume_motion(snapshot, i, limitations);
 }
 
 namespace {

@@ -72,7 +72,15 @@ inline constexpr LimitationKind shutter_fades{
     "shutter_fades", "its brightness changes so much between two of the moments that motion blur is made of that it is "
                      "off by up to {}% (--time-samples)"};
 inline constexpr LimitationKind still_volumes{
-    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open"};
+    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open (a \"velocity\" "
+                     "in its \"grids\" moves it, \"blend\" in its \"sequence\" mixes files)"};
+inline constexpr LimitationKind blended_volumes{
+    "blended_volumes",
+    "while the shutter is open two of its files are mixed, with up to {}% of the lesser: what moves by "
+    "more than a voxel from file to file is seen twice"};
+inline constexpr LimitationKind advected_volumes{
+    "advected_volumes", "moves along straight lines by its velocities, up to {} voxels from where its file has it, "
+                        "through {n} places"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
