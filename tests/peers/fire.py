@@ -44,6 +44,7 @@ def scattered(referee, points, direction):
         share = random.random(len(points))
         there = points + ((k + share) * step)[:, None] * to_light
         here = density(voxels, there)
-        arriving += np.exp(-referee.extinction * (depth + here * share * step)[:, None]) * emission(scene, voxels, there) * step[:, None]
+        through = np.exp(-referee.extinction * (depth + here * share * step)[:, None])
+        arriving += through * emission(scene, voxels, there) * step[:, None]
         depth += here * step
     return 4 * math.pi * phase(scene.fog, (to_light * direction).sum(-1))[:, None] * arriving

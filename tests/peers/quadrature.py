@@ -1,7 +1,8 @@
 """The single-scattering integral written down plainly: the referee where renderers differ.
 
 Radiance of a camera ray through fog of extinction s(x), from its entry to the first surface or the fog's end:
-  integral of T(t) (s albedo phase(cos) E_light(x) V(x) T_light(x) + emission(x)) dt  +  T(end) (emission + color / pi * E_light cos V T_light)
+  integral of T(t) (s albedo phase(cos) E_light(x) V(x) T_light(x) + emission(x)) dt
+  + T(end) (emission + color / pi * E_light cos V T_light)
 with one random point in each of `STEPS` even steps and one random point of the lights for each of those. Visibility,
 distances in homogeneous fog, boxes and balls are exact; in a grid both optical depths are sums over random points of even
 steps. Numpy, no code shared with any renderer."""

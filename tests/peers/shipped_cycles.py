@@ -162,7 +162,8 @@ def with_emission(path, medium):
     low, high = temperature.evalActiveVoxelBoundingBox()
     kelvin = np.zeros([b - a + 1 for a, b in zip(low, high)], np.float32)
     temperature.copyToArray(kelvin, ijk=low)
-    nits = np.where(kelvin[..., None] > 300, blackbody.radiance(np.maximum(kelvin, 300)), 0) * medium["blackbody"]["emission_scale"]
+    nits = np.where(kelvin[..., None] > 300, blackbody.radiance(np.maximum(kelvin, 300)), 0)
+    nits *= medium["blackbody"]["emission_scale"]
     emission = openvdb.Vec3SGrid()
     emission.copyFromArray(nits.astype(np.float32), ijk=low)
     emission.name, emission.transform = "emission", temperature.transform

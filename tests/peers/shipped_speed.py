@@ -33,8 +33,9 @@ def prepare(name, folder, program, frame):
         medium |= {"type": "vdb", "file": pattern.name.replace("####", f"{frame:04}"), **json.loads(recipe.read_text())["optics"]}
         if "blackbody" in medium:
             medium["grids"] = {"temperature": "temperature"}
-    for owner, key in [(document, "gltf")] + [(light[part], field) for light in document.get("lights", ())
-                                              for part, field in (("ies", "file"), ("gobo", "image")) if part in light]:
+    lamps = [(light[part], field) for light in document.get("lights", ()) for part, field in (("ies", "file"), ("gobo", "image"))
+             if part in light]
+    for owner, key in [(document, "gltf"), *lamps]:
         if key in owner:
             shutil.copy(SCENES / owner[key], folder / owner[key])
     document.pop("$schema")
@@ -49,8 +50,9 @@ def compared(program, a, b):
 
 
 class Tyndall:
-    """March pictures of ever more samples. What they are compared with has final quality, and its noise counts as error."""
-    noise = 1
+    """March pictures of ever more samples. What they are compared with has final quality and `more` samples, and its noise counts
+    as error."""
+    more, noise = 4, 1
 
     def __init__(self, quality, scene, frame, args, folder):
         self.quality, self.scene, self.frame, self.args, self.folder = quality, scene, frame, args, folder
@@ -60,15 +62,15 @@ class Tyndall:
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
         run([self.args.tyndall, "render", str(self.scene), "-o", str(picture), "--frames", str(self.frame), "--aov", "none", "-q",
              "--res", self.args.res, "--samples", str(samples), "--seed", str(seed), "--threads", str(self.args.threads),
-             "--set", "pixel.filter=box", "--set", "pixel.filter_radius=0.5", "--quality", "final" if better else self.quality, *shlex.split(self.args.options)])
+             "--quality", "final" if better else self.quality, "--set", "pixel.filter=box", "--set", "pixel.filter_radius=0.5",
+             *shlex.split(self.args.options)])
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return picture, after.ru_utime + after.ru_stime - used.ru_utime - used.ru_stime
 
 
 class Cycles:
-    """The same scene; light scattered once, without bias: what is left is noise, and so is that of the picture it is compared
-    with."""
-    noise = math.sqrt(1.25)
+    """The same scene; light scattered once, without bias: two pictures of other random numbers differ by the noise of both."""
+    more, noise = 1, math.sqrt(2)
 
     def __init__(self, scene, frame, args, folder):
         self.scene, self.frame, self.args, self.folder = scene, frame, args, folder
@@ -82,12 +84,12 @@ class Cycles:
 
 
 def ladder(renderer, args):
-    """Yields (samples, processor seconds, error) for 1, 2, 4, ... samples. A picture's error is that against one of four times
-    as many samples with random numbers of its own."""
+    """Yields (samples, processor seconds, error) for 1, 2, 4, ... samples. A picture's error is that against another with random
+    numbers of its own."""
     samples = args.first
     while True:
         picture, seconds = renderer.render(samples, 1)
-        better, _ = renderer.render(4 * samples, 1000, better=True)
+        better, _ = renderer.render(renderer.more * samples, 1000, better=True)
         yield samples, seconds, compared(args.tyndall, picture, better) / renderer.noise
         samples *= 2
 
