@@ -1,7 +1,7 @@
 // The parts of the viewer, and what hands and scripts do to them.
 #pragma once
 #include "interface_times.h"
-#include "panels.h"
+#include "panels/panels.h"
 #include "viewer.h"
 #include "viewer/painting/job_thread.h"
 #include "window.h"

@@ -1,6 +1,5 @@
 #include "integrate/lights/face_light.h"
 
-#include "integrate/lights/fog_points.h"
 #include "scene/area_shape.h"
 #include "scene/light_reach.h"
 #include "trace/occlusion/occluders.h"
@@ -16,7 +15,7 @@ constexpr int pairs_for_a_point = 2; // of distances, one by angle and one by fo
 
 // The two ways to pick distances on a ray, for one light.
 struct Distances {
-    SeenFog fog;
+    const SeenFog& fog;
     AngleDistances angles;
 };
 
@@ -40,12 +39,12 @@ void append_path(const ScatteringFog& fog, const Light& light, const Ray& ray, c
 }
 
 void append_ray(const ScatteringFog& fog, const Light& light, size_t number, const RayBatch& batch, size_t i,
-                const FogPieces& pieces, std::vector<ScatterPath>& paths) {
+                const SeenFog& seen, std::vector<ScatterPath>& paths) {
     const Ray& ray = batch.rays[i];
-    if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
+    const FogPieces& pieces = seen.pieces;
     // Only what the light reaches is worth asking for.
     const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
-    const Distances distances{seen_fog(pieces, fog.style.view_depth),
+    const Distances distances{seen,
                               angle_distances(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};
     if (distances.angles.empty()) return;
     const auto pairs = static_cast<uint32_t>(fog.points * pairs_for_a_point);
@@ -66,39 +65,19 @@ void append_ray(const ScatteringFog& fog, const Light& light, size_t number, con
 }
 }
 
-FaceLight take_faces(Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms, const Camera& camera,
-                     bool shadows, float min_transmittance) {
-    FaceLight faces;
+void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                std::vector<PathLight>& lights) {
     const auto first = std::ranges::find_if(snapshot.lights, [](const Light& light) { return light.area != nullptr; });
-    faces.first = static_cast<size_t>(first - snapshot.lights.begin());
-    faces.lights.assign(first, snapshot.lights.end());
+    const auto before = static_cast<size_t>(first - snapshot.lights.begin());
+    const std::vector<Light> faces(first, snapshot.lights.end());
     snapshot.lights.erase(first, snapshot.lights.end());
-    for (const Light& light : faces.lights)
-        faces.casters.push_back(shadows ? shadow_casters(light, snapshot) : nullptr);
-    faces.fog = scattering_fog(snapshot, style, terms, camera, min_transmittance);
-    return faces;
-}
-
-void add_face_light(const FaceLight& faces, const RayBatch& batch, std::span<Scatter> results) {
-    static thread_local std::vector<FogPieces> pieces(16);
-    static thread_local std::vector<ScatterPath> paths;
-    for (size_t i = 0; i < batch.rays.size(); ++i)
-        find_fog(batch.rays[i], faces.fog.media, faces.fog.min_transmittance, pieces[i]);
-    for (size_t number = 0; number < faces.lights.size(); ++number) {
-        paths.clear();
-        if (!(faces.lights[number].volume_scale > 0)) continue;
-        for (size_t i = 0; i < batch.rays.size(); ++i)
-            append_ray(faces.fog, faces.lights[number], number, batch, i, pieces[i], paths);
-        add_scatter_paths(faces.fog, faces.casters[number].get(), paths, faces.first + number, batch, results);
+    for (size_t number = 0; number < faces.size(); ++number) {
+        if (!(faces[number].volume_scale > 0)) continue;
+        lights.push_back({shadows ? shadow_casters(faces[number], snapshot) : nullptr, before + number,
+                          [light = faces[number], number, fog](const RayBatch& batch, size_t i, const SeenFog& seen,
+                                                               std::vector<ScatterPath>& paths) {
+                              append_ray(*fog, light, number, batch, i, seen, paths);
+                          }});
     }
-}
-
-ScatterFunction with_face_light(FaceLight faces, ScatterFunction scatter) {
-    if (faces.lights.empty() || !scatters(faces.fog)) return scatter;
-    return [faces = std::make_shared<const FaceLight>(std::move(faces)),
-            scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
-        scatter(batch, results);
-        add_face_light(*faces, batch, results);
-    };
 }
 }

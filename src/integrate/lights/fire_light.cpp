@@ -1,6 +1,5 @@
 #include "integrate/lights/fire_light.h"
 
-#include "integrate/lights/fog_points.h"
 #include "trace/lights/emissive_bricks.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -13,10 +12,11 @@ constexpr double closest_share = 1e-5; // closest distance that angles are measu
 
 // One ray through the fog.
 struct FireRay {
-    const FireLight& light;
+    const EmissiveBricks& fire;
+    const ScatteringFog& fog;
     const Ray& ray;
     size_t number;
-    SeenFog seen;
+    const SeenFog& seen;
     double rounds;
     double min_height;
     std::vector<ScatterPath>& paths;
@@ -45,7 +45,7 @@ void append_path(const FireRay& on, const FirePoint& point, const EmissivePlace&
     const vec3 offset = place.position - there.point;
     const float away = glm::length(offset);
     if (!(max_component(place.emission) > 0) || !(away > 0)) return;
-    const ScatteringFog& fog = on.light.fog;
+    const ScatteringFog& fog = on.fog;
     const auto [albedo, by_phase] = scattered(fog.media, there, offset / away);
     const double by_fog = on.seen.density(point.extinction, point.passing);
     const double aimed = double{place.density} * away * away;
@@ -60,10 +60,9 @@ void append_path(const FireRay& on, const FirePoint& point, const EmissivePlace&
 
 // From a point in a direction by the phase function. Its places have another chance than the guess that all ways share.
 void append_lines(const FireRay& on, const FirePoint& point, float which, vec2 u, float v) {
-    const FireLight& light = on.light;
-    const vec3 direction = direction_by_phase(light.fog.media, point.there, which, u);
-    for (size_t field = 0; field < light.fire->fields.size(); ++field) {
-        const EmissionOnLine hit = emission_on_line(*light.fire, field, {point.there.point, direction, infinity}, v);
+    const vec3 direction = direction_by_phase(on.fog.media, point.there, which, u);
+    for (size_t field = 0; field < on.fire.fields.size(); ++field) {
+        const EmissionOnLine hit = emission_on_line(on.fire, field, {point.there.point, direction, infinity}, v);
         if (!(hit.inverse_density > 0)) continue;
         append_path(on, point, hit.place, on.around(hit.place.position),
                     double{hit.inverse_density} * hit.place.line_density);
@@ -73,7 +72,7 @@ void append_lines(const FireRay& on, const FirePoint& point, float which, vec2 u
 EmissivePlace pick_place(const FireRay& on, const RayBatch& batch, uint32_t k, uint32_t count) {
     const vec2 first = point_numbers(batch, on.number, k, count, use_brick),
                second = point_numbers(batch, on.number, k, count, use_in_brick);
-    return pick_emissive_place(*on.light.fire, first.x, {first.y, second.x, second.y});
+    return pick_emissive_place(on.fire, first.x, {first.y, second.x, second.y});
 }
 
 // One path each way.
@@ -97,43 +96,24 @@ void append_round(const FireRay& on, const RayBatch& batch, uint32_t k) {
     append_lines(on, point, v.x, point_numbers(batch, on.number, k, rounds, use_phase), v.y);
 }
 
-void append_ray(const FireLight& light, const RayBatch& batch, size_t i, FogPieces& pieces,
-                std::vector<ScatterPath>& paths) {
-    const Ray& ray = batch.rays[i];
-    find_fog(ray, light.fog.media, light.fog.min_transmittance, pieces);
-    if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
-    const int rounds = light.fog.points; // of one path each way
-    const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
-    const FireRay on{light, ray, i, seen_fog(pieces, light.fog.style.view_depth), double(rounds), min_height, paths};
-    for (int k = 0; k < rounds; ++k) append_round(on, batch, static_cast<uint32_t>(k));
+void append_ray(const EmissiveBricks& fire, const ScatteringFog& fog, const RayBatch& batch, size_t i,
+                const SeenFog& seen, std::vector<ScatterPath>& paths) {
+    const std::vector<FogPieces::Piece>& pieces = seen.pieces.pieces;
+    const double min_height = closest_share * (pieces.back().high - pieces.front().low);
+    const FireRay on{fire, fog, batch.rays[i], i, seen, double(fog.points), min_height, paths};
+    for (int k = 0; k < fog.points; ++k) append_round(on, batch, static_cast<uint32_t>(k)); // of one path each way
 }
 }
 
-FireLight fire_light(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
-                     const Camera& camera, bool shadows, float min_transmittance) {
-    FireLight light;
-    light.fire = emissive_bricks(snapshot);
-    if (!light.fire) return light;
-    if (shadows && snapshot.occluders && !snapshot.occluders->empty()) light.occluders = snapshot.occluders;
-    light.fog = scattering_fog(snapshot, style, terms, camera, min_transmittance);
-    return light;
-}
-
-void add_fire_light(const FireLight& light, const RayBatch& batch, std::span<Scatter> results) {
-    static thread_local FogPieces pieces;
-    static thread_local std::vector<ScatterPath> paths;
-    paths.clear();
-    for (size_t i = 0; i < batch.rays.size(); ++i) append_ray(light, batch, i, pieces, paths);
-    const size_t part = batch.parts.empty() ? 0 : batch.index_of(OtherLight::emission);
-    add_scatter_paths(light.fog, light.occluders.get(), paths, part, batch, results);
-}
-
-ScatterFunction with_fire_light(FireLight light, ScatterFunction scatter) {
-    if (!light.fire || !scatters(light.fog)) return scatter;
-    return [light = std::make_shared<const FireLight>(std::move(light)),
-            scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
-        scatter(batch, results);
-        add_fire_light(*light, batch, results);
-    };
+void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights) {
+    std::shared_ptr<const EmissiveBricks> fire = emissive_bricks(snapshot);
+    if (!fire) return;
+    const bool shadowed = shadows && snapshot.occluders && !snapshot.occluders->empty();
+    lights.push_back({shadowed ? snapshot.occluders : nullptr, OtherLight::emission,
+                      [fire = std::move(fire), fog = std::move(fog)](
+                          const RayBatch& batch, size_t i, const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                          append_ray(*fire, *fog, batch, i, seen, paths);
+                      }});
 }
 }

@@ -5,24 +5,9 @@
 #pragma once
 #include "integrate/lights/scatter_paths.h"
 
-#include <memory>
-
 namespace tyndall {
-struct EmissiveBricks;
-
-struct FireLight {
-    std::shared_ptr<const EmissiveBricks> fire; // null = none
-    std::shared_ptr<const Occluders> occluders; // null = nothing shadows it
-    ScatteringFog fog;                          // points: on each ray, a third of those asked for
-};
-
-// Of a snapshot as the settings see it, with the media that only emit in it.
-FireLight fire_light(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
-                     const Camera& camera, bool shadows, float min_transmittance);
-
-// Adds its light along up to 16 rays to their radiance, and to the emission among their parts.
-void add_fire_light(const FireLight& light, const RayBatch& batch, std::span<Scatter> results);
-
-// A technique that adds it to what `scatter` finds; `scatter` itself where there is none.
-ScatterFunction with_fire_light(FireLight light, ScatterFunction scatter);
+// Of a snapshot as the settings see it, with the media that only emit in it; nothing where none glows. Points on each
+// ray: a third of those asked for.
+void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights);
 }

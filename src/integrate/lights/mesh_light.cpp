@@ -1,7 +1,5 @@
 #include "integrate/lights/mesh_light.h"
 
-#include "integrate/lights/fog_points.h"
-#include "integrate/terms.h"
 #include "trace/lights/emissive_triangles.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -12,13 +10,19 @@ enum Use : uint32_t { use_distance = 0x4e54, use_triangle, use_place };
 
 constexpr double closest_share = 1e-5; // from where angles are measured, of the ray's length in fog
 
-EmissivePoint pick_point(const MeshLight& light, const RayBatch& batch, size_t i, uint32_t k, uint32_t count) {
-    return pick_glow_point(*light.surfaces, *light.occluders, point_numbers(batch, i, k, count, use_triangle).x,
+// What glows, and the surfaces that it is of.
+struct GlowingSurfaces {
+    std::shared_ptr<const EmissiveTriangles> triangles;
+    std::shared_ptr<const Occluders> occluders;
+};
+
+EmissivePoint pick_point(const GlowingSurfaces& light, const RayBatch& batch, size_t i, uint32_t k, uint32_t count) {
+    return pick_glow_point(*light.triangles, *light.occluders, point_numbers(batch, i, k, count, use_triangle).x,
                            point_numbers(batch, i, k, count, use_place));
 }
 
 // One of `count` ways from a distance of the ray to a point that glows.
-void append_path(const MeshLight& light, const Ray& ray, const SeenFog& seen, const AngleDistances& angles, double t,
+void append_path(const ScatteringFog& fog, const Ray& ray, const SeenFog& seen, const AngleDistances& angles, double t,
                  size_t piece, double count, const EmissivePoint& target, size_t number,
                  std::vector<ScatterPath>& paths) {
     static thread_local FogThere there;
@@ -31,23 +35,20 @@ void append_path(const MeshLight& light, const Ray& ray, const SeenFog& seen, co
         count * (angles.density(t) + seen.density(extinction, passing)) * double{target.density} * away * away;
     if (!(chance > 0)) return;
     const vec3 direction = offset / away;
-    const double weight = extinction * passing * std::abs(glm::dot(target.normal, direction)) *
-                          shown_share(light.fog, there.point) / chance;
+    const double weight =
+        extinction * passing * std::abs(glm::dot(target.normal, direction)) * shown_share(fog, there.point) / chance;
     const ScatterPath path{number,
                            {there.point, direction, away * 0.9999f},
-                           scattered(light.fog.media, there, direction).first * target.emission *
-                               static_cast<float>(weight)};
+                           scattered(fog.media, there, direction).first * target.emission * static_cast<float>(weight)};
     if (max_component(path.light) > 0) paths.push_back(path);
 }
 
-void append_ray(const MeshLight& light, const RayBatch& batch, size_t i, FogPieces& pieces,
-                std::vector<ScatterPath>& paths) {
+void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const RayBatch& batch, size_t i,
+                const SeenFog& seen, std::vector<ScatterPath>& paths) {
     const Ray& ray = batch.rays[i];
-    find_fog(ray, light.fog.media, light.fog.min_transmittance, pieces);
-    if (pieces.pieces.empty() || !(pieces.depth > 0)) return;
-    const SeenFog seen = seen_fog(pieces, light.fog.style.view_depth);
+    const FogPieces& pieces = seen.pieces;
     const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
-    const auto pairs = static_cast<uint32_t>(light.fog.points); // of distances, one by angle and one by fog
+    const auto pairs = static_cast<uint32_t>(fog.points); // of distances, one by angle and one by fog
     for (uint32_t k = 0; k < pairs; ++k) {
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance);
         const auto append = [&](bool by_angle, uint32_t point) {
@@ -57,38 +58,21 @@ void append_ray(const MeshLight& light, const RayBatch& batch, size_t i, FogPiec
             size_t piece = 0;
             const double t = by_angle ? angles.angles.at(u.x).t : seen.distance(double{u.y}, piece);
             if (by_angle) piece = piece_at(pieces, t);
-            if (piece < pieces.pieces.size()) append_path(light, ray, seen, angles, t, piece, pairs, target, i, paths);
+            if (piece < pieces.pieces.size()) append_path(fog, ray, seen, angles, t, piece, pairs, target, i, paths);
         };
         append(true, 2 * k), append(false, 2 * k + 1);
     }
 }
 }
 
-MeshLight mesh_light(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
-                     const Camera& camera, bool shadows, float min_transmittance) {
-    MeshLight light;
-    if (terms.emission) light.surfaces = emissive_triangles(snapshot);
-    if (!light.surfaces) return light;
-    light.occluders = snapshot.occluders, light.shadows = shadows;
-    light.fog = scattering_fog(snapshot, style, terms, camera, min_transmittance);
-    return light;
-}
-
-void add_mesh_light(const MeshLight& light, const RayBatch& batch, std::span<Scatter> results) {
-    static thread_local FogPieces pieces;
-    static thread_local std::vector<ScatterPath> paths;
-    paths.clear();
-    for (size_t i = 0; i < batch.rays.size(); ++i) append_ray(light, batch, i, pieces, paths);
-    const size_t part = batch.parts.empty() ? 0 : batch.index_of(OtherLight::emission);
-    add_scatter_paths(light.fog, light.shadows ? light.occluders.get() : nullptr, paths, part, batch, results);
-}
-
-ScatterFunction with_mesh_light(MeshLight light, ScatterFunction scatter) {
-    if (!light.surfaces || !scatters(light.fog)) return scatter;
-    return [light = std::make_shared<const MeshLight>(std::move(light)),
-            scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
-        scatter(batch, results);
-        add_mesh_light(*light, batch, results);
-    };
+void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights) {
+    GlowingSurfaces light{emissive_triangles(snapshot), snapshot.occluders};
+    if (!light.triangles) return;
+    lights.push_back({shadows ? snapshot.occluders : nullptr, OtherLight::emission,
+                      [light = std::move(light), fog = std::move(fog)](
+                          const RayBatch& batch, size_t i, const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                          append_ray(light, *fog, batch, i, seen, paths);
+                      }});
 }
 }

@@ -4,25 +4,8 @@
 #pragma once
 #include "integrate/lights/scatter_paths.h"
 
-#include <memory>
-
 namespace tyndall {
-struct EmissiveTriangles;
-
-struct MeshLight {
-    std::shared_ptr<const EmissiveTriangles> surfaces; // null = none
-    std::shared_ptr<const Occluders> occluders;        // which they are of
-    bool shadows = true;                               // of all of them
-    ScatteringFog fog;                                 // points: on each ray, half of those asked for
-};
-
-// Of a snapshot as the settings see it.
-MeshLight mesh_light(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
-                     const Camera& camera, bool shadows, float min_transmittance);
-
-// Adds its light along up to 16 rays to their radiance, and to the emission among their parts.
-void add_mesh_light(const MeshLight& light, const RayBatch& batch, std::span<Scatter> results);
-
-// A technique that adds it to what `scatter` finds; `scatter` itself where there is none.
-ScatterFunction with_mesh_light(MeshLight light, ScatterFunction scatter);
+// Of a snapshot as the settings see it; nothing where no surface glows. Points on each ray: half of those asked for.
+void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights);
 }

@@ -1,9 +1,13 @@
 // Light that fog scatters once towards the eye on single ways: from points of rays to the light.
 #pragma once
+#include "integrate/lights/fog_points.h"
 #include "integrate/ray_batch.h"
 #include "integrate/style.h"
 #include "volume/medium.h"
 
+#include <functional>
+#include <memory>
+#include <variant>
 #include <vector>
 
 namespace tyndall {
@@ -19,11 +23,9 @@ struct ScatteringFog {
     float min_transmittance = 0; // behind which fog is not asked for
     int points = 1;              // of which each kind of light asks for on each ray, or a multiple
 };
-ScatteringFog scattering_fog(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms,
-                             const Camera& camera, float min_transmittance);
-
-// Whether any of it sends light on.
-bool scatters(const ScatteringFog& fog);
+std::shared_ptr<const ScatteringFog> scattering_fog(const Snapshot& snapshot, const StyleSettings& style,
+                                                    const TermSettings& terms, const Camera& camera,
+                                                    float min_transmittance);
 
 // Share of what is scattered at a point that the style shows.
 float shown_share(const ScatteringFog& fog, vec3 point);
@@ -34,8 +36,15 @@ struct ScatterPath {
     vec3 light{0}; // that comes to the eye if nothing is on the way
 };
 
-// Adds to the radiance of the rays, and to their part of a number where there are parts, what surfaces (null = none)
-// and fog on the ways let through.
-void add_scatter_paths(const ScatteringFog& fog, const Occluders* casters, std::span<const ScatterPath> paths,
-                       size_t part, const RayBatch& batch, std::span<Scatter> results);
+// A light that rays look for themselves, by ways that are picked at random.
+struct PathLight {
+    std::shared_ptr<const Occluders> casters; // null = nothing shadows it
+    std::variant<size_t, OtherLight> part;    // of the light in fog: that of a light of the snapshot, or of other light
+    // Appends the ways of a ray of the batch through its fog.
+    std::function<void(const RayBatch&, size_t ray, const SeenFog&, std::vector<ScatterPath>&)> append;
+};
+
+// A technique that adds them to what `scatter` finds, as far as surfaces and fog on the ways let them through.
+ScatterFunction with_path_lights(std::shared_ptr<const ScatteringFog> fog, std::vector<PathLight> lights,
+                                 ScatterFunction scatter);
 }

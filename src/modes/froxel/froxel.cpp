@@ -59,8 +59,6 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
         scene.cones.push_back(cone_falloff(light));
     }
     scene.fluence = cached_fluence(scene.snapshot, settings.fluence, view.seed);
-    if (scene.settings.visibility == FroxelVisibility::intervals && has_alpha_shadows(snapshot))
-        scene.settings.visibility = FroxelVisibility::rays;
     return fields;
 }
 

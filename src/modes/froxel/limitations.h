@@ -25,8 +25,9 @@ inline constexpr LimitationKind lost_detail{"lost_detail",
 inline constexpr LimitationKind few_far_slices{"few_far_slices", "fog behind the scene gets only a few long slices"};
 inline constexpr LimitationKind coarse_glow{
     "coarse_glow", "fog glows within {} degrees of it, and froxels are {} degrees across: the glow is blurred"};
-inline constexpr LimitationKind rays_for_alpha{"rays_for_alpha",
-                                               "shadow rays are used, because there are MASK or BLEND surfaces"};
+inline constexpr LimitationKind coarse_alpha_shadows{
+    "coarse_alpha_shadows",
+    "shadows of MASK and BLEND surfaces are no finer than froxels, and those of eight shadow rays"};
 }
 
 Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

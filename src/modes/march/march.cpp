@@ -51,16 +51,15 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     const bool intervals = march.visibility == Visibility::intervals, exact = march.visibility == Visibility::exact;
     fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
     const bool shadows = march.visibility != Visibility::off;
-    EnvironmentLight sky =
-        environment_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
-    FireLight fire =
-        fire_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
-    MeshLight meshes =
-        mesh_light(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
+    const auto scattering =
+        scattering_fog(fog->snapshot, settings.style, settings.terms, view.camera, march.min_transmittance);
+    std::vector<PathLight> sampled;
+    append_fire_light(fog->snapshot, scattering, shadows, sampled);
+    if (settings.terms.emission) append_mesh_light(fog->snapshot, scattering, shadows, sampled);
+    append_environment_light(fog->snapshot, scattering, shadows, sampled);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    FaceLight faces =
-        take_faces(fog->snapshot, settings.style, settings.terms, view.camera, shadows, march.min_transmittance);
+    take_faces(fog->snapshot, scattering, shadows, sampled);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
@@ -78,9 +77,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
         if (exact) return march_exact(*fog, batch, results);
         march_packet(*fog, batch, results);
     };
-    scatter = with_face_light(std::move(faces), with_field_light(std::move(fields), std::move(scatter)));
-    scatter = with_mesh_light(std::move(meshes), with_fire_light(std::move(fire), std::move(scatter)));
-    return with_environment_light(std::move(sky), std::move(scatter));
+    return with_path_lights(scattering, std::move(sampled), with_field_light(std::move(fields), std::move(scatter)));
 }
 
 Mode march_mode() {

@@ -104,4 +104,16 @@ std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::ve
     set->matrices = std::move(matrices);
     return set;
 }
+
+const OccluderSet* passing_part(const Scene& scene, const OccluderSet& set) {
+    std::call_once(set.sifted, [&] {
+        std::vector<int> instances;
+        std::vector<mat4> matrices;
+        for (size_t i = 0; i < set.geometries.size(); ++i)
+            if (set.geometries[i].passes_light())
+                instances.push_back(set.instances[i]), matrices.push_back(set.matrices[i]);
+        if (!instances.empty()) set.passing = make_occluder_set(scene, std::move(instances), std::move(matrices));
+    });
+    return set.passing.get();
+}
 }

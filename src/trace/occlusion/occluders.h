@@ -86,6 +86,8 @@ public:
         }
     };
     void transmission(const ShadowRays& rays, float* visibility) const;
+    // Likewise of surfaces with alpha alone: what opaque ones block counts as free.
+    void alpha_transmission(const ShadowRays& rays, float* visibility) const;
     float transmission(const Ray& ray, float t_min) const; // a single ray: the slow way, for tests and benchmarks
 
     SurfacePoint surface(const Ray& ray, const Hits& hits, int lane) const;

@@ -57,6 +57,10 @@ struct OccluderSet {
     uint64_t triangles = 0, dropped = 0;
     bool has_alpha = false;
 
+    // Those that light may get through, made when first asked for. Null = none.
+    mutable std::once_flag sifted;
+    mutable std::shared_ptr<const OccluderSet> passing;
+
     OccluderSet() = default;
     OccluderSet(const OccluderSet&) = delete;
     OccluderSet& operator=(const OccluderSet&) = delete;
@@ -78,6 +82,9 @@ struct Occluders::Impl {
 // Triangles of some instances at their places, ready to trace. Throws Error.
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
                                                      std::vector<mat4> matrices);
+
+// Those of a set's instances that light may get through; null = none. Throws Error.
+const OccluderSet* passing_part(const Scene& scene, const OccluderSet& set);
 
 // What shadow rays gather on their way: Embree's context with the light each lane has left.
 struct ShadowContext {

@@ -76,8 +76,8 @@ void trace_transmission(const OccluderSet* const* sets, const Occluders::ShadowR
 
     ShadowContext context;
     for (int which = 0; which < 2; ++which) {
+        if (!sets[which] || sets[which]->triangles == 0) continue;
         const OccluderSet& set = *sets[which];
-        if (set.triangles == 0) continue;
         if (set.has_alpha) context.forget();
         occlude(set.scene, valid, context.embree, coherent_query, packet);
         for (int i = 0; i < width; ++i) {
@@ -105,14 +105,27 @@ void Occluders::closest(std::span<const Ray> rays, float t_min, Hits& hits, bool
     }
 }
 
-void Occluders::transmission(const ShadowRays& rays, float* visibility) const {
-    const OccluderSet* sets[2] = {impl_->still.get(), impl_->moving.get()};
+namespace {
+// Through two sets, of which either may be null.
+void trace_packets(const OccluderSet* const* sets, const Occluders::ShadowRays& rays, float* visibility) {
     if (traces_sixteen()) {
         trace_transmission<RTCRay16, 16>(sets, rays, 0, visibility);
     } else {
         trace_transmission<RTCRay8, 8>(sets, rays, 0, visibility);
         trace_transmission<RTCRay8, 8>(sets, rays, 8, visibility);
     }
+}
+}
+
+void Occluders::transmission(const ShadowRays& rays, float* visibility) const {
+    const OccluderSet* sets[2] = {impl_->still.get(), impl_->moving.get()};
+    trace_packets(sets, rays, visibility);
+}
+
+void Occluders::alpha_transmission(const ShadowRays& rays, float* visibility) const {
+    const OccluderSet* sets[2] = {passing_part(*impl_->scene, *impl_->still),
+                                  passing_part(*impl_->scene, *impl_->moving)};
+    trace_packets(sets, rays, visibility);
 }
 
 float Occluders::transmission(const Ray& ray, float t_min) const {

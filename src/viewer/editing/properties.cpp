@@ -54,6 +54,10 @@ bool is_own_camera(const Scene& scene, size_t i) { return scene.cameras[i].node 
 bool has_view_angle(const Scene& scene, size_t i) {
     return is_own_camera(scene, i) && scene.cameras[i].ortho_height == 0;
 }
+bool has_lens(const Scene& scene, size_t i) {
+    const CameraSource& camera = scene.cameras[i];
+    return has_view_angle(scene, i) && (camera.focus || !camera.aperture.constant() || camera.aperture.values[0] > 0);
+}
 // Of a background that the file states: one that shows the map of an environment is not changed apart from it.
 bool is_kind(const Scene& scene, BackgroundKind kind) {
     const Background& back = scene.background;
@@ -167,6 +171,10 @@ const Property table[] = {
      of_camera<&CameraSource::target>, is_own_camera},
     {Part::camera, "vertical_fov", number, "degrees", 5, 150, 10, 120, "Angle between lower and upper edge",
      of_camera<&CameraSource::vertical_fov>, has_view_angle},
+    {Part::camera, "aperture_radius", number, "m", 0, far, 0, 0.2f, "Radius of the lens: depth of field",
+     of_camera<&CameraSource::aperture>, has_view_angle},
+    {Part::camera, "focus_distance", number, "m", tiny, far, 0.1f, 50,
+     "Distance of what is sharp; that of the target until it is set", of_camera<&CameraSource::focus>, has_lens},
 
     // the scene itself
     {Part::scene, "exposure", number, "EV", -64, 64, -8, 8,
@@ -266,6 +274,15 @@ LightPlace light_place(const Scene& scene, size_t light, double seconds) {
     return {vec3(matrix[3]), -glm::normalize(vec3(matrix[2]))};
 }
 
+namespace {
+// As far as the camera's target is where the scene does not say.
+float focus_at(const Scene& scene, size_t camera, double seconds) {
+    const CameraSource& source = scene.cameras[camera];
+    return source.focus ? source.focus->at(seconds)
+                        : glm::distance(source.position.at(seconds), source.target.at(seconds));
+}
+}
+
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds) {
     const std::string_view name = property.name;
     if (property.part == Part::light && scene.lights[index].node >= 0 && (name == "position" || name == "direction")) {
@@ -276,6 +293,7 @@ vec3 value_at(const Scene& scene, const Property& property, size_t index, double
     vec3 value(0);
     if (const auto* number = std::get_if<Keyed<float>*>(&slot)) value.x = (*number)->at(seconds);
     if (const auto* vector_value = std::get_if<Keyed<vec3>*>(&slot)) value = (*vector_value)->at(seconds);
+    if (std::holds_alternative<std::optional<Keyed<float>>*>(slot)) value.x = focus_at(scene, index, seconds);
     if (const auto* number = std::get_if<float*>(&slot)) value.x = **number;
     if (const auto* vector_value = std::get_if<vec3*>(&slot)) value = **vector_value;
     if (const auto* flag = std::get_if<bool*>(&slot)) value.x = **flag;
@@ -290,6 +308,8 @@ bool is_keyed(const Scene& scene, const Property& property, size_t index) {
     const Slot slot = slot_of(scene, property, index);
     if (const auto* number = std::get_if<Keyed<float>*>(&slot)) return !(*number)->times.empty();
     if (const auto* vector_value = std::get_if<Keyed<vec3>*>(&slot)) return !(*vector_value)->times.empty();
+    if (const auto* maybe = std::get_if<std::optional<Keyed<float>>*>(&slot))
+        return **maybe && !(**maybe)->times.empty();
     return false;
 }
 }

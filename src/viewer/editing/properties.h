@@ -3,6 +3,7 @@
 #pragma once
 #include "scene/keyed.h"
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,8 +16,9 @@ struct Scene;
 enum class Part { light, medium, camera, scene };
 enum class ValueKind { number, vector, color, toggle }; // number: in x; toggle: x is 0 or 1
 
-// Where a property lives in a Scene. Angles are kept in radians there.
-using Slot = std::variant<Keyed<float>*, Keyed<vec3>*, float*, vec3*, bool*>;
+// Where a property lives in a Scene. Angles are kept in radians there. What is optional is found elsewhere until it is
+// set.
+using Slot = std::variant<Keyed<float>*, Keyed<vec3>*, std::optional<Keyed<float>>*, float*, vec3*, bool*>;
 
 struct Property {
     Part part;

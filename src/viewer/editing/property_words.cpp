@@ -73,6 +73,12 @@ const Row rows[] = {
     {Part::camera, "position", {"position", "Where the eye is, metres."}},
     {Part::camera, "target", {"target", "The point in the middle of the image, metres."}},
     {Part::camera, "vertical_fov", {"vertical fov", "Angle between lower and upper edge of the image."}},
+    {Part::camera,
+     "aperture_radius",
+     {"aperture radius", "Of the lens, metres: larger means less depth of field. 0 is a pinhole, all is sharp."}},
+    {Part::camera,
+     "focus_distance",
+     {"focus distance", "How far away is what is sharp, metres; the target until a value is set.", true}},
 
     {Part::scene,
      "exposure",

@@ -29,6 +29,10 @@ void set(Slot slot, const Property& property, const Edit& edit, double frame_rat
     const float number = property.is_angle() ? glm::radians(edit.value.x) : edit.value.x;
     if (auto* keyed = std::get_if<Keyed<float>*>(&slot)) set(**keyed, number, edit, frame_rate);
     if (auto* keyed = std::get_if<Keyed<vec3>*>(&slot)) set(**keyed, edit.value, edit, frame_rate);
+    if (auto* maybe = std::get_if<std::optional<Keyed<float>>*>(&slot)) {
+        if (!**maybe) **maybe = Keyed<float>(number);
+        set(***maybe, number, edit, frame_rate);
+    }
     if (auto* value = std::get_if<float*>(&slot)) **value = number;
     if (auto* value = std::get_if<vec3*>(&slot)) **value = edit.value;
     if (auto* value = std::get_if<bool*>(&slot)) **value = edit.value.x != 0;

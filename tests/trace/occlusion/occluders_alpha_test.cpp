@@ -37,6 +37,28 @@ TEST(OccludersAlpha, BlendSheetsMultiply) {
     expect_transmission(scene, 0.3f, 0.1f, 0);
 }
 
+TEST(OccludersAlpha, WhatIsOpaqueCanBeLeftOut) {
+    Scene scene;
+    scene.materials = {blend_material(0.5f)};
+    const auto alone = [&](float x) {
+        Occluders::ShadowRays rays;
+        set_ray(rays, -1, vec3(x, 0.1f, 0), vec3(0, 0, -1));
+        float visibility[16];
+        Occluders::make(scene, 0, nullptr)->alpha_transmission(rays, visibility);
+        return visibility[0];
+    };
+    add_mesh(scene, sheet(-3, -1));
+    EXPECT_EQ(alone(0.3f), 1);
+    add_mesh(scene, sheet(-1, 0));
+    EXPECT_EQ(alone(0.3f), 0.5f);
+    EXPECT_EQ(alone(1.3f), 1);
+    Node node;
+    node.translation.times = {0, 1};
+    node.translation.values = {vec3(0), vec3(0, 9, 0)};
+    add_mesh(scene, sheet(-2, 0), node);
+    EXPECT_EQ(alone(0.3f), 0.25f);
+}
+
 // The two triangles of a sheet share an edge; a ray on it meets one sheet, not two.
 TEST(OccludersAlpha, SharedEdgesCountOnce) {
     Scene scene;

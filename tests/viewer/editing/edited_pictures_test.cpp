@@ -54,6 +54,8 @@ TEST(EditedPictures, SavedAndReadAgainTheyAreTheSame) {
                                                          {"media/dust/g", "0.77"},
                                                          {"ambient", "0.1 0.11 0.12"},
                                                          {"cameras/eye/vertical_fov", "51.7"},
+                                                         {"cameras/eye/aperture_radius", "0.05"},
+                                                         {"cameras/eye/focus_distance", "2.5"},
                                                          {"background/sky/horizon", "0.3 0.2 0.1"}};
     Image<vec3> last = untouched;
     for (const auto& [path, value] : edits) {

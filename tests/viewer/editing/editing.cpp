@@ -104,7 +104,8 @@ std::vector<std::string> state_of(const Scene& scene) {
                         (m.recipe ? recipe_hash(*m.recipe) : ""));
     for (const CameraSource& c : scene.cameras)
         lines.push_back(c.name + " " + std::to_string(c.node) + bits(c.position) + bits(c.target) + bits(c.up) +
-                        bits(c.vertical_fov) + bits(c.near) + bits(c.far) + bits(c.ortho_height));
+                        bits(c.vertical_fov) + bits(c.near) + bits(c.far) + bits(c.ortho_height) + bits(c.aperture) +
+                        bits(c.focus.value_or(0.0f)));
     const Background& b = scene.background;
     lines.push_back("scene " + bits(scene.exposure) + bits(scene.ambient) + bits(b.color) + bits(b.zenith) +
                     bits(b.ground) + bits(b.intensity) + std::to_string(scene.camera));

@@ -113,7 +113,7 @@ TEST(SceneEdit, ListsWhatEachThingHas) {
                 ElementsAre("extinction", "albedo", "g", "emission", "wind", "translate", "rotate", "scale"));
     EXPECT_THAT(names(Part::medium, 3), ElementsAre("extinction", "albedo", "emission", "translate", "rotate", "scale",
                                                     "bounds/low", "bounds/high"));
-    EXPECT_THAT(names(Part::camera, 0), ElementsAre("position", "target", "vertical_fov"));
+    EXPECT_THAT(names(Part::camera, 0), ElementsAre("position", "target", "vertical_fov", "aperture_radius"));
     EXPECT_THAT(names(Part::scene, 0), ElementsAre("exposure", "ambient", "background/sky/zenith",
                                                    "background/sky/horizon", "background/sky/ground"));
 }
@@ -149,6 +149,17 @@ TEST(SceneEdit, AValueWithoutKeysIsReplaced) {
     EXPECT_EQ(scene.media[2].recipe->wind, vec3(0, 0, -0.5f));
     set(scene, "ambient", "-0");
     EXPECT_FALSE(std::signbit(scene.ambient.values[0].x));
+}
+
+TEST(SceneEdit, ALensIsFocusedOnTheTargetUntilItIsSaid) {
+    const Studio studio;
+    Scene scene = load_scene(studio.file);
+    EXPECT_NE(refusal(scene, "cameras/eye/focus_distance", "2"), "") << "a pinhole has none";
+    set(scene, "cameras/eye/aperture_radius", "0.1");
+    EXPECT_FLOAT_EQ(now(scene, "cameras/eye/focus_distance").x, std::hypot(0.25f, 4.0f));
+    set(scene, "cameras/eye/focus_distance", "2");
+    EXPECT_EQ(now(scene, "cameras/eye/focus_distance").x, 2);
+    EXPECT_EQ(scene.cameras[0].focus->values, std::vector<float>{2});
 }
 
 TEST(SceneEdit, AValueWithKeysGetsOneAtTheMoment) {

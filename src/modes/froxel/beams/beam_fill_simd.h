@@ -89,6 +89,7 @@ Floats seen_share(const Fill& fill, const PacketBeams& beams, size_t beam, const
         const Mask16 known = inside > 0.0f;
         by_rays = by_rays & !known;
         share = select(known, min(load(beams.lit[at].length) / max(inside, 1e-30f), 1.0f), share);
+        share = share * alpha_share(fill, index, lanes, job, known & (share > 0.0f));
     }
     if (!any(by_rays)) return share;
     FroxelLanes within = lanes;
@@ -107,7 +108,8 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
         const size_t index = kept.lights[b];
         const Light& light = fill.scene.snapshot.lights[index];
         const Vec3s point = has_cone(light) ? turned_inside(light, lanes.point) : lanes.point;
-        Floats share = fill.scene.has_pixel_views(index) ? 1.0f : seen_share(fill, beams, b, lanes, point, job);
+        Floats share = fill.scene.has_pixel_views(index) ? alpha_share(fill, index, lanes, job, lanes.active)
+                                                         : seen_share(fill, beams, b, lanes, point, job);
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;
         if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);

@@ -74,6 +74,10 @@ bool has_exact_shadows(const FroxelScene& scene, const Light& light) {
 
 namespace {
 bool is_grid(const Medium& medium) { return medium.density.kind == DensityKind::bricks; }
+bool has_alpha(const FroxelScene& scene, size_t index) {
+    const auto& casters = shadow_casters(scene.snapshot.lights[index], scene.snapshot);
+    return casters && casters->has_alpha();
+}
 bool is_closed(const FroxelScene& scene) { return std::ranges::none_of(scene.snapshot.media, is_grid); }
 }
 
@@ -116,7 +120,8 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     for (const size_t index : beams.lights) {
         beams.fog.push_back(fog_at_lamp(scene, grid, index));
         beams.grids.push_back(scene.depths[index]), beams.grids.back().analytic.clear();
-        beams.exact_shadows.push_back(has_exact_shadows(scene, scene.snapshot.lights[index]));
+        beams.exact_shadows.push_back(has_exact_shadows(scene, scene.snapshot.lights[index]) &&
+                                      !has_alpha(scene, index));
         beams.by_rays_alone.push_back(is_closed(scene) && beams.exact_shadows.back());
     }
     beams.reaches.resize(grid.tiles() * beams.lights.size());

@@ -22,16 +22,23 @@ struct FroxelLanes {
     Mask16 active;
 };
 
+// Which surfaces light has to pass.
+enum class Through { all, alpha };
+
 // Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
 // points of a soft light; null = its centre.
 HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
-                                    const LightSamples& arrival, const Mask16& wanted, const Sample2* places) {
+                                    const LightSamples& arrival, const Mask16& wanted, const Sample2* places,
+                                    Through surfaces = Through::all) {
     Occluders::ShadowRays rays;
     aim_at_center(lanes.point, arrival, wanted, rays);
     for (size_t i = 0; i < 16 && places; ++i)
         if (rays.active[i]) aim_at_point(light, {places[i].x, places[i].y}, i, rays);
     alignas(64) float share[16] = {};
-    occluders.transmission(rays, share);
+    if (surfaces == Through::all)
+        occluders.transmission(rays, share);
+    else
+        occluders.alpha_transmission(rays, share);
     return load(share);
 }
 }

@@ -95,6 +95,41 @@ Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, co
     return visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr);
 }
 
+// Share of a light that surfaces with alpha let through, where intervals answer for the opaque ones: the mean over
+// points spread through the froxels, as one would show each leaf as large as a froxel.
+Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Mask16& wanted) {
+    const Light& light = fill.scene.snapshot.lights[index];
+    const auto& occluders = shadow_casters(light, fill.scene.snapshot);
+    if (!fill.exact() || !occluders || !occluders->has_alpha() || !any(wanted)) return 1.0f;
+    constexpr int points = 8; // of all samples of a froxel
+    const int count = std::max(points / fill.samples(), 1);
+    const float froxel = static_cast<float>(fill.grid.tile);
+    const FroxelLanes fog = in_fog(fill.scene.snapshot.media, lanes, job.extinction);
+    Floats sum = 0.0f;
+    for (int k = 0; k < count; ++k) {
+        alignas(64) float u[3][16];
+        Sample2 places[16];
+        for (size_t i = 0; i < 16; ++i) {
+            const auto tile = static_cast<uint32_t>(job.where.tile[i]);
+            const uint32_t key = hash(tile, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
+            const int turn = fill.pass.frame * fill.samples() + job.sample;
+            const auto number = static_cast<uint32_t>(turn * count + k);
+            const Sample2 across = sample2(number, key);
+            u[0][i] = (across.x - 0.5f) * froxel, u[1][i] = (across.y - 0.5f) * froxel;
+            u[2][i] = random_unit(number, 0, 0, key), places[i] = sample2(number, hash(key, 1u));
+        }
+        FroxelLanes at = fog;
+        const Floats x = load(u[0]), y = load(u[1]);
+        at.point = fused(fog.toward, fog.length * load(u[2]), fog.start);
+        at.point = fused(splat(fill.grid.step_x), x * fog.z, fused(splat(fill.grid.origin_x), x, at.point));
+        at.point = fused(splat(fill.grid.step_y), y * fog.z, fused(splat(fill.grid.origin_y), y, at.point));
+        const LightSamples arrival = arriving(light, fill.scene.cones[index], at.point);
+        const Sample2* of_light = is_soft(light) ? places : nullptr;
+        sum = sum + visible_at_points(*occluders, light, at, arrival, wanted, of_light, Through::alpha);
+    }
+    return sum * (1.0f / static_cast<float>(count));
+}
+
 // What arrives where a froxel is large beside its distance from the light.
 void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneLightSamples& arrived) {
     alignas(64) float is_near[16], amount[16], point[3][16];
@@ -149,6 +184,9 @@ LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lan
                              select(some, load(exact.point[2]), arrived.point.z)};
         }
         if (job.sheet) hold_in_fog(lanes, job.looks, sliced, arrived);
+        const Mask16 reached = sliced & (arrived.amount > 0.0f);
+        arrived.amount =
+            select(reached, arrived.amount * alpha_share(fill, index, lanes, job, reached), arrived.amount);
     }
     if (any(near)) put_near(fill, index, job, near, arrived);
     see_through_slice(light, lanes, job, along, arrived);

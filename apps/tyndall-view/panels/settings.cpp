@@ -1,8 +1,8 @@
 // Sliders, made from the table of settings.
+#include "../theme.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"
-#include "theme.h"
 #include "viewer/state/setting_groups.h"
 
 #include <cstdlib>

@@ -1,11 +1,11 @@
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "measure/explain/curves.h"
 #include "measure/explain/report.h"
 #include "measure/report/svg.h"
 #include "plot.h"
-#include "theme.h"
 
 #include <algorithm>
 

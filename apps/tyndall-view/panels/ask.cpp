@@ -1,7 +1,7 @@
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/text.h"
-#include "theme.h"
 #include "viewer/editing/scene_session.h"
 
 #include <imgui_stdlib.h>

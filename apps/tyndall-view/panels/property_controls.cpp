@@ -1,8 +1,8 @@
 #include "property_controls.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
-#include "theme.h"
 #include "viewer/state/edit_actions.h"
 
 #include <algorithm>

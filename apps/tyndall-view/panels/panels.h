@@ -1,6 +1,6 @@
 // What is drawn, and the actions that come of it.
 #pragma once
-#include "edit_memory.h"
+#include "../edit_memory.h"
 #include "viewer/painting/ray_question.h"
 #include "viewer/painting/shown_picture.h"
 #include "viewer/state/view_state.h"

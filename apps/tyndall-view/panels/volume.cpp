@@ -1,10 +1,10 @@
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "measure/metrics/heatmap.h"
 #include "plot.h"
 #include "scene/scene.h"
-#include "theme.h"
 #include "viewer/painting/volume_picture.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
-#include "handles_panel.h"
+#include "handles.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
 #include "scene/light_kind.h"
 #include "scene/scene.h"
-#include "theme.h"
 #include "viewer/editing/scene_edit.h"
 #include "viewer/state/edit_actions.h"
 

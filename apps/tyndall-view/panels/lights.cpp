@@ -1,8 +1,8 @@
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "property_controls.h"
-#include "theme.h"
 #include "viewer/editing/scene_session.h"
 #include "viewer/state/edit_actions.h"
 
@@ -101,6 +101,14 @@ void draw_line(const ViewState& state, Thing thing, const std::string& name, con
     ImGui::PopID();
 }
 
+// Those that the scene file, not the glTF, says the place of.
+std::vector<size_t> own_cameras(const Scene& scene) {
+    std::vector<size_t> own;
+    for (size_t i = 0; i < scene.cameras.size(); ++i)
+        if (!properties_of(scene, Part::camera, i).empty()) own.push_back(i);
+    return own;
+}
+
 void draw_list(const ViewState& state, const Act& act) {
     const Scene& scene = *state.scene;
     const double seconds = seconds_of(state);
@@ -120,6 +128,9 @@ void draw_list(const ViewState& state, const Act& act) {
     if (scene.media.empty()) ImGui::TextDisabled("none");
     small_heading("Everything");
     draw_line(state, {Part::scene, 0}, "ambient, background, exposure", "", hue_of(scene.ambient.at(seconds)), act);
+    for (const size_t i : own_cameras(scene))
+        draw_line(state, {Part::camera, i}, scene.cameras[i].name, "camera",
+                  ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled), act);
 }
 
 void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
@@ -174,7 +185,8 @@ void draw_lights(const ViewState& state, EditMemory& memory, const Act& act) {
     draw_save_as(state, memory, act);
     // A long list scrolls by itself.
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    const size_t lines = state.scene->lights.size() + state.scene->media.size();
+    const Scene& scene = *state.scene;
+    const size_t lines = scene.lights.size() + scene.media.size() + own_cameras(scene).size();
     if (lines > max_lines) ImGui::BeginChild("list", {0, static_cast<float>(max_lines + 6) * line});
     draw_list(state, act);
     if (lines > max_lines) ImGui::EndChild();

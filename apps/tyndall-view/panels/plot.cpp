@@ -1,8 +1,8 @@
 #include "plot.h"
 
+#include "../theme.h"
 #include "base/text.h"
 #include "measure/report/svg.h"
-#include "theme.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // The bar of time.
+#include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
 #include "scene/scene.h"
-#include "theme.h"
 #include "trace/moment.h"
 #include "viewer/state/view_state.h"
 

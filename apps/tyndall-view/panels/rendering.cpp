@@ -1,9 +1,9 @@
 // The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
+#include "../theme.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "panels.h"
 #include "scene/scene.h"
-#include "theme.h"
 #include "viewer/painting/reference_picture.h"
 
 namespace tyndall {

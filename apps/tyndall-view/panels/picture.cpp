@@ -1,12 +1,12 @@
 // The picture, what the mouse does on it, and the line of status.
 #include "panels.h"
 
+#include "../theme.h"
 #include "base/error.h"
 #include "base/text.h"
-#include "error_panel.h"
-#include "handles_panel.h"
+#include "error.h"
+#include "handles.h"
 #include "modes/mode.h"
-#include "theme.h"
 #include "viewer/editing/missing_frames.h"
 #include "viewer/painting/reference_picture.h"
 

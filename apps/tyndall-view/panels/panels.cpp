@@ -1,7 +1,7 @@
 // Where the panels lie, and the list of keys.
 #include "panels.h"
 
-#include "theme.h"
+#include "../theme.h"
 
 #include <algorithm>
 

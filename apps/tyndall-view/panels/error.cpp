@@ -1,7 +1,7 @@
-#include "error_panel.h"
+#include "error.h"
 
+#include "../theme.h"
 #include "base/text.h"
-#include "theme.h"
 #include "viewer/painting/reference_picture.h"
 #include "viewer/painting/tone.h"
 

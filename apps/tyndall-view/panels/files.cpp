@@ -1,8 +1,8 @@
 // Files: another scene to open; the picture, a sequence of frames and baked fog to write; the bar of the job that runs.
+#include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
 #include "scene/scene.h"
-#include "theme.h"
 #include "viewer/painting/file_job.h"
 
 #include <imgui_stdlib.h>
