@@ -1,4 +1,4 @@
-// Pictures that spots project: what of their light goes where.
+// Pictures that spots project and rectangles show: what of their light goes where.
 #pragma once
 #include "base/math.h"
 
