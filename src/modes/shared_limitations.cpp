@@ -447,7 +447,7 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
 }
 
 void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const auto found = mesh_lamps(snapshot);
     if (!found || found->lamps.empty()) return;
     for_emitting_materials(snapshot, [&](const Material& material) {
