@@ -102,7 +102,8 @@ void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limi
     Box fog;
     for (const Medium& medium : snapshot.media)
         if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
-    if (fog.empty() || snapshot.lights.empty()) return;
+    const auto emits = [](const Medium& medium) { return only_emits(medium.optics); };
+    if (fog.empty() || (snapshot.lights.empty() && std::ranges::none_of(snapshot.media, emits))) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
     for (const Medium& medium : thickest_media(snapshot)) {
         const float depth = medium.majorant() * cell;
