@@ -2,6 +2,7 @@
 
 #include "integrate/lights/environment_light.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "modes/settings.h"
 #include "scene/area_shape.h"
 #include "scene/light.h"
@@ -443,6 +444,20 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
         if (material.alpha_mode != AlphaMode::opaque)
             limitations.push_back(
                 {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    });
+}
+
+void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) {
+    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    const auto found = mesh_lamps(snapshot);
+    if (!found || found->lamps.empty()) return;
+    for_emitting_materials(snapshot, [&](const Material& material) {
+        if (material.alpha_mode == AlphaMode::opaque)
+            limitations.push_back({Severity::degraded,
+                                   &limitation::lamps_for_surfaces,
+                                   Subject::material,
+                                   material.name,
+                                   {found->reach, double(found->lamps.size())}});
     });
 }
 
