@@ -2,6 +2,7 @@
 
 #include "integrate/lights/environment_light.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "modes/settings.h"
 #include "scene/area_shape.h"
 #include "scene/light.h"
@@ -23,10 +24,11 @@
 
 namespace tyndall {
 namespace {
-constexpr float deep_cell = 0.3f;    // optical depths, across which the dimming of light is far from linear
-constexpr float deep_step = 0.15f;   // optical depths
-constexpr float detail_voxels = 2;   // of fog that changes from voxel to voxel
-constexpr float seen_offset = 0.25f; // pixels
+constexpr float deep_cell = 0.3f;       // optical depths, across which the dimming of light is far from linear
+constexpr float deep_step = 0.15f;      // optical depths
+constexpr float detail_voxels = 2;      // of fog that changes from voxel to voxel
+constexpr float seen_offset = 0.25f;    // pixels
+constexpr double much_of_picture = 0.2; // of its height
 constexpr double seen_share = 0.02, wrong_share = 0.5; // of light that is off
 
 // How thick a medium can be at most across its own bounds, as optical depth.
@@ -389,18 +391,17 @@ double share_of_picture(const View& view, vec3 center, double radius) {
     return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
 }
 
-// Of what is off within a distance of a light: much of the picture shows that fog, or light hardly gets beyond.
-Severity severity_near(const View& view, const Snapshot& snapshot, vec3 center, double distance) {
-    constexpr double much = 0.2, deep = 0.3; // of the picture; optical depths
-    double extinction = 0;
-    for (const Medium& medium : snapshot.media) {
-        const Box& box = medium.world_bounds;
-        const bool inside =
-            glm::all(glm::lessThanEqual(box.low, center)) && glm::all(glm::lessThanEqual(center, box.high));
-        if (inside) extinction += medium.majorant();
-    }
-    const bool wrong = share_of_picture(view, center, distance) > much || extinction * distance > deep;
-    return wrong ? Severity::wrong : Severity::degraded;
+// Whether a light hardly gets beyond a distance from it: by the fog on six ways.
+bool is_short_of(const Snapshot& snapshot, vec3 center, double distance) {
+    constexpr double deep = 0.3; // optical depths
+    double depth = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float way : {-1.0f, 1.0f}) {
+            Ray ray{center, vec3(0), static_cast<float>(distance)};
+            ray.direction[axis] = way;
+            depth += optical_depth(snapshot.media, ray) / 6;
+        }
+    return depth > deep;
 }
 }
 
@@ -410,7 +411,9 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
     for (const Light& light : snapshot.lights)
         if (light.area && light.volume_scale > 0) {
             const double within = far_enough(*light.area, tolerated);
-            limitations.push_back({severity_near(view, snapshot, light.position, within),
+            const bool wrong = share_of_picture(view, light.position, within) > much_of_picture ||
+                               is_short_of(snapshot, light.position, within);
+            limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
                                    &limitation::lamp_for_face,
                                    Subject::light,
                                    light.name,
@@ -418,7 +421,7 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
         }
 }
 
-void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations& limitations) {
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
     if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const std::vector<Light> lamps = fire_lamps(snapshot);
@@ -427,7 +430,7 @@ void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations&
     for (const Light& lamp : lamps) {
         const double within = far_enough(lamp, tolerated);
         reach = std::max(reach, within);
-        severity = std::max(severity, severity_near(view, snapshot, lamp.position, within));
+        if (is_short_of(snapshot, lamp.position, within)) severity = Severity::wrong;
     }
     for (const Medium& medium : snapshot.media)
         if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
@@ -440,6 +443,20 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
         if (material.alpha_mode != AlphaMode::opaque)
             limitations.push_back(
                 {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
+    });
+}
+
+void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) {
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
+    const auto found = mesh_lamps(snapshot);
+    if (!found || found->lamps.empty()) return;
+    for_emitting_materials(snapshot, [&](const Material& material) {
+        if (material.alpha_mode == AlphaMode::opaque)
+            limitations.push_back({Severity::degraded,
+                                   &limitation::lamps_for_surfaces,
+                                   Subject::material,
+                                   material.name,
+                                   {found->reach, double(found->lamps.size())}});
     });
 }
 

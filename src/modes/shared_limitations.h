@@ -60,6 +60,9 @@ inline constexpr LimitationKind unscattered_emission{
     "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
 inline constexpr LimitationKind lamps_for_fire{
     "lamps_for_fire", "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for it"};
+inline constexpr LimitationKind lamps_for_surfaces{
+    "lamps_for_surfaces",
+    "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for glowing surfaces"};
 inline constexpr LimitationKind emission_lights_nothing{
     "emission_lights_nothing", "emission of surfaces with holes or alpha is visible but lights nothing else"};
 inline constexpr LimitationKind emission_lights_no_fog{
@@ -126,15 +129,19 @@ void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 // comes from no grid.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
 
-// Where lamps stand for glowing fog. `wrong`, as with faces, where fog that they are off in takes much of the picture.
-void add_lamps_for_fire(const View& view, const Snapshot& snapshot, Limitations& limitations);
+// Where lamps stand for glowing fog. `wrong` where most of their light is scattered in the fog that they are off in.
+void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
+
+// Where lamps stand for surfaces that emit.
+void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations);
 
 // Where the fog has the environment's light as its mean, or none of it. How far the mean is off is measured on a few
 // rays.
 void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations);
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for the faces of rectangles, discs and spheres.
+// Where lamps stand for the faces of rectangles, discs and spheres. `wrong` also where that fog takes much of the
+// picture.
 void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Materials whose emission lights nothing; and those for which it does so in the fog alone.

@@ -1,5 +1,6 @@
 #include "scene/area_shape.h"
 
+#include "scene/gobo.h"
 #include "scene/light_filter.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
@@ -69,6 +70,43 @@ AreaSample sample_disc(const AreaShape& shape, vec3 point, vec2 u) {
     return sample;
 }
 
+// What a picture's light adds up to, in units of the face: halves along right and up.
+struct PictureSums {
+    dvec3 mean{0};
+    glm::dvec2 middle{0}, square{0}; // of luminance
+};
+
+PictureSums sums_of(const Gobo& picture) {
+    const Gobo::Level& level = picture.levels[0];
+    const size_t plane = static_cast<size_t>(level.size.x) * level.size.y;
+    PictureSums sums;
+    for (int y = 1; y < level.size.y - 1; ++y)
+        for (int x = 1; x < level.size.x - 1; ++x) {
+            const float* texel = level.values.data() + static_cast<size_t>(y) * level.size.x + x;
+            const dvec3 color = picture.planes == 3 ? dvec3(texel[0], texel[plane], texel[2 * plane]) : dvec3(*texel);
+            const glm::dvec2 at = 1.0 - 2.0 * (glm::dvec2(x, y) - 0.5) / glm::dvec2(level.texels);
+            const double light = luminance(vec3(color));
+            sums.mean += color, sums.middle += light * at, sums.square += light * at * at;
+        }
+    const double texels = double{level.texels.x} * level.texels.y, light = luminance(vec3(sums.mean));
+    if (light > 0) sums.middle /= light, sums.square /= light;
+    sums.mean /= texels;
+    return sums;
+}
+
+// The lamp goes to the middle of the picture's light, and is as bright as its mean.
+void show_picture(AreaShape& shape, Light& light) {
+    const PictureSums sums = sums_of(*shape.picture);
+    for (int c = 0; c < 3; ++c) {
+        shape.picture_scale[c] = sums.mean[c] > 0 ? static_cast<float>(1 / sums.mean[c]) : 0;
+        light.intensity[c] *= static_cast<float>(sums.mean[c]);
+    }
+    const vec2 middle = vec2(sums.middle) * shape.half;
+    light.position = shape.center + middle.x * shape.right + middle.y * shape.up;
+    const glm::dvec2 spread = (sums.square - sums.middle * sums.middle) * glm::dvec2(shape.half * shape.half);
+    shape.spread = static_cast<float>(3 * (spread.x + spread.y)) / glm::dot(shape.half, shape.half);
+}
+
 double axial_steradians(const AreaShape& shape, double distance) {
     const double a = shape.half.x, b = shape.half.y, d = distance;
     switch (shape.kind) {
@@ -88,7 +126,9 @@ float face_area(const AreaShape& shape) {
 
 void stand_for(const AreaShape& shape, Light& light) {
     static const std::shared_ptr<const IesProfile> ahead = cosine_profile(false), both = cosine_profile(true);
-    light.area = std::make_shared<const AreaShape>(shape);
+    auto face = std::make_shared<AreaShape>(shape);
+    if (face->picture) show_picture(*face, light);
+    light.area = std::move(face);
     light.kind = LightKind::point, light.radius = std::sqrt(face_area(shape) / pi);
     if (!(light.radius > 0)) light.intensity = vec3(0);
     if (is_ball(shape)) return;
@@ -101,6 +141,15 @@ void stand_for(const AreaShape& shape, Light& light) {
 }
 
 vec3 radiance_of(const Light& light) { return light.intensity / face_area(*light.area); }
+
+vec3 face_picture(const AreaShape& shape, vec3 at) {
+    if (!shape.picture) return vec3(1);
+    const vec3 off = at - shape.center;
+    const vec2 place = 0.5f - 0.5f * vec2(glm::dot(off, shape.right), glm::dot(off, shape.up)) / shape.half;
+    const vec2 edge = 0.5f / shape.picture->levels[0].texels; // texels at the edge reach up to it
+    const vec2 inside = glm::clamp(place, edge, 1.0f - edge);
+    return shape.picture_scale * vec3(gobo_at(*shape.picture, inside.x, inside.y));
+}
 
 AreaSample sample_area(const AreaShape& shape, vec3 point, vec2 u) {
     if (!is_before(shape, point)) return {};
@@ -146,6 +195,6 @@ double far_enough(const AreaShape& shape, double share) {
         const double middle = 0.5 * (low + high);
         (off(middle) ? low : high) = middle;
     }
-    return high;
+    return std::max(size, std::sqrt(double{shape.spread}) * high); // the error grows with the light's mean square
 }
 }

@@ -1,8 +1,11 @@
-// Faces that glow with the same radiance everywhere and in every direction: rectangles, discs and balls.
+// Faces that glow with the same radiance in every direction, and everywhere but where a rectangle has a picture:
+// rectangles, discs and balls.
 #pragma once
 #include "scene/light.h"
 
 namespace tyndall {
+struct Gobo;
+
 struct AreaShape {
     LightKind kind = LightKind::rectangle;
     vec3 center{0};
@@ -10,17 +13,25 @@ struct AreaShape {
     vec2 half{0.5f};        // metres along right and up; disc and sphere: the radius, twice
     bool two_sided = false; // rectangle, disc
     bool visible = true;    // to the camera, from the side that glows
+    // Rectangle: what of its radiance glows where, as a screen shows it to who looks at it; null = all alike.
+    std::shared_ptr<const Gobo> picture;
+    vec3 picture_scale{1}; // makes the picture's mean 1; set by stand_for()
+    float spread = 1;      // mean square of how far the light is from its middle, over that of an even face; likewise
 };
 
 // Square metres of the face as seen along its axis.
 float face_area(const AreaShape& shape);
 
 // Makes the light, whose place, intensity (candela along the axis) and scales are known, a lamp that stands for the
-// shape: in its middle, as large as its face, with Lambert's cosine. Without a face it is dark.
+// shape: in the middle of its light, as large as its face, with Lambert's cosine and the mean of the picture. Without a
+// face it is dark.
 void stand_for(const AreaShape& shape, Light& light);
 
-// Nits of a light with a shape.
+// Nits of a light with a shape; mean over its face.
 vec3 radiance_of(const Light& light);
+
+// What the picture makes of that at a place of the face: 1 without one.
+vec3 face_picture(const AreaShape& shape, vec3 at);
 
 // A direction towards a point of the face, picked by two numbers in [0,1).
 struct AreaSample {

@@ -1,4 +1,4 @@
-// Pictures that spots project: what of their light goes where.
+// Pictures that spots project and rectangles show: what of their light goes where.
 #pragma once
 #include "base/math.h"
 
@@ -32,8 +32,8 @@ struct Gobo {
 inline constexpr int largest_gobo_side = 8192, reduced_gobo_side = 2048;
 inline constexpr uint64_t largest_gobo_file = uint64_t{1} << 28; // bytes
 
-// PNG, JPEG or Radiance .hdr; transparent parts are black. Pictures over reduced_gobo_side are averaged down to it,
-// which `note` then says. Throws Error (refused) naming `where`: damaged, or over largest_gobo_side.
+// PNG, JPEG, Radiance .hdr or OpenEXR; transparent parts are black. Pictures over reduced_gobo_side are averaged down
+// to it, which `note` then says. Throws Error (refused) naming `where`: damaged, or over largest_gobo_side.
 std::shared_ptr<Gobo> make_gobo(std::string_view bytes, ColorSpace space, std::string_view where, std::string& note);
 
 // One made in memory.

@@ -1,7 +1,7 @@
 #include "scene/image_file.h"
 
 #include "base/error.h"
-#include "base/exr/exr_file.h"
+#include "base/exr/exr_picture.h"
 #include "base/io/file.h"
 
 #include <array>
@@ -69,33 +69,22 @@ Image<vec3> decode_radiance(std::string_view bytes, std::string_view where) {
     return image;
 }
 
-// R, G and B in the display window; of grey files Y.
-Image<vec3> decode_openexr(std::string_view bytes, std::string_view where) {
-    const ExrFile file = decode_exr(bytes, std::string(where));
-    if (std::max(file.display.x, file.display.y) > largest_image_side)
-        refuse(where, "the display window is larger than 16384 x 16384 pixels");
-    const auto area = [](ivec2 size) { return int64_t{size.x} * size.y; };
-    if (area(file.display) > 16 * area(file.size) + (1 << 20))
-        refuse(where, "the pixels fill less than a sixteenth of the display window");
-    const bool colored = file.channel("R") || file.channel("G") || file.channel("B");
-    const Image<float>* grey = colored ? nullptr : file.channel("Y");
-    if (!colored && !grey) refuse(where, "the image has none of the channels R, G, B and Y");
-    const Image<vec3> color = color_of(file);
+// In the display window, black where the file has no pixels.
+Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::string& note) {
+    const ExrPicture file = decode_exr_picture(bytes, std::string(where));
+    if (file.foreign_primaries) note = "its colours are of other primaries than Rec.709, and are taken as they are";
     Image<vec3> image(file.display);
-    const ivec2 begin = glm::max(file.low, ivec2(0)), end = glm::min(file.low + file.size, file.display);
+    const ivec2 begin = glm::max(file.low, ivec2(0)), end = glm::min(file.low + file.color.size, file.display);
     for (int y = begin.y; y < end.y; ++y)
-        for (int x = begin.x; x < end.x; ++x) {
-            const ivec2 from = ivec2(x, y) - file.low;
-            image.at(x, y) = grey ? vec3(grey->at(from.x, from.y)) : color.at(from.x, from.y);
-        }
+        for (int x = begin.x; x < end.x; ++x) image.at(x, y) = file.color.at(x - file.low.x, y - file.low.y);
     return image;
 }
 
 bool holds_floats(ImageFormat format) { return format == ImageFormat::radiance || format == ImageFormat::openexr; }
 
-Image<vec3> decode_floats(std::string_view bytes, std::string_view where) {
-    Image<vec3> image =
-        image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where) : decode_openexr(bytes, where);
+Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::string& note) {
+    Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where)
+                                                                     : decode_openexr(bytes, where, note);
     for (const vec3& pixel : image.pixels)
         if (!is_finite(pixel)) refuse(where, "the image holds a value that is not a number");
     return image;
@@ -112,6 +101,7 @@ ImageFormat image_format(std::string_view bytes) {
 
 ivec2 image_size(std::string_view bytes, std::string_view where) {
     check_length(bytes, where);
+    if (image_format(bytes) == ImageFormat::openexr) return exr_display_size(bytes, std::string(where));
     ivec2 size(0);
     int channels;
     if (image_format(bytes) == ImageFormat::png && bytes.size() >= 24) {
@@ -147,12 +137,14 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
     const ImageFormat format = image_format(bytes);
     if (format == ImageFormat::other) refuse(where, not_an_image);
     if (holds_floats(format)) {
-        if (format == ImageFormat::radiance) image_size(bytes, where);
-        Image<vec3> image = decode_floats(bytes, where);
+        image_size(bytes, where);
+        Image<vec3> image = decode_floats(bytes, where, note);
         size_t negative = 0;
         for (vec3& pixel : image.pixels)
             if (glm::any(glm::lessThan(pixel, vec3(0)))) pixel = glm::max(pixel, vec3(0)), ++negative;
-        if (negative > 0) note = std::to_string(negative) + " pixels with negative light, which is set to 0";
+        if (negative > 0)
+            note += (note.empty() ? "" : "; ") + std::to_string(negative) +
+                    " pixels with negative light, which is set to 0";
         return image;
     }
     const Image<vec4> texels = decode_texture(bytes, where);
@@ -173,18 +165,18 @@ template<class Color> void add_blocks(ReducedPicture& picture, const Color& colo
 }
 }
 
-ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where) {
+ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
+                              std::string& note) {
     const ImageFormat format = image_format(bytes);
     if (format == ImageFormat::other) refuse(where, not_an_image);
-    const Image<vec3> floats = format == ImageFormat::openexr ? decode_floats(bytes, where) : Image<vec3>();
-    ReducedPicture picture{format == ImageFormat::openexr ? floats.size : image_size(bytes, where), 1, {}};
+    ReducedPicture picture{image_size(bytes, where), 1, {}};
     const int side = std::max(picture.size.x, picture.size.y), limit = largest / (holds_floats(format) ? 2 : 1);
     if (side > limit)
         refuse(where, "the image has " + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +
                           " pixels; at most " + std::to_string(limit) + " on a side can be used here");
     picture.factor = (side + most - 1) / most;
     if (holds_floats(format)) {
-        const Image<vec3> pixels = format == ImageFormat::openexr ? floats : decode_floats(bytes, where);
+        const Image<vec3> pixels = decode_floats(bytes, where, note);
         add_blocks(picture, [&](size_t pixel) { return pixels.pixels[pixel]; });
         return picture;
     }

@@ -75,6 +75,7 @@ void add_face(const LightSource& source, double seconds, vec3 up, Light& light) 
         shape.half = 0.5f * vec2(source.width.at(seconds), source.height.at(seconds));
     shape.half = glm::max(shape.half, vec2(0));
     shape.two_sided = source.two_sided, shape.visible = source.visible;
+    if (light.filter) shape.picture = light.filter->gobo;
     stand_for(shape, light);
 }
 

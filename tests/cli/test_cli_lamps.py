@@ -168,6 +168,52 @@ class Lamps(ProgramTest):
         for march, traced in zip(mean["march"], mean["path"]):
             self.assertAlmostEqual(march / traced, 1, delta=0.01)
 
+    def test_a_rectangle_shows_its_picture_to_who_looks_at_it(self):
+        self.write("f.png", png((64, 64), lambda x, y: letter_f(x // 8, y // 8)))
+        screen = {"name": "screen", "type": "rectangle", "position": [0, 0, -4], "direction": [0, 0, 1], "width": 2, "height": 2,
+                  "intensity": 50, "gobo": {"image": "f.png", "color_space": "linear"}}
+        for mode in ("march", "path", "froxel"):
+            content = scene(frames="1", resolution=[32, 32], lights=[screen], media=[], background={"color": 0},
+                            camera={"position": [0, 0, 0], "target": [0, 0, -1], "vertical_fov": 28.072486935852957})
+            self.succeed("render", self.write("scene.json", content), "-o", self.path("a.exr"), "--mode", mode, "--samples", "4", "--float")
+            values = read_channels(self.path("a.exr"))["R"]
+            for y in range(8):
+                for x in range(8):
+                    for pixel in ((4 * y + 1) * 32 + 4 * x + 1, (4 * y + 2) * 32 + 4 * x + 2):
+                        self.assertAlmostEqual(values[pixel], 50 if letter_f(x, y) else 0, delta=0.1, msg=(mode, x, y))
+        for name in ("rotate", "scale"):
+            bad = {**screen, "gobo": {**screen["gobo"], name: 2}}
+            self.refuse(3, [f"/lights/0/gobo/{name}", "spot"], "info", self.write("bad.json", scene(lights=[bad])))
+        disc = {key: value for key, value in screen.items() if key not in ("width", "height")}
+        self.refuse(3, ["/lights/0/gobo", "rectangles"], "info",
+                    self.write("bad.json", scene(lights=[{**disc, "type": "disc", "radius": 1}])))
+
+    def test_pictures_of_rectangles_follow_the_frames(self):
+        for frame, value in ((1, 255), (2, 51)):
+            self.write(f"g.{frame:04}.png", png((4, 4), lambda x, y: value))
+        gobo = {"image": "g.####.png", "color_space": "linear", "sequence": {"mode": "loop"}}
+        screen = {"type": "rectangle", "position": [0, 0, -4], "direction": [0, 0, 1], "width": 9, "height": 9, "intensity": 10}
+        path = self.write("scene.json", scene(frames="1-3", resolution=[8, 8], lights=[{**screen, "gobo": gobo}], media=[],
+                                              background={"color": 0},
+                                              camera={"position": [0, 0, 0], "target": [0, 0, -1], "vertical_fov": 20}))
+        self.succeed("render", path, "-o", self.path("f.#.exr"), "--samples", "1", "--float")
+        for frame, expected in ((1, 10), (2, 2), (3, 10)):
+            self.assertAlmostEqual(read_channels(self.path(f"f.{frame}.exr"))["R"][27], expected, delta=0.01)
+
+    def test_march_agrees_with_paths_at_a_screen(self):
+        self.write("board.png", png((32, 32), lambda x, y: 255 if (x // 8 + y // 8) % 2 else 10))
+        lights = [{"name": "screen", "type": "rectangle", "position": [-0.5, 0.5, -1], "direction": [0.3, -0.2, 1], "width": 1.6,
+                   "height": 0.9, "intensity": 20, "color": [1, 0.6, 0.3], "gobo": {"image": "board.png"}}]
+        media = [{"type": "homogeneous", "extinction": 0.3, "g": 0.3, "bounds": {"low": [-2, -2, -2], "high": [2, 2, 2]}}]
+        path = self.write("scene.json", scene(frames="1", resolution=[24, 16], lights=lights, media=media, background={"color": 0}))
+        mean = {}
+        for mode, samples in (("march", 16), ("path", 256)):
+            self.succeed("render", path, "-o", self.path(f"{mode}.exr"), "--mode", mode, "--orders", "1", "--samples", samples,
+                         "--float", "--aov", "inscatter")
+            mean[mode] = [sum(read_channels(self.path(f"{mode}.exr"))[f"inscatter.{c}"]) for c in "RGB"]
+        for march, traced in zip(mean["march"], mean["path"]):
+            self.assertAlmostEqual(march / traced, 1, delta=0.01)
+
     def test_a_huge_gobo_is_refused(self):
         data = bytearray(png((1, 1), lambda x, y: 255))
         data[16:24] = struct.pack(">II", 16384, 16384)

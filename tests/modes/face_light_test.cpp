@@ -1,9 +1,12 @@
 // Rectangles, discs and balls of light in fog and on surfaces: quadrature, march against paths, what the eye sees.
 #include "base/gauss_legendre.h"
+#include "base/image.h"
 #include "base/random.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
+#include "scene/gobo.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "support/face_lights.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
@@ -216,6 +219,68 @@ TEST(FaceLight, EyeSeesItThroughTheFog) {
         unseen.area = std::make_shared<const AreaShape>(hidden);
         EXPECT_EQ(estimate_ray(path_mode(snapshot_of({fog}, {unseen})), ray, 16, surface_light).value.x, 0);
     }
+}
+
+// White at the left of who looks at it, black at the right.
+std::shared_ptr<const Gobo> half_white() {
+    Image<vec3> image({64, 4});
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 32; ++x) image.at(x, y) = vec3(1);
+    return make_gobo(image);
+}
+
+TEST(FaceLight, PictureOfHalfIsHalfTheFace) {
+    const Light whole = rectangle_light({0.2f, 1, -0.1f}, {0.2f, -1, 0.1f}, {1.2f, 0.5f}, vec3(1, 2, 3));
+    const Light light = picture_light(whole, half_white());
+    // The left of who looks at the face is the right of who looks along the light.
+    const Light half =
+        rectangle_light(whole.area->center + 0.3f * whole.area->right, whole.area->normal, {0.6f, 0.5f}, vec3(1, 2, 3));
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, wide_box, forward_phase(0.6f))}, {light});
+    const dvec3 expected = light_by_quadrature(half, forward_phase(0.6f), 0.5, below);
+    expect_near(path_fog_light(snapshot, below, 1 << 11), expected, 0.006, "path");
+    expect_near(marched_light(snapshot, below, 1 << 9), expected, 0.006, "march");
+
+    // The lamp that stands for it is the one that stands for half the face.
+    tyndall::expect_near(light.position, half.position, 1e-5f);
+    tyndall::expect_near(light.intensity, half.intensity, 1e-5f);
+    EXPECT_NEAR(far_enough(*light.area, 0.1), far_enough(*half.area, 0.1), 0.1 * far_enough(*half.area, 0.1));
+
+    // The eye sees the white half as bright as the face, the other black.
+    for (const float side : {-1.0f, 1.0f}) {
+        const vec3 at = whole.area->center + 0.2f * side * whole.area->right;
+        const Ray ray{at + 0.5f * whole.area->normal, -whole.area->normal, 9};
+        const RayEstimate seen = estimate_ray(path_mode(snapshot_of({}, {light})), ray, 4, surface_light);
+        EXPECT_NEAR(seen.value.y, side > 0 ? 2 : 0, 1e-4);
+    }
+}
+
+TEST(FaceLight, PictureOfHalfIsHalfTheFaceOnSurfacesAndAfterManyOrders) {
+    const Light whole = rectangle_light({0, 1, 0}, {0, -1, 0}, {1.6f, 0.8f}, vec3(5));
+    const Light light = picture_light(whole, half_white());
+    const Light half = rectangle_light(0.4f * whole.area->right + vec3(0, 1, 0), {0, -1, 0}, {0.8f, 0.8f}, vec3(5));
+    std::vector<vec2> u(4096);
+    for (uint32_t i = 0; i < u.size(); ++i) {
+        const Sample2 pair = sample2(i, 5);
+        u[i] = {pair.x, pair.y};
+    }
+    SurfacePoint point;
+    point.normal = point.face_normal = {0, 1, 0}, point.instance = 0;
+    vec3 got[2], expected[2];
+    for (int i = 0; i < 2; ++i) {
+        point.position = {i == 0 ? -0.5f : 0.5f, 0, 0};
+        shade_surfaces(stage_of({}, {light}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&got[i], 1});
+        shade_surfaces(stage_of({}, {half}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&expected[i], 1});
+        EXPECT_NEAR(got[i].x, expected[i].x, 0.004f * expected[i].x);
+    }
+    EXPECT_GT(std::abs(got[0].x - got[1].x), 0.2f * got[0].x);
+
+    Settings settings;
+    settings.fluence.orders = all_orders;
+    const Medium fog = homogeneous_medium(1, {vec3(-1.5f), vec3(1.5f, 0.9f, 1.5f)}, {}, vec3(0.9f));
+    const Ray ray{{-0.5f, -0.6f, 3}, glm::normalize(vec3(0.1f, 0.08f, -1)), 6};
+    const double from_picture = marched_light(snapshot_of({fog}, {light}), ray, 1 << 6, settings).value.x;
+    const double from_half = marched_light(snapshot_of({fog}, {half}), ray, 1 << 6, settings).value.x;
+    EXPECT_NEAR(from_picture, from_half, 0.04 * from_half);
 }
 
 TEST(FaceLight, OthersSayWhereALampStandsForIt) {

@@ -115,9 +115,11 @@ TEST(MeshLight, ModesSayWhatBecomesOfIt) {
     Stage stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})});
     const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
     for (const Mode& mode : modes()) {
-        const bool own = mode.name == "march" || mode.name == "path";
-        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog), !own)
+        const bool without = mode.name == "billboard" || mode.name == "radial-blur";
+        const bool lamps = !without && mode.name != "march" && mode.name != "path";
+        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog), without)
             << mode.name;
+        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::lamps_for_surfaces), lamps) << mode.name;
         EXPECT_FALSE(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing));
     }
     stage.scene->materials[1].alpha_mode = AlphaMode::blend;

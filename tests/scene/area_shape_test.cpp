@@ -1,6 +1,9 @@
 // Faces that glow: points picked on them against closed forms and published view factors.
+#include "base/image.h"
 #include "base/random.h"
 #include "scene/area_shape.h"
+#include "scene/gobo.h"
+#include "support/expect.h"
 #include "support/face_lights.h"
 
 #include <gtest/gtest.h>
@@ -50,6 +53,24 @@ TEST(AreaShape, BallIsSeenUnderItsCone) {
         EXPECT_NEAR(got, expected, 2e-4 * expected) << distance;
     }
     EXPECT_EQ(steradians(light, {1, 2.2f, 3}), 0) << "inside";
+}
+
+TEST(AreaShape, PicturesColorTheFaceAndTheLampThatStandsForIt) {
+    // Red at the left of who looks at it, green at the right, black below.
+    Image<vec3> image({8, 8});
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 8; ++x) image.at(x, y) = x < 4 ? vec3(0.8f, 0, 0) : vec3(0, 0.4f, 0);
+    const Light whole = rectangle_light({0, 0, 0}, {0, 0, 1}, {2, 1}, vec3(10));
+    const Light light = picture_light(whole, make_gobo(image));
+    expect_near(light.intensity, vec3(4, 2, 0), 1e-5f);
+    const auto nits = [&](vec3 at) { return radiance_of(light) * face_picture(*light.area, at); };
+    expect_near(nits({-0.9f, 0.45f, 0}), vec3(8, 0, 0), 1e-4f);
+    expect_near(nits({0.9f, 0.45f, 0}), vec3(0, 4, 0), 1e-4f);
+    expect_near(nits({-0.9f, -0.45f, 0}), vec3(0), 1e-4f);
+    // Luminances of .2126 x .8 and .7152 x .4: the middle lies on the green side, and in the upper half.
+    const float red = 0.2126f * 0.8f, green = 0.7152f * 0.4f;
+    expect_near(light.position, vec3(0.5f * (green - red) / (green + red), 0.25f, 0), 1e-5f);
+    EXPECT_EQ(face_picture(*whole.area, {0.3f, 0.2f, 0}), vec3(1));
 }
 
 TEST(AreaShape, SolidAnglesOnTheAxisAreThoseOfTheTextbook) {

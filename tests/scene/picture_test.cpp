@@ -70,7 +70,7 @@ TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
 
     const Image<vec3> grey = decode_picture(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
     EXPECT_EQ(grey.at(0, 0), vec3(70000));
-    const ReducedPicture half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test");
+    const ReducedPicture half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test", note);
     EXPECT_EQ(half.factor, 2);
     EXPECT_EQ(half.image.at(0, 0), vec3(70001, -1.5f, 3.25f) / 4.0f);
 }

@@ -22,6 +22,14 @@ inline Light face_light(LightKind kind, vec3 center, vec3 normal, vec2 size, vec
 inline Light rectangle_light(vec3 center, vec3 normal, vec2 size, vec3 nits = vec3(1)) {
     return face_light(LightKind::rectangle, center, normal, size, nits);
 }
+// The same with a picture on it.
+inline Light picture_light(const Light& light, std::shared_ptr<const Gobo> picture) {
+    AreaShape shape = *light.area;
+    shape.picture = std::move(picture);
+    Light result = light;
+    stand_for(shape, result);
+    return result;
+}
 inline Light disc_light(vec3 center, vec3 normal, float radius, vec3 nits = vec3(1)) {
     return face_light(LightKind::disc, center, normal, vec2(radius), nits);
 }

@@ -1,64 +1,41 @@
 #include "base/exr/exr_check.h"
 
-#include "base/error.h"
+#include "base/exr/exr_cursor.h"
 #include "base/exr/exr_file.h"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <optional>
-#include <vector>
 
 namespace tyndall {
 namespace {
-constexpr int largest_side = 16384, max_attributes = 4096;
+constexpr int largest_side = 16384, largest_tile = 4096, max_attributes = 4096, max_parts = 256;
 constexpr int largest_coordinate = 1 << 24;
-constexpr uint64_t best_ratio = 1032; // of deflate; run lengths reach 64
+constexpr uint64_t largest_tile_bytes = uint64_t{1} << 28;
 
-enum Compression { none, run_lengths, zip_lines, zip_blocks }; // as files number them
+constexpr std::array<std::string_view, 10> compression_names = {"none",  "rle", "zips", "zip",  "piz",
+                                                                "pxr24", "b44", "b44a", "dwaa", "dwab"};
 
 enum : uint32_t { tiled_flag = 0x200, long_names_flag = 0x400, deep_flag = 0x800, multipart_flag = 0x1000 };
 
-struct Cursor {
-    std::string_view left;
-    const std::string& file;
+// How small pixels may get: deflate has a ratio of 1032, and DWA first makes one number of 64 of them.
+uint64_t best_ratio(ExrCompression compression) { return compression >= ExrCompression::dwaa ? 64 * 1032 : 2 * 1032; }
 
-    std::string_view bytes(size_t count) {
-        if (count > left.size()) refuse(file, "the file ends early");
-        const std::string_view result = left.substr(0, count);
-        left.remove_prefix(count);
-        return result;
-    }
-    template<class T> T number() {
-        T value;
-        std::memcpy(&value, bytes(sizeof(T)).data(), sizeof(T));
-        return value;
-    }
-    int32_t integer() { return number<int32_t>(); }
-    std::string_view name() {
-        const size_t end = left.substr(0, 256).find('\0');
-        if (end == std::string_view::npos) refuse(file, "the header holds a name without an end");
-        const std::string_view result = bytes(end);
-        bytes(1);
-        return result;
-    }
-};
-
-void read_channels(Cursor cursor, ExrClaims& claims) {
-    while (!cursor.name().empty()) {
+void read_channels(ExrCursor cursor, ExrPartClaims& claims) {
+    for (std::string_view name; !(name = cursor.name()).empty();) {
         const int type = cursor.integer();
         cursor.bytes(4); // perceptual flag, reserved
         const int step_x = cursor.integer(), step_y = cursor.integer();
         if (type < 0 || type > 2) refuse(cursor.file, "a channel has an unknown pixel type");
-        if (step_x != 1 || step_y != 1) refuse(cursor.file, "channels of reduced resolution are not read");
-        if (++claims.channels > max_channels) refuse(cursor.file, "more than 1024 channels");
-        claims.bytes_per_pixel += type == 1 ? 2 : 4;
+        if (step_x != step_y || (step_x != 1 && step_x != 2))
+            refuse(cursor.file, "a channel has a value for other than each or each second pixel");
+        claims.channels.push_back({std::string(name), type == 1 ? 2 : 4, step_x});
+        if (claims.channels.size() > max_channels) refuse(cursor.file, "more than 1024 channels");
     }
-    if (claims.channels == 0) refuse(cursor.file, "there are no channels");
+    if (claims.channels.empty()) refuse(cursor.file, "there are no channels");
 }
 
-void read_window(Cursor cursor, ivec2& low, ivec2& high) {
+void read_window(ExrCursor cursor, ivec2& low, ivec2& high) {
     if (cursor.left.size() != 16) refuse(cursor.file, "a window has the wrong size");
     low.x = cursor.integer(), low.y = cursor.integer(), high.x = cursor.integer(), high.y = cursor.integer();
     for (const int c : {low.x, low.y, high.x, high.y})
@@ -66,121 +43,161 @@ void read_window(Cursor cursor, ivec2& low, ivec2& high) {
     if (low.x > high.x || low.y > high.y) refuse(cursor.file, "a window is empty");
 }
 
-void read_compression(Cursor cursor, ExrClaims& claims) {
-    claims.compression = static_cast<unsigned char>(cursor.bytes(1)[0]);
-    if (claims.compression > 3) refuse(cursor.file, "only the compressions NONE, RLE, ZIPS and ZIP are read");
+void read_compression(ExrCursor cursor, ExrPartClaims& claims) {
+    const auto number = static_cast<unsigned char>(cursor.bytes(1)[0]);
+    if (number >= compression_names.size()) refuse(cursor.file, "the compression is not known");
+    claims.compression = static_cast<ExrCompression>(number);
 }
 
-// A name of `type` that is there once; other attributes with that name are refused.
-void expect_type(std::string_view name, std::string_view type, std::string_view expected, bool& seen,
-                 const std::string& file) {
-    if (type != expected) refuse(file, "the attribute " + std::string(name) + " has the wrong type");
-    if (seen) refuse(file, "the attribute " + std::string(name) + " is there twice");
-    seen = true;
+void read_tiles(ExrCursor cursor, ExrPartClaims& claims) {
+    claims.tile.x = cursor.integer(), claims.tile.y = cursor.integer();
+    if (claims.tile.x < 1 || claims.tile.y < 1) refuse(cursor.file, "the tiles are empty");
+    if (claims.tile.x > largest_tile || claims.tile.y > largest_tile)
+        refuse(cursor.file, "the tiles are larger than 4096 x 4096 pixels");
 }
 
-void check_flags(Cursor& cursor) {
+// Red, green, blue and white of ITU-R BT.709 as x and y; two digits are what files round to.
+bool are_rec709(ExrCursor cursor) {
+    constexpr float expected[] = {.64f, .33f, .3f, .6f, .15f, .06f, .3127f, .329f};
+    for (const float value : expected)
+        if (!(std::abs(cursor.number<float>() - value) < .006f)) return false;
+    return true;
+}
+
+// Names that are there once and of one type; other attributes with such a name are refused.
+struct ExpectedAttributes {
+    enum Kind { channels, data_window, display_window, compression, tiles, kinds };
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, kinds> names = {
+        {{"channels", "chlist"},
+         {"dataWindow", "box2i"},
+         {"displayWindow", "box2i"},
+         {"compression", "compression"},
+         {"tiles", "tiledesc"}}};
+    std::array<bool, kinds> seen{};
+
+    std::optional<Kind> take(std::string_view name, std::string_view type, const std::string& file) {
+        for (int kind = 0; kind < kinds; ++kind) {
+            if (name != names[kind].first) continue;
+            if (type != names[kind].second) refuse(file, "the attribute " + std::string(name) + " has the wrong type");
+            if (seen[kind]) refuse(file, "the attribute " + std::string(name) + " is there twice");
+            seen[kind] = true;
+            return static_cast<Kind>(kind);
+        }
+        return {};
+    }
+};
+
+void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartClaims& claims) {
+    switch (kind) {
+    case ExpectedAttributes::channels:
+        return read_channels(value, claims);
+    case ExpectedAttributes::data_window:
+        return read_window(value, claims.low, claims.high);
+    case ExpectedAttributes::display_window:
+        return read_window(value, claims.display_low, claims.display_high);
+    case ExpectedAttributes::compression:
+        return read_compression(value, claims);
+    case ExpectedAttributes::tiles:
+        return read_tiles(value, claims);
+    case ExpectedAttributes::kinds:
+        return;
+    }
+}
+
+// Of other attributes those that tell how to read the part.
+void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartClaims& claims) {
+    if (name == "type") {
+        if (value.left != "scanlineimage" && value.left != "tiledimage")
+            refuse(value.file, "only scanline images and tiled images are read");
+        if (multipart) claims.tiled = value.left == "tiledimage";
+    } else if (name == "chunkCount") {
+        claims.chunks = static_cast<uint32_t>(value.integer());
+    } else if (name == "envmap") {
+        claims.cube = value.bytes(1)[0] == 1;
+    } else if (name == "chromaticities") {
+        claims.foreign_primaries = !are_rec709(value);
+    }
+}
+
+// The pixels must fit in memory, and no compression may have made the file as small as it is if it is too small.
+void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::string& file) {
+    const ivec2 size = claims.high - claims.low + 1;
+    if (size.x > largest_side || size.y > largest_side) refuse(file, "the image is larger than 16384 x 16384 pixels");
+    const uint64_t pixels = static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
+    if (pixels * claims.channels.size() * sizeof(float) > max_decoded_bytes)
+        refuse(file, "the image would need more than 4 GiB of memory");
+    uint64_t bytes_per_pixel = 0, bytes = 0;
+    for (const ExrChannelClaim& channel : claims.channels) {
+        bytes_per_pixel += static_cast<uint64_t>(channel.bytes);
+        bytes += pixels * static_cast<uint64_t>(channel.bytes) / static_cast<uint64_t>(channel.step * channel.step);
+    }
+    if (bytes / best_ratio(claims.compression) > file_bytes)
+        refuse(file, "the file is too short for its image: cut off or damaged");
+    if (!claims.tiled) return;
+    if (static_cast<uint64_t>(claims.tile.x) * static_cast<uint64_t>(claims.tile.y) * bytes_per_pixel >
+        largest_tile_bytes)
+        refuse(file, "a tile would need more than 256 MiB of memory");
+    const ivec2 tiles = (size + claims.tile - 1) / claims.tile;
+    if (static_cast<uint64_t>(tiles.x) * static_cast<uint64_t>(tiles.y) > file_bytes / sizeof(uint64_t))
+        refuse(file, "the file is too short for its tiles: cut off or damaged");
+}
+
+// Returns false at the end of the headers.
+bool read_header(ExrCursor& cursor, uint32_t flags, ExrPartClaims& claims) {
+    const bool multipart = flags & multipart_flag;
+    claims.tiled = flags & tiled_flag;
+    ExpectedAttributes expected;
+    for (int count = 0;; ++count) {
+        const std::string_view name = cursor.name();
+        if (name.empty() && count == 0 && multipart) return false;
+        if (name.empty()) break;
+        if (count == max_attributes) refuse(cursor.file, "the header has more than 4096 attributes");
+        const std::string_view type = cursor.name();
+        const int32_t size = cursor.integer();
+        if (size < 0) refuse(cursor.file, "an attribute has a negative size");
+        const ExrCursor value{cursor.bytes(static_cast<size_t>(size)), cursor.file};
+        if (const auto kind = expected.take(name, type, cursor.file))
+            read_expected(*kind, value, claims);
+        else
+            read_other(name, value, multipart, claims);
+    }
+    for (int kind = 0; kind < ExpectedAttributes::tiles; ++kind)
+        if (!expected.seen[kind])
+            refuse(cursor.file, "the header lacks channels, dataWindow, displayWindow or compression");
+    if (claims.tiled && !expected.seen[ExpectedAttributes::tiles]) refuse(cursor.file, "the header lacks tiles");
+    return true;
+}
+
+uint32_t read_flags(ExrCursor& cursor) {
     if (cursor.left.size() < 8 || cursor.integer() != 20000630) refuse(cursor.file, "this is not an OpenEXR file");
     const uint32_t version = static_cast<uint32_t>(cursor.integer());
     if ((version & 0xff) != 2) refuse(cursor.file, "an OpenEXR version other than 2");
     if (version & deep_flag) refuse(cursor.file, "deep images are not read");
-    if (version & multipart_flag) refuse(cursor.file, "files of several parts are not read");
-    if (version & tiled_flag) refuse(cursor.file, "tiled images are not read");
-    if (version & ~(0xffu | long_names_flag)) refuse(cursor.file, "the header has unknown flags");
-}
-
-// The pixels must fit in memory, and no compression may have made the file as small as it is if it is too small.
-void check_amount(const ExrClaims& claims, uint64_t file_bytes, const std::string& file) {
-    const ivec2 size = claims.high - claims.low + 1;
-    if (size.x > largest_side || size.y > largest_side) refuse(file, "the image is larger than 16384 x 16384 pixels");
-    const uint64_t pixels = static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
-    if (pixels * static_cast<uint64_t>(claims.channels) * sizeof(float) > max_decoded_bytes)
-        refuse(file, "the image would need more than 4 GiB of memory");
-    if (pixels * claims.bytes_per_pixel / best_ratio > file_bytes)
-        refuse(file, "the file is too short for its image: cut off or damaged");
-}
-
-// Bytes that run lengths stand for (OpenEXR's RLE: a count of -n is followed by n bytes, of n by one to repeat n + 1
-// times); nothing where they end early.
-std::optional<uint64_t> unpacked_run_lengths(std::string_view packed) {
-    uint64_t result = 0;
-    for (size_t i = 0; i < packed.size();) {
-        const int count = static_cast<signed char>(packed[i++]);
-        const size_t follow = count < 0 ? static_cast<size_t>(-count) : 1;
-        if (follow > packed.size() - i) return {};
-        i += follow, result += count < 0 ? follow : static_cast<size_t>(count) + 1;
-    }
-    return result;
-}
-
-std::optional<uint64_t> unpacked_zip(std::string_view packed, std::vector<unsigned char>& room) {
-    uLongf size = room.size();
-    const auto* bytes = reinterpret_cast<const unsigned char*>(packed.data());
-    if (uncompress(room.data(), &size, bytes, packed.size()) != Z_OK) return {};
-    return size;
-}
-
-// Every block of lines is where the table says, is the one that belongs there and holds all its pixels. The library
-// fills gaps with what memory happens to hold.
-void check_blocks(Cursor cursor, const ExrClaims& claims, std::string_view file) {
-    const uint64_t height = static_cast<uint64_t>(claims.high.y) - claims.low.y + 1;
-    const uint64_t width = static_cast<uint64_t>(claims.high.x) - claims.low.x + 1;
-    const uint64_t lines = claims.compression == zip_blocks ? 16 : 1;
-    std::vector<unsigned char> room(std::min(lines, height) * width * claims.bytes_per_pixel);
-    for (uint64_t line = 0; line < height; line += lines) {
-        const uint64_t offset = cursor.number<uint64_t>();
-        const std::string name = "the block at line " + std::to_string(claims.low.y + static_cast<int64_t>(line));
-        if (offset >= file.size()) refuse(cursor.file, name + " is missing: cut off or damaged");
-        Cursor block{file.substr(offset), cursor.file};
-        const int32_t first = block.integer(), size = block.integer();
-        const uint64_t whole = std::min(lines, height - line) * width * claims.bytes_per_pixel;
-        const bool fits = size > 0 && static_cast<uint64_t>(size) <= std::min<uint64_t>(whole, block.left.size());
-        if (first != claims.low.y + static_cast<int64_t>(line) || !fits) refuse(cursor.file, name + " is damaged");
-
-        const std::string_view packed = block.bytes(static_cast<size_t>(size));
-        std::optional<uint64_t> unpacked = packed.size(); // what does not get smaller is stored as it is
-        if (packed.size() < whole && claims.compression == run_lengths) unpacked = unpacked_run_lengths(packed);
-        if (packed.size() < whole && claims.compression >= zip_lines) unpacked = unpacked_zip(packed, room);
-        if (unpacked != whole) refuse(cursor.file, name + " is damaged");
-    }
+    if (version & ~(0xffu | tiled_flag | long_names_flag | multipart_flag))
+        refuse(cursor.file, "the header has unknown flags");
+    if ((version & multipart_flag) && (version & tiled_flag))
+        refuse(cursor.file, "the header's flags exclude each other");
+    return version;
 }
 }
 
-ExrClaims check_exr_claims(std::string_view bytes, const std::string& file) {
-    Cursor cursor{bytes, file};
-    check_flags(cursor);
+std::string_view name_of(ExrCompression compression) { return compression_names[static_cast<size_t>(compression)]; }
 
+ExrClaims read_exr_claims(std::string_view bytes, const std::string& file) {
+    ExrCursor cursor{bytes, file};
+    const uint32_t flags = read_flags(cursor);
     ExrClaims claims;
-    bool channels = false, window = false, display = false, compression = false;
-    for (int count = 0;; ++count) {
-        const std::string_view name = cursor.name();
-        if (name.empty()) break;
-        if (count == max_attributes) refuse(file, "the header has more than 4096 attributes");
-        const std::string_view type = cursor.name();
-        const int32_t size = cursor.integer();
-        if (size < 0) refuse(file, "an attribute has a negative size");
-        const Cursor value{cursor.bytes(static_cast<size_t>(size)), file};
-
-        if (name == "channels") {
-            expect_type(name, type, "chlist", channels, file);
-            read_channels(value, claims);
-        } else if (name == "dataWindow") {
-            expect_type(name, type, "box2i", window, file);
-            read_window(value, claims.low, claims.high);
-        } else if (name == "displayWindow") {
-            expect_type(name, type, "box2i", display, file);
-            read_window(value, claims.display_low, claims.display_high);
-        } else if (name == "compression") {
-            expect_type(name, type, "compression", compression, file);
-            read_compression(value, claims);
-        } else if (name == "type" && value.left != "scanlineimage") {
-            refuse(file, "only scanline images are read");
-        }
+    claims.multipart = flags & multipart_flag;
+    for (ExrPartClaims part; read_header(cursor, flags, part); part = {}) {
+        check_amount(part, bytes.size(), file);
+        if (part.chunks > bytes.size() / sizeof(uint64_t))
+            refuse(file, "the file is too short for its blocks: cut off or damaged");
+        claims.parts.push_back(std::move(part));
+        if (!claims.multipart) break;
+        if (claims.parts.size() > max_parts) refuse(file, "more than 256 parts");
     }
-    if (!channels || !window || !display || !compression)
-        refuse(file, "the header lacks channels, dataWindow, displayWindow or compression");
-    check_amount(claims, bytes.size(), file);
-    check_blocks(cursor, claims, bytes);
+    if (claims.parts.empty()) refuse(file, "there are no parts");
+    claims.tables = bytes.size() - cursor.left.size();
     return claims;
 }
 }

@@ -3,38 +3,19 @@
 #include "base/error.h"
 #include "base/exr/exr_attributes.h"
 #include "base/exr/exr_check.h"
+#include "base/exr/exr_stream.h"
 #include "base/io/file.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 
-#include <cstring>
-#include <stdexcept>
+#include <algorithm>
 
 namespace tyndall {
 namespace {
 constexpr uint64_t largest_file = uint64_t{4} << 30;
-
-class MemoryStream : public Imf::IStream {
-public:
-    MemoryStream(const char* name, std::string_view bytes) : IStream(name), bytes_(bytes) {}
-    bool read(char* to, int count) override {
-        if (count < 0 || static_cast<size_t>(count) > bytes_.size() - position_)
-            throw std::runtime_error("the file ends too early");
-        std::memcpy(to, bytes_.data() + position_, static_cast<size_t>(count));
-        position_ += static_cast<size_t>(count);
-        return position_ < bytes_.size();
-    }
-    uint64_t tellg() override { return position_; }
-    void seekg(uint64_t position) override { position_ = std::min<uint64_t>(position, bytes_.size()); }
-
-private:
-    std::string_view bytes_;
-    size_t position_ = 0;
-};
 
 // Whether the bytes are those that tyndall:check was made of.
 bool is_unchanged(std::string_view bytes) {
@@ -71,27 +52,17 @@ void decode_rows(Imf::InputFile& input, int first, int count, ExrFile& file) {
     input.readPixels(rows.min.y, rows.max.y);
 }
 
-// What the library throws is a damaged file.
-template<class Body> ExrFile guarded(const std::string& file, const Body& body) {
-    try {
-        return body();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {
-        refuse(file, std::string("damaged: ") + error.what());
-    }
-}
-
 ExrFile read_checked(std::string_view bytes, const std::string& file, bool pixels) {
-    constexpr const char* compressions[] = {"none", "rle", "zips", "zip"};
-    const ExrClaims claims = check_exr_claims(bytes, file);
-    return guarded(file, [&] {
-        MemoryStream stream(file.c_str(), bytes);
+    const ExrClaims claims = read_exr_claims(bytes, file);
+    if (claims.multipart) refuse(file, "files of several parts are not read");
+    if (std::ranges::any_of(claims.parts[0].channels, [](const ExrChannelClaim& c) { return c.step != 1; }))
+        refuse(file, "channels of reduced resolution are not read");
+    check_exr_blocks(bytes, claims, 0, file);
+    return guarded_exr(file, [&] {
+        ExrStream stream(file, bytes);
         Imf::InputFile input(stream, 0);
         ExrFile result = described(input.header());
-        result.compression = compressions[claims.compression];
+        result.compression = name_of(claims.parts[0].compression);
         result.is_unchanged = is_unchanged(bytes);
         if (pixels) decode_rows(input, 0, result.size.y, result);
         return result;
@@ -109,15 +80,13 @@ ExrFile read_exr(const std::filesystem::path& file) {
     return read_checked(read_file(file, largest_file), file.string(), true);
 }
 
-ExrFile decode_exr(std::string_view bytes, const std::string& where) { return read_checked(bytes, where, true); }
-
 ExrFile read_exr_header(const std::filesystem::path& file) {
     return read_checked(read_file(file, largest_file), file.string(), false);
 }
 
 ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count) {
     check_readable(file);
-    return guarded(file.string(), [&] {
+    return guarded_exr(file.string(), [&] {
         Imf::InputFile input(file.c_str(), 0);
         ExrFile result = described(input.header());
         if (first + count > result.size.y) refuse(file.string(), "has changed while it was read");

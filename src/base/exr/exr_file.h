@@ -22,11 +22,9 @@ struct ExrFile {
 // R, G and B; black where the file lacks them.
 Image<vec3> color_of(const ExrFile& exr);
 
-// Every pixel is decoded. Throws Error (unreadable, refused): flat, single part, NONE/RLE/ZIPS/ZIP only; limits apply.
+// Every pixel is decoded, of tiles the largest level. Throws Error (unreadable, refused): flat pictures of one part
+// only, all channels with all pixels; limits apply.
 ExrFile read_exr(const std::filesystem::path& file);
-
-// The same of bytes in memory. Throws Error (refused) naming `where`.
-ExrFile decode_exr(std::string_view bytes, const std::string& where);
 
 inline constexpr int max_channels = 1024;
 inline constexpr uint64_t max_decoded_bytes = uint64_t{4} << 30; // as floats

@@ -32,9 +32,10 @@ void append_path(const ScatteringFog& fog, const Light& light, const Ray& ray, c
     const double weight =
         extinction * passing / density * (sample.steradians * shown_share(fog, there.point) * light.volume_scale);
     const vec3 share = scattered(fog.media, there, sample.direction).first;
+    const vec3 picture = face_picture(*light.area, there.point + sample.distance * sample.direction);
     const ScatterPath path{number,
                            {there.point, sample.direction, sample.distance * 0.9999f},
-                           share * radiance_of(light) * static_cast<float>(weight)};
+                           share * radiance_of(light) * static_cast<float>(weight) * picture};
     if (max_component(path.light) > 0) paths.push_back(path);
 }
 

@@ -5,6 +5,7 @@
 #include "modes/resolution.h"
 
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
@@ -122,6 +123,7 @@ float filter_node_angle(const Light& light) { return whole_angle(light) / (8 * f
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Snapshot seen =
         with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+    seen = with_mesh_lamps(std::move(seen), settings.terms.emission);
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);

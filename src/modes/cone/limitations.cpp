@@ -67,8 +67,8 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     add_lamps_for_faces(view, snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) {
-        add_emission(snapshot, true, limitations), add_lamps_for_fire(view, snapshot, limitations);
-        add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
+        add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);
+        add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
     }
     add_shutter(view, snapshot, limitations);
     return limitations;

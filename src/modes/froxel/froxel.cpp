@@ -3,6 +3,7 @@
 #include "base/simd/simd.h"
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "integrate/style.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
@@ -43,6 +44,7 @@ struct FroxelFrame {
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
     scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), terms)));
+    scene.snapshot = with_mesh_lamps(std::move(scene.snapshot), terms.emission);
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
     scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);

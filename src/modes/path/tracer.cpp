@@ -152,7 +152,8 @@ void find_faces(const Walk& walk, const Ray* tested, Hits& hits, std::span<int> 
 
 // The eye sees the face of a light, and nothing beyond.
 void meet_face(const Walk& walk, Segment& line, const Light& light) {
-    add_light(walk, line, radiance_of(light) * line.through, OtherLight::emission, line.walker.in_fog);
+    const vec3 radiance = radiance_of(light) * face_picture(*light.area, line.rest.at(line.end));
+    add_light(walk, line, radiance * line.through, OtherLight::emission, line.walker.in_fog);
     line.walking = false, line.through = 0;
 }
 

@@ -1,6 +1,7 @@
 // Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "integrate/lobe_cuts.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
@@ -35,6 +36,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     auto march = std::make_shared<ShadowMapMarch>();
     march->snapshot =
         with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+    march->snapshot = with_mesh_lamps(std::move(march->snapshot), settings.terms.emission);
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);

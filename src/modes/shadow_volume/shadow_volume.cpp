@@ -1,6 +1,7 @@
 // Shadow volumes: exact shafts without noise.
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "integrate/single_scattering/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/lens_fog.h"
@@ -27,6 +28,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     frame->snapshot =
         with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+    frame->snapshot = with_mesh_lamps(std::move(frame->snapshot), settings.terms.emission);
     frame->style = settings.style;
     FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);
     frame->nodes = own.nodes, frame->steps = own.steps;

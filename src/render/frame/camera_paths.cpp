@@ -71,7 +71,7 @@ void find_faces(const Snapshot& snapshot, PathPacket& s) {
 SurfacePoint face_point(const Light& light, vec3 position) {
     SurfacePoint point;
     point.position = position, point.normal = point.face_normal = light.area->normal;
-    point.base_color = vec3(0), point.emission = radiance_of(light);
+    point.base_color = vec3(0), point.emission = radiance_of(light) * face_picture(*light.area, position);
     return point;
 }
 }

@@ -9,6 +9,9 @@ constexpr std::string_view own_fields[] = {"name",         "type",          "col
 constexpr const char* map_fields[] = {"color", "sky", "image"};
 
 void check_fields(const Field& field) {
+    for (const char* name : {"light_link", "shadow_link"})
+        if (const Field link = field.member(name))
+            refuse(link, "is not for an environment: it lights every object, and every object shadows it");
     for (const auto& [name, value] : field.json->members)
         if (std::ranges::find(own_fields, name) == std::end(own_fields))
             refuse(field.member(name), "is for lights with a place or a direction; this light is an environment");

@@ -22,7 +22,10 @@ void check_fields(const Field& field, const LightSource& light) {
     only("direction", aimed, "spots, suns, rectangles, discs and lights with a profile");
     only("target", aimed, "spots, suns, rectangles, discs and lights with a profile");
     only("ies", lamp, "point lights and spots");
-    only("gobo", kind.cone, "spots");
+    only("gobo", kind.cone || rectangle, "spots and rectangles");
+    for (const char* name : {"rotate", "scale"})
+        if (const Field gobo = field.member("gobo"); rectangle && gobo && gobo.member(name))
+            refuse(gobo.member(name), "is for the gobo of a spot; a rectangle shows its picture from edge to edge");
     only("range", lamp, "point lights and spots");
     only("radius", !kind.distant && !rectangle, "point lights, spots, discs and spheres");
     for (const char* name : {"width", "height"}) only(name, rectangle, "rectangles");

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "scene/area_shape.h"
 #include "scene/gobo.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
@@ -160,6 +161,8 @@ void add_links(const Light& light, const Snapshot& snapshot, CacheKey& key) {
 
 // Where a light's intensity goes.
 void add_filter(const Light& light, CacheKey& key) {
+    if (light.area && light.area->picture)
+        for (const char c : light.area->picture->content) key.add(c);
     if (!light.filter) return;
     const LightFilter& filter = *light.filter;
     const std::string contents = (filter.profile ? filter.profile->content : std::string()) + " " +

@@ -108,7 +108,8 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
     return {light->position + light->radius * (direction + disc.x * x + disc.y * y), direction};
 }
 
-vec3 LightSquare::share(vec3 direction) const {
+vec3 LightSquare::share(const Ray& ray) const {
+    const vec3 direction = ray.direction;
     if (environment) {
         const float density = environment_density(*environment, -direction);
         if (!(density > 0)) return vec3(0);
@@ -117,6 +118,7 @@ vec3 LightSquare::share(vec3 direction) const {
     }
     vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
     if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));
+    if (light->area) share *= face_picture(*light->area, ray.origin);
     return share;
 }
 }

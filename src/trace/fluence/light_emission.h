@@ -27,7 +27,7 @@ struct LightSquare {
     // The ray at a place of the square with 1 = all of `power`; `soft` picks a point of a soft light.
     Ray ray(vec2 place, vec2 soft) const;
     // Share of `power` along it.
-    vec3 share(vec3 direction) const;
+    vec3 share(const Ray& ray) const;
 };
 
 // Of every light of the snapshot, in their order, and of its environment.

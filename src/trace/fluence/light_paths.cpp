@@ -61,7 +61,7 @@ PathVertex start(const Walk& walk, int64_t index, int64_t total) {
     walker.ray = square.ray(place, walker.pair());
     const Interval<float> inside = clip(walk.rules.reach, walker.ray.origin, walker.ray.direction, {0, infinity});
     if (inside.empty()) return walker;
-    vec3 left = square.share(walker.ray.direction);
+    vec3 left = square.share(walker.ray);
     walker.ray.origin = walker.ray.at(inside.low);
     if (walk.endless && is_distant(*square.light))
         left *= static_cast<float>(

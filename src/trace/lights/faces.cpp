@@ -43,7 +43,8 @@ void aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePo
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
         const vec3 from = off_surface(point.position, point.face_normal, sample.direction);
         to.rays.set(i, {from, sample.direction, sample.distance * 0.9999f});
-        to.light[i] = radiance * (sample.steradians * cosine);
+        const vec3 picture = face_picture(*light.area, point.position + sample.distance * sample.direction);
+        to.light[i] = radiance * (sample.steradians * cosine) * picture;
     }
 }
 }

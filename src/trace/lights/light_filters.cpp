@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "scene/area_shape.h"
 #include "scene/gobo.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
@@ -23,7 +24,9 @@ std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, Missing
     const std::string key = file.string() + " " + std::to_string(size) + " " + std::to_string(changed);
     if (previous)
         for (const Light& light : previous->lights)
-            if (light.filter && light.filter->gobo && light.filter->gobo->file == key) return light.filter->gobo;
+            for (const auto& known :
+                 {light.filter ? light.filter->gobo : nullptr, light.area ? light.area->picture : nullptr})
+                if (known && known->file == key) return known;
     std::string note;
     auto gobo = make_gobo(read_file(file, largest_gobo_file), source.space, file.string(), note);
     gobo->file = key;

@@ -88,13 +88,14 @@ TEST(ExrForeign, RefusesWhatItDoesNotRead) {
     expect_refused("", "not an OpenEXR file");
     expect_refused("version https://git-lfs.github.com/spec/v1\noid sha256:0", "not an OpenEXR file");
     expect_refused(with([](auto& f) { f.version = 1; }), "version");
-    expect_refused(with([](auto& f) { f.version = 2 | 0x200; }), "tiled");
+    expect_refused(with([](auto& f) { f.version = 2 | 0x200; }), "lacks tiles");
     expect_refused(with([](auto& f) { f.version = 2 | 0x800; }), "deep");
-    expect_refused(with([](auto& f) { f.version = 2 | 0x1000; }), "several parts");
+    expect_refused(with([](auto& f) { f.version = 2 | 0x1200; }), "exclude each other");
     expect_refused(with([](auto& f) { f.version = 2 | 0x8000; }), "unknown flags");
-    for (int c = 4; c < 10; ++c)
-        expect_refused(with([&](auto& f) { f.compression = std::string(1, static_cast<char>(c)); }), "compressions");
+    for (const int c : {10, 255})
+        expect_refused(with([&](auto& f) { f.compression = std::string(1, static_cast<char>(c)); }), "not known");
     expect_refused(with([](auto& f) { f.sampling = 2; }), "reduced resolution");
+    expect_refused(with([](auto& f) { f.sampling = 3; }), "each second pixel");
     expect_refused(with([](auto& f) { f.channel_type = 3; }), "pixel type");
     expect_refused(with([](auto& f) { put_attribute(f.extra, "type", "string", "deepscanline"); }), "scanline");
 }
@@ -173,14 +174,11 @@ TEST(ExrForeign, ReadsOrRefusesTheValidCollection) {
         } catch (const Error& error) {
             const std::string text = error.what();
             EXPECT_EQ(static_cast<int>(error.code), static_cast<int>(ExitCode::refused)) << text;
-            const bool expected = text.find("compressions") != text.npos || text.find("tiled") != text.npos ||
-                                  text.find("several parts") != text.npos;
-            EXPECT_TRUE(expected) << text;
+            EXPECT_NE(text.find("several parts"), text.npos) << text;
             ++refused;
         }
     }
-    EXPECT_GE(read, 3);
-    EXPECT_GE(refused, 3);
+    EXPECT_GE(read, 6);
 }
 
 TEST(ExrForeign, RefusesTheDamagedCollection) {

@@ -1,0 +1,118 @@
+#include "base/exr/exr_check.h"
+#include "base/exr/exr_cursor.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace tyndall {
+namespace {
+// Lines of a block of a picture without tiles.
+int lines_of(ExrCompression compression) {
+    constexpr int lines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+    return lines[static_cast<size_t>(compression)];
+}
+
+// Bytes that run lengths stand for (OpenEXR's RLE: a count of -n is followed by n bytes, of n by one to repeat n + 1
+// times); nothing where they end early.
+std::optional<uint64_t> unpacked_run_lengths(std::string_view packed) {
+    uint64_t result = 0;
+    for (size_t i = 0; i < packed.size();) {
+        const int count = static_cast<signed char>(packed[i++]);
+        const size_t follow = count < 0 ? static_cast<size_t>(-count) : 1;
+        if (follow > packed.size() - i) return {};
+        i += follow, result += count < 0 ? follow : static_cast<size_t>(count) + 1;
+    }
+    return result;
+}
+
+std::optional<uint64_t> unpacked_zip(std::string_view packed, std::vector<unsigned char>& room) {
+    uLongf size = room.size();
+    const auto* bytes = reinterpret_cast<const unsigned char*>(packed.data());
+    if (uncompress(room.data(), &size, bytes, packed.size()) != Z_OK) return {};
+    return size;
+}
+
+// Bytes of the pixels from one corner to the other, both included.
+uint64_t whole_bytes(const ExrPartClaims& part, ivec2 from, ivec2 to) {
+    uint64_t bytes = 0;
+    for (const ExrChannelClaim& channel : part.channels) {
+        const auto values = [&](int first, int last) { // multiples of the step in first..last
+            const auto below = [&](int n) { return static_cast<int>(std::floor(double(n) / channel.step)); };
+            return static_cast<uint64_t>(below(last) - below(first - 1));
+        };
+        bytes += values(from.x, to.x) * values(from.y, to.y) * static_cast<uint64_t>(channel.bytes);
+    }
+    return bytes;
+}
+
+// A block of pixels: what stands before its bytes, and how large it is.
+struct ExrBlock {
+    std::string name;
+    std::vector<int32_t> place; // the part of a file of several; first line, or tile and level
+    uint64_t whole = 0;         // bytes, unpacked
+};
+
+void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& part, const ExrBlock& expected,
+                 std::vector<unsigned char>& room) {
+    const uint64_t offset = table.number<uint64_t>();
+    if (offset >= file.size()) refuse(table.file, expected.name + " is missing: cut off or damaged");
+    ExrCursor block{file.substr(offset), table.file};
+    bool belongs = true;
+    for (const int32_t number : expected.place) belongs &= block.integer() == number;
+    const int32_t size = block.integer();
+    const bool fits = size > 0 && static_cast<uint64_t>(size) <= std::min<uint64_t>(expected.whole, block.left.size());
+    if (!belongs || !fits) refuse(table.file, expected.name + " is damaged");
+
+    const std::string_view packed = block.bytes(static_cast<size_t>(size));
+    if (packed.size() == expected.whole) return; // what does not get smaller is stored as it is
+    std::optional<uint64_t> unpacked = packed.size();
+    if (part.compression == ExrCompression::rle) unpacked = unpacked_run_lengths(packed);
+    if (part.compression == ExrCompression::zips || part.compression == ExrCompression::zip) {
+        room.resize(expected.whole);
+        unpacked = unpacked_zip(packed, room);
+    }
+    if (part.compression <= ExrCompression::zip && unpacked != expected.whole)
+        refuse(table.file, expected.name + " is damaged");
+}
+
+// Calls visit(block) for each in the order of the table.
+template<class Visit> void visit_lines(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
+    const int lines = lines_of(part.compression);
+    place.push_back(0);
+    for (int y = part.low.y; y <= part.high.y; y += lines) {
+        const ivec2 from(part.low.x, y), to(part.high.x, std::min(y + lines - 1, part.high.y));
+        place.back() = y;
+        visit(ExrBlock{"the block at line " + std::to_string(y), place, whole_bytes(part, from, to)});
+    }
+}
+
+template<class Visit> void visit_tiles(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
+    const ivec2 tiles = (part.high - part.low + part.tile) / part.tile;
+    const size_t first = place.size();
+    place.resize(first + 4); // column, row, level across and down
+    for (int y = 0; y < tiles.y; ++y)
+        for (int x = 0; x < tiles.x; ++x) {
+            const ivec2 from = part.low + ivec2(x, y) * part.tile, to = glm::min(from + part.tile - 1, part.high);
+            place[first] = x, place[first + 1] = y;
+            visit(ExrBlock{"the tile " + std::to_string(x) + ", " + std::to_string(y), place,
+                           whole_bytes(part, from, to)});
+        }
+}
+}
+
+void check_exr_blocks(std::string_view bytes, const ExrClaims& claims, size_t part, const std::string& file) {
+    ExrCursor table{bytes.substr(claims.tables), file};
+    for (size_t before = 0; before < part; ++before) table.bytes(claims.parts[before].chunks * sizeof(uint64_t));
+    std::vector<int32_t> place;
+    if (claims.multipart) place.push_back(static_cast<int32_t>(part));
+    std::vector<unsigned char> room;
+    const auto check = [&](const ExrBlock& block) { check_block(table, bytes, claims.parts[part], block, room); };
+    const ExrPartClaims& chosen = claims.parts[part];
+    if (chosen.tiled)
+        visit_tiles(chosen, place, check);
+    else
+        visit_lines(chosen, place, check);
+}
+}
