@@ -13,7 +13,8 @@
 namespace tyndall {
 namespace {
 constexpr double max_voxels = 4096; // that fog may be moved by
-constexpr int iterations = 4;       // of the way back
+constexpr int iterations = 4;       // of the way back at most: until it settles
+constexpr float settled = 0.01f;    // voxels
 
 ivec3 voxel_of(size_t v) { return {static_cast<int>(v >> 6), static_cast<int>(v >> 3 & 7), static_cast<int>(v & 7)}; }
 
@@ -56,18 +57,24 @@ struct MovedCells {
     std::vector<ivec3> cells; // that anything gets to
 };
 
-// What takes longer to note than to move is no motion.
+[[noreturn]] void refuse_scattered(const std::string& what) {
+    refuse(what, "its velocities scatter it over too many voxels while the shutter is open: see velocity_unit, "
+                 "velocity_scale, and clamp of the grid");
+}
+
+// Each brick notes itself in every cell that it may get to.
 void check_reach(const std::vector<Box>& boxes, const std::string& what) {
-    constexpr double max_cells = 1 << 28;
-    double cells = 0;
+    constexpr double max_notes = 1 << 28;
+    double notes = 0;
     for (const Box& box : boxes) {
         const dvec3 size = dvec3(box.size()) / 8.0 + 1.0;
-        cells += size.x * size.y * size.z;
+        notes += size.x * size.y * size.z;
     }
-    if (cells > max_cells)
-        refuse(what, "its velocities scatter it over too many voxels while the shutter is open: see velocity_unit, "
-                     "velocity_scale, and clamp of the grid");
+    if (notes > max_notes) refuse_scattered(what);
 }
+
+// Smoke of few bricks takes 64 MB at most, of many 16 times what it takes.
+size_t max_cells(size_t bricks) { return std::max<size_t>(1 << 15, 16 * bricks); }
 
 MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, float time, const std::string& what) {
     const std::vector<ivec3> from = filled_cells(fog);
@@ -92,6 +99,7 @@ MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, floa
         for_each_cell(ivec3(glm::floor(boxes[i].low / 8.0f)), ivec3(glm::floor(boxes[i].high / 8.0f)), [&](ivec3 cell) {
             Arrivals& arrivals = moved.arrivals[moved.grid.at(cell)];
             if (arrivals.count == 0) moved.cells.push_back(cell);
+            if (moved.cells.size() > max_cells(from.size())) refuse_scattered(what);
             arrivals.velocity += ranges[i].mean(), arrivals.count += 1;
         });
     return moved;
@@ -103,7 +111,11 @@ vec3 way_back(const LocalVelocity& velocity, vec3 x, vec3 usual, float time) {
     bool known = velocity.at(x, v);
     if (!known) v = usual;
     vec3 y = x - time * v;
-    for (int i = 0; i < iterations && velocity.at(y, v); ++i) known = true, y = x - time * v;
+    for (int i = 0; i < iterations && velocity.at(y, v); ++i) {
+        const vec3 before = std::exchange(y, x - time * v);
+        known = true;
+        if (max_component(glm::abs(y - before)) < settled) break;
+    }
     return known ? y : x;
 }
 
