@@ -103,7 +103,8 @@ void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limi
     Box fog;
     for (const Medium& medium : snapshot.media)
         if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
-    if (fog.empty() || snapshot.lights.empty()) return;
+    const auto emits = [](const Medium& medium) { return only_emits(medium.optics); };
+    if (fog.empty() || (snapshot.lights.empty() && std::ranges::none_of(snapshot.media, emits))) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
     for (const Medium& medium : thickest_media(snapshot)) {
         const float depth = medium.majorant() * cell;
@@ -446,13 +447,17 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
     });
 }
 
-void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitations& limitations) {
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const auto found = mesh_lamps(snapshot);
     if (!found || found->lamps.empty()) return;
+    const bool wrong = std::ranges::any_of(found->lamps, [&](const Light& lamp) {
+        return share_of_picture(view, lamp.position, found->reach) > much_of_picture ||
+               is_short_of(snapshot, lamp.position, found->reach);
+    });
     for_emitting_materials(snapshot, [&](const Material& material) {
         if (material.alpha_mode == AlphaMode::opaque)
-            limitations.push_back({Severity::degraded,
+            limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
                                    &limitation::lamps_for_surfaces,
                                    Subject::material,
                                    material.name,

@@ -132,8 +132,8 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
 // Where lamps stand for glowing fog. `wrong` where most of their light is scattered in the fog that they are off in.
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for surfaces that emit.
-void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations);
+// Where lamps stand for surfaces that emit; `wrong` as of faces.
+void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Where the fog has the environment's light as its mean, or none of it. How far the mean is off is measured on a few
 // rays.

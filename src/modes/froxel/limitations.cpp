@@ -132,7 +132,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
-        add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
+        add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();
     const FroxelSize size = middle_froxel(view, snapshot, froxel);

@@ -59,7 +59,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
-        add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
+        add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -31,7 +31,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
     }
     if (settings.terms.emission) {
         add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);
-        add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
+        add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
     }
     add_single_scattering(view, snapshot, limitations), add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
