@@ -1,5 +1,6 @@
 #include "modes/shared_limitations.h"
 
+#include "integrate/lights/environment_light.h"
 #include "integrate/lights/fire_lamps.h"
 #include "integrate/lights/mesh_lamps.h"
 #include "modes/settings.h"
@@ -7,6 +8,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/fluence/light_paths.h"
+#include "trace/fog_motion.h"
 #include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -18,13 +20,16 @@
 #include "volume/rays/fog_reach.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace tyndall {
 namespace {
-constexpr float deep_cell = 0.3f;    // optical depths, across which the dimming of light is far from linear
-constexpr float deep_step = 0.15f;   // optical depths
-constexpr float detail_voxels = 2;   // of fog that changes from voxel to voxel
-constexpr float seen_offset = 0.25f; // pixels
+constexpr float deep_cell = 0.3f;       // optical depths, across which the dimming of light is far from linear
+constexpr float deep_step = 0.15f;      // optical depths
+constexpr float detail_voxels = 2;      // of fog that changes from voxel to voxel
+constexpr float seen_offset = 0.25f;    // pixels
+constexpr double much_of_picture = 0.2; // of its height
+constexpr double seen_share = 0.02, wrong_share = 0.5; // of light that is off
 
 // How thick a medium can be at most across its own bounds, as optical depth.
 float thickness(const Medium& medium, const Box& scene_bounds) {
@@ -59,11 +64,13 @@ void add_table(const Medium& medium, Limitations& limitations) {
                            {ratio}});
 }
 
-bool scatters(const Medium& medium) { return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0; }
+bool scatters_light(const Medium& medium) {
+    return !only_emits(medium.optics) && max_component(medium.optics.albedo) > 0;
+}
 
 // Luminance of the environment's light in fog, where there is some to light; else 0.
 double nits_in_fog(const Snapshot& snapshot) {
-    if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters)) return 0;
+    if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters_light)) return 0;
     return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
 }
 
@@ -73,8 +80,16 @@ void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) 
 }
 }
 
+std::vector<Medium> thickest_media(const Snapshot& snapshot) {
+    std::vector<Medium> media = snapshot.media;
+    for (const std::vector<Medium>& channel : snapshot.channel_media)
+        for (size_t m = 0; m < channel.size(); ++m)
+            media[m].optics.extinction = glm::max(media[m].optics.extinction, channel[m].optics.extinction);
+    return media;
+}
+
 void add_single_scattering(const View& view, const Snapshot& snapshot, Limitations& limitations) {
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         const float scattered = thickness(medium, snapshot.bounds) * max_component(medium.optics.albedo);
         if (scattered <= 0.5f) continue;
         limitations.push_back(
@@ -90,7 +105,7 @@ void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limi
         if (medium.density.kind == DensityKind::bricks && !only_emits(medium.optics)) fog.grow(medium.world_bounds);
     if (fog.empty() || snapshot.lights.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(cells);
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         const float depth = medium.majorant() * cell;
         if (medium.density.kind == DensityKind::bricks && depth > deep_cell)
             limitations.push_back(
@@ -116,7 +131,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
 
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
-    for (const Medium& medium : snapshot.media) {
+    for (const Medium& medium : thickest_media(snapshot)) {
         if (only_emits(medium.optics)) continue; // is asked at nodes of its own
         float length = 0;
         for (const Ray& ray : rays)
@@ -171,20 +186,64 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
 }
 
+namespace {
+// Lights that change so much from moment to moment that their sum is no integral: of light that fades by a factor r
+// between two, the middle is off by (ln r)² / 24.
+void add_fading(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Light& light : snapshot.lights) {
+        double largest = 0, before = 0;
+        for (const Snapshot& moment : *snapshot.moments) {
+            const auto found = std::ranges::find(moment.lights, light.name, &Light::name);
+            const double now = found == moment.lights.end() ? 0 : luminance(found->intensity);
+            if (before > 0 && now > 0) largest = std::max(largest, std::abs(std::log(now / before)));
+            before = now;
+        }
+        if (const double off = largest * largest / 24; off > seen_share)
+            limitations.push_back(
+                {Severity::degraded, &limitation::shutter_fades, Subject::light, light.name, {100 * off}});
+    }
+}
+
+// The largest share that the lesser of two files has at a moment, percent.
+double lesser_share(const Snapshot& snapshot) {
+    double largest = 0;
+    for (const Snapshot& moment : *snapshot.moments) {
+        const double frames = moment.seconds * snapshot.scene->frame_rate;
+        largest = std::max(largest, std::abs(frames - std::round(frames)));
+    }
+    return 100 * largest;
+}
+
+void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& limitations) {
+    const MediumSource& source = snapshot.scene->media[medium];
+    const auto add = [&](Severity severity, const LimitationKind& kind, double amount, double count = 0) {
+        limitations.push_back({severity, &kind, Subject::medium, source.name, {amount, count}});
+    };
+    if (source.velocity) {
+        const FogTravel travel = fog_travel(snapshot, medium);
+        if (travel.voxels == 0) return;
+        const bool in_steps = travel.voxels > travel.places; // of more than two voxels, there and back
+        add(in_steps ? Severity::degraded : Severity::info, limitation::advected_volumes, travel.voxels, travel.places);
+    } else if (moves(source)) {
+        add(Severity::degraded, limitation::blended_volumes, lesser_share(snapshot));
+    } else if (source.kind == MediumKind::vdb && source.sequence.files.size() > 1) {
+        const double open = snapshot.moments->back().seconds - snapshot.moments->front().seconds;
+        add(Severity::degraded, limitation::still_volumes, open);
+    }
+}
+}
+
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
-    constexpr double separate = 2; // pixels: then edges show as steps
+    constexpr double separate = 1; // pixels: then thin lines are seen apart
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
+    add_fading(snapshot, limitations);
     const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
     limitations.push_back({between > separate ? Severity::degraded : Severity::info,
                            &limitation::shutter_moments,
                            Subject::camera,
                            view.camera.name,
                            {between, moments}});
-    const double open = snapshot.moments->back().seconds - snapshot.moments->front().seconds;
-    for (const MediumSource& medium : snapshot.scene->media)
-        if (medium.kind == MediumKind::vdb && medium.sequence.files.size() > 1)
-            limitations.push_back(
-                {Severity::degraded, &limitation::still_volumes, Subject::medium, medium.name, {open}});
+    for (size_t i = 0; i < snapshot.scene->media.size(); ++i) add_volume_motion(snapshot, i, limitations);
 }
 
 namespace {
@@ -232,7 +291,7 @@ template<class Visit> void for_emitting_materials(const Snapshot& snapshot, cons
 
 // Whether there is something that light could fall on.
 bool can_be_lit(const Snapshot& snapshot) {
-    return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters);
+    return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters_light);
 }
 }
 
@@ -250,14 +309,65 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
     }
 }
 
-void add_mean_environment(const Snapshot& snapshot, Limitations& limitations) {
+namespace {
+// What fog scatters of the environment's light, as a march finds it, by so many ways for each ray.
+ScatterFunction scattered_sky(const View& view, const Snapshot& snapshot) {
+    TermSettings terms;
+    terms.light_points = 16;
+    const auto fog = scattering_fog(snapshot, {}, terms, view.camera, 0);
+    std::vector<PathLight> lights;
+    append_environment_light(snapshot, fog, true, lights);
+    return with_path_lights(fog, std::move(lights),
+                            [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
+}
+
+// The same as its mean from all around that nothing dims: of the light that fog keeps from a ray, what it scatters.
+double scattered_mean(const Snapshot& snapshot, const Ray& ray) {
+    constexpr int points = 16;
+    double scattered = 0, dimmed = 0;
+    for (int i = 0; i < points; ++i)
+        for (const Medium& medium : snapshot.media) {
+            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
+            const double extinction = double(density_at(medium, point)) * grey_extinction(medium.optics);
+            scattered += extinction * luminance(albedo_at(medium.optics, point)), dimmed += extinction;
+        }
+    const double share = dimmed > 0 ? scattered / dimmed * -std::expm1(-optical_depth(snapshot.media, ray)) : 0;
+    return share * luminance(snapshot.environment->mean()) * snapshot.environment->volume_scale;
+}
+
+// How far the mean is off, as E has it: over 8×6 rays of the picture, up to its surfaces.
+double off_by_mean(const View& view, const Snapshot& snapshot) {
+    constexpr int across = 8, down = 6;
+    const ScatterFunction exact = scattered_sky(view, snapshot);
+    double squares = 0, sum = 0;
+    for (uint32_t i = 0; i < across * down; ++i) {
+        const vec2 at((static_cast<float>(i % across) + 0.5f) / across, (static_cast<float>(i / across) + 0.5f) / down);
+        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
+        ray.t_max = std::min(fog_reach(snapshot.media, ray), view.camera.far);
+        Hits hits;
+        if (snapshot.occluders)
+            snapshot.occluders->closest({&ray, 1}, 0, hits), ray.t_max = std::min(ray.t_max, hits.t[0]);
+        if (!(ray.t_max > 0)) continue;
+        Scatter found;
+        exact({.rays = {&ray, 1}, .ids = {&i, 1}}, {&found, 1});
+        const double off = scattered_mean(snapshot, ray) - luminance(found.radiance);
+        squares += off * off, sum += luminance(found.radiance);
+    }
+    return sum > 0 ? std::sqrt(squares * across * down) / sum : 0;
+}
+}
+
+void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     const double nits = nits_in_fog(snapshot);
     if (!(nits > 0)) return;
-    limitations.push_back({Severity::degraded,
+    const double off = off_by_mean(view, snapshot);
+    limitations.push_back({off > wrong_share  ? Severity::wrong
+                           : off > seen_share ? Severity::degraded
+                                              : Severity::info,
                            &limitation::mean_environment,
                            Subject::light,
                            snapshot.environment->name,
-                           {100 * snapshot.environment->table->uneven, nits}});
+                           {100 * off, nits}});
 }
 
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations) {
@@ -266,31 +376,66 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
             {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
 }
 
-void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations) {
+namespace {
+// The share of the picture's height that a ball takes; 0 where none of it is in the picture.
+double share_of_picture(const View& view, vec3 center, double radius) {
+    const Camera& camera = view.camera;
+    const double depth = glm::dot(center - camera.position, camera.forward);
+    if (glm::distance(center, camera.position) < radius) return 1;
+    const double height =
+        camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5 * camera.vertical_fov);
+    const std::optional<vec2> at = pixel_of(camera, view.size, center);
+    if (!at || !(height > 0)) return 0;
+    const vec2 beyond = glm::max(glm::max(-*at, *at - vec2(view.size)), vec2(0));
+    const double share = 2 * radius / height;
+    return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
+}
+
+// Whether a light hardly gets beyond a distance from it: by the fog on six ways.
+bool is_short_of(const Snapshot& snapshot, vec3 center, double distance) {
+    constexpr double deep = 0.3; // optical depths
+    double depth = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const float way : {-1.0f, 1.0f}) {
+            Ray ray{center, vec3(0), static_cast<float>(distance)};
+            ray.direction[axis] = way;
+            depth += optical_depth(snapshot.media, ray) / 6;
+        }
+    return depth > deep;
+}
+}
+
+void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     for (const Light& light : snapshot.lights)
-        if (light.area && light.volume_scale > 0)
-            limitations.push_back({Severity::degraded,
+        if (light.area && light.volume_scale > 0) {
+            const double within = far_enough(*light.area, tolerated);
+            const bool wrong = share_of_picture(view, light.position, within) > much_of_picture ||
+                               is_short_of(snapshot, light.position, within);
+            limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
                                    &limitation::lamp_for_face,
                                    Subject::light,
                                    light.name,
-                                   {light.radius, far_enough(*light.area, tolerated)}});
+                                   {light.radius, within}});
+        }
 }
 
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const std::vector<Light> lamps = fire_lamps(snapshot);
     double reach = 0;
-    for (const Light& lamp : lamps) reach = std::max(reach, far_enough(lamp, tolerated));
+    Severity severity = Severity::degraded;
+    for (const Light& lamp : lamps) {
+        const double within = far_enough(lamp, tolerated);
+        reach = std::max(reach, within);
+        if (is_short_of(snapshot, lamp.position, within)) severity = Severity::wrong;
+    }
     for (const Medium& medium : snapshot.media)
         if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
-            limitations.push_back({Severity::degraded,
-                                   &limitation::lamps_for_fire,
-                                   Subject::medium,
-                                   medium.name,
-                                   {reach, double(lamps.size())}});
+            limitations.push_back(
+                {severity, &limitation::lamps_for_fire, Subject::medium, medium.name, {reach, double(lamps.size())}});
 }
 
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
@@ -302,7 +447,7 @@ void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
 }
 
 void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     const auto found = mesh_lamps(snapshot);
     if (!found || found->lamps.empty()) return;
     for_emitting_materials(snapshot, [&](const Material& material) {
@@ -316,11 +461,11 @@ void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations) 
 }
 
 void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters)) return;
+    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     for_emitting_materials(snapshot, [&](const Material& material) {
         if (material.alpha_mode == AlphaMode::opaque)
             limitations.push_back(
-                {Severity::degraded, &limitation::emission_lights_no_fog, Subject::material, material.name});
+                {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
     });
 }
 

@@ -6,6 +6,7 @@
 #include "trace/transmittance/light_transmittance.h"
 
 namespace tyndall {
+struct Medium;
 struct Snapshot;
 struct View;
 
@@ -18,8 +19,8 @@ inline constexpr LimitationKind float_precision{
 inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
                                                    "ambient light is not shadowed by surfaces or fog"};
 inline constexpr LimitationKind mean_environment{
-    "mean_environment", "in the fog its light is its mean from all around, shadowed by nothing: {}% of it comes from "
-                        "elsewhere, of {} nits"};
+    "mean_environment", "in the fog its light is its mean from all around, shadowed by nothing: some {}% off what "
+                        "the fog scatters of {} nits"};
 inline constexpr LimitationKind environment_left_out{"environment_left_out",
                                                      "its light in the fog is left out: {} nits from all around"};
 inline constexpr LimitationKind lamp_for_face{
@@ -70,8 +71,19 @@ inline constexpr LimitationKind emission_left_out{"emission_left_out", "its ligh
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
                        "made of (--time-samples)"};
+inline constexpr LimitationKind shutter_fades{
+    "shutter_fades", "its brightness changes so much between two of the moments that motion blur is made of that it is "
+                     "off by up to {}% (--time-samples)"};
 inline constexpr LimitationKind still_volumes{
-    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open"};
+    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open (a \"velocity\" "
+                     "in its \"grids\" moves it, \"blend\" in its \"sequence\" mixes files)"};
+inline constexpr LimitationKind blended_volumes{
+    "blended_volumes",
+    "while the shutter is open two of its files are mixed, with up to {}% of the lesser: what moves by "
+    "more than a voxel from file to file is seen twice"};
+inline constexpr LimitationKind advected_volumes{
+    "advected_volumes", "moves along straight lines by its velocities, up to {} voxels from where its file has it, "
+                        "through {n} places"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};
@@ -79,6 +91,9 @@ inline constexpr LimitationKind average_light{
     "average_light", "light-side transmittance is average: light is dimmed equally everywhere"};
 inline constexpr LimitationKind hard_shadows{"hard_shadows", "size ignored: shadows in the fog have hard edges"};
 }
+
+// The media, each as the channel meets it that it dims most.
+std::vector<Medium> thickest_media(const Snapshot& snapshot);
 
 // Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places
 // so far from the origin that floats do not resolve them.
@@ -114,18 +129,20 @@ void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 // comes from no grid.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
 
-// Where lamps stand for glowing fog.
+// Where lamps stand for glowing fog. `wrong` where most of their light is scattered in the fog that they are off in.
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
 // Where lamps stand for surfaces that emit.
 void add_lamps_for_surfaces(const Snapshot& snapshot, Limitations& limitations);
 
-// Where the fog has the environment's light as its mean, or none of it.
-void add_mean_environment(const Snapshot& snapshot, Limitations& limitations);
+// Where the fog has the environment's light as its mean, or none of it. How far the mean is off is measured on a few
+// rays.
+void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations);
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for the faces of rectangles, discs and spheres.
-void add_lamps_for_faces(const Snapshot& snapshot, Limitations& limitations);
+// Where lamps stand for the faces of rectangles, discs and spheres. `wrong` also where that fog takes much of the
+// picture.
+void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Materials whose emission lights nothing; and those for which it does so in the fog alone.
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);

@@ -17,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tyndall {
@@ -108,6 +109,13 @@ struct GridSource {
     ValueMap map;
 };
 
+// Velocities that move fog of files while the shutter is open: lengths of the file per second or frame, times `scale`.
+struct VelocitySource {
+    GridSource grid; // one of vectors, or three
+    float scale = 1;
+    bool per_frame = false;
+};
+
 // How a temperature becomes light. Times `scale` and `tint` it is emitted per metre; in proportion to what the fog
 // absorbs where `by_absorption` says so.
 struct BlackbodySource {
@@ -138,6 +146,8 @@ struct MediumSource {
     std::optional<GridSource> albedo_grid, emission_grid; // vdb: factors on `albedo`, and on `emission`
     std::optional<GridSource> temperature, flame;         // vdb: kelvin, and a factor on what they emit
     std::optional<BlackbodySource> blackbody;             // with a temperature, or a recipe's fire
+    std::optional<VelocitySource> velocity;               // vdb; or
+    bool blends = false;                                  // vdb: while the shutter is open, from file to file
     std::string entry;                                    // as of a camera
 };
 
@@ -218,12 +228,15 @@ bool is_moving(const Scene& scene, int node);
 
 mat4 medium_matrix(const MediumSource& medium, double seconds); // of the medium's own space, to world
 
+// The first and the last frame whose files a medium shows while the shutter of a frame is open.
+std::pair<int, int> frames_shown(const MediumSource& medium, int frame, const Shutter& shutter);
+
 // The files of sequences that a frame reads, volumes first; nothing where one has none for it. Throws Error for a gap.
 struct FrameFile {
     bool volume = true; // else a gobo
     std::optional<std::filesystem::path> path;
 };
-std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing);
+std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing, const Shutter& shutter);
 
 // The picture of a gobo for a frame; where gaps are skipped elsewhere, the one before goes on.
 std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing);

@@ -6,11 +6,13 @@
 #include "base/text.h"
 #include "scene/scene.h"
 #include "trace/fog_grids.h"
+#include "trace/fog_motion.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
 #include <algorithm>
+#include <span>
 
 namespace tyndall {
 float recipe_speed(const FogRecipe& recipe) {
@@ -84,15 +86,21 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
     return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
-FogSource read(const MediumSource& source, int frame, MissingFrame missing, CacheFolder* files, const FogSource& before,
-               std::vector<std::string>& notes) {
-    const auto file = sequence_file(source.sequence, frame, missing);
+// What reading a medium's files takes beside them.
+struct Reading {
+    MissingFrame missing;
+    CacheFolder* files;
+    std::vector<std::string>& notes;
+};
+
+// The fog of a frame's file, from among `known` where it is there.
+FogSource read(const MediumSource& source, int frame, const Reading& reading, std::span<const FogSource> known) {
+    const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
-    const uint64_t size = check_readable(*file);
-    const auto changed = std::filesystem::last_write_time(*file).time_since_epoch().count();
-    const std::string key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) +
-                            " " + source.sequence.grid + source.density_map.text();
-    if (key == before.key) return before;
+    const std::string key = file_key(*file) + source.sequence.grid + source.density_map.text();
+    for (const FogSource& one : known)
+        if (one.key == key) return one;
+    CacheFolder* files = reading.files;
     const std::string content =
         files ? "file " + file_hash(*file, *files->inputs) + " " + source.sequence.grid + source.density_map.text()
               : std::string();
@@ -101,7 +109,34 @@ FogSource read(const MediumSource& source, int frame, MissingFrame missing, Cach
         const SparseVolume volume = read_vdb(*file, source.sequence.grid, source.density_map, infinity, &report);
         return stored_fog(volume, report.summary());
     });
-    if (!fog.note.empty()) notes.push_back(file->filename().string() + ": " + fog.note);
+    if (!fog.note.empty()) reading.notes.push_back(file->filename().string() + ": " + fog.note);
+    return source_of(fog, key, content);
+}
+
+std::string content_of(const FogSource& source) { return source.bricks ? source.bricks->content : "none"; }
+
+// The fog between two files, or beside one; files that are read are left in `frames`.
+FogSource read_between(const MediumSource& source, const SequenceTime& time, const Reading& reading,
+                       const FogSource& before, std::span<const FogSource> known, FogFrames& frames) {
+    const auto of_frame = [&](int frame) {
+        FogSource fog = read(source, frame, reading, known);
+        fog.placed = nullptr, fog.grids = nullptr;
+        if (!fog.key.empty()) frames.densities.push_back(fog);
+        return fog;
+    };
+    const FogSource here = of_frame(time.frame), next = time.share > 0 ? of_frame(time.frame + 1) : FogSource();
+    if (!here.bricks && !next.bricks) return {};
+    if (time.share > 0 && here.key == next.key) return here;
+    const std::string key = here.key + "\n" + next.key + time.key();
+    if (key == before.key) return before;
+    std::string content;
+    if (reading.files)
+        content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
+    const StoredFog fog = found_or_made<StoredFog>(reading.files, "bricks", content, [&] {
+        return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
+                                    "medium " + source.name),
+                          {});
+    });
     return source_of(fog, key, content);
 }
 
@@ -115,12 +150,25 @@ std::shared_ptr<const BrickPool> placed_bricks(const FogSource& source, const ma
     return moved;
 }
 
+// A medium's files at a moment, and what they were before.
+struct MovingFiles {
+    SequenceTime time;
+    const FogFrames* before = nullptr;
+    FogFrames now;
+};
+
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
-                     const FogSource& before, Snapshot& snapshot) {
-    CacheFolder* files = snapshot.files.get();
-    FogSource result = source.kind == MediumKind::noise
-                           ? grown(source, moment.grown.value_or(moment.seconds), files, before)
-                           : read(source, moment.frame, missing, files, before, snapshot.notes);
+                     const FogSource& before, MovingFiles& files, Snapshot& snapshot) {
+    const Reading reading{missing, snapshot.files.get(), snapshot.notes};
+    std::vector<FogSource> known{before};
+    if (files.before) known.insert(known.end(), files.before->densities.begin(), files.before->densities.end());
+    FogSource result;
+    if (source.kind == MediumKind::noise)
+        result = grown(source, moment.grown.value_or(moment.seconds), snapshot.files.get(), before);
+    else if (files.time.between())
+        result = read_between(source, files.time, reading, before, known, files.now);
+    else
+        result = read(source, files.time.frame, reading, known);
     const mat4 matrix = checked_matrix(scene, source, moment.seconds);
     if (!result.bricks || (result.placed && result.matrix == matrix)) return result;
     result.placed = placed_bricks(result, matrix);
@@ -156,13 +204,13 @@ Box moved_box(const mat4& matrix, const Box& box) {
 namespace {
 // Fog that dims light or emits it evenly, as far as the medium says so. False when there is none at this moment.
 bool find_fog(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
-              const FogSource& before, Snapshot& snapshot, Medium& medium) {
+              const FogSource& before, MovingFiles& files, Snapshot& snapshot, Medium& medium) {
     if (source.kind != MediumKind::noise && source.kind != MediumKind::vdb) {
         add_analytic(scene, source, moment.seconds, medium);
         return true;
     }
     FogSource& fog = snapshot.fog_sources.back();
-    fog = fog_source(scene, source, moment, missing, before, snapshot);
+    fog = fog_source(scene, source, moment, missing, before, files, snapshot);
     if (!fog.placed || !(fog.placed->highest > 0)) return false;
     medium.density.kind = DensityKind::bricks;
     medium.density.bricks = fog.placed;
@@ -178,12 +226,23 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
     medium.optics = optics_at(source, moment.seconds);
     if (source.emission_grid) medium.optics.emission.radiance = vec3(0);
     const bool dims = grey_extinction(medium.optics) > 0;
+    MovingFiles files;
+    files.before = before.grids ? before.grids->frames.get() : nullptr;
+    files.time = sequence_time(scene, source, moment, missing, files.before, snapshot);
+    files.now.velocity = files.time.velocity || !files.before ? files.time.velocity : files.before->velocity;
+    files.now.moved = files.time.moved;
     const bool fog_is_there = (dims || max_component(medium.optics.emission.radiance) > 0) &&
-                              find_fog(scene, source, moment, missing, before, snapshot, medium);
+                              find_fog(scene, source, moment, missing, before, files, snapshot, medium);
+    fog.grids = nullptr;
     if (has_grids(source)) {
         const mat4 matrix = checked_matrix(scene, source, moment.seconds);
-        fog.grids =
-            medium_grids(source, moment, missing, matrix, dims ? fog : FogSource(), before.grids.get(), snapshot);
+        fog.grids = medium_grids(source, moment, files.time, missing, matrix, dims ? fog : FogSource(),
+                                 before.grids.get(), files.now, snapshot);
+    }
+    if (moves(source)) {
+        auto grids = fog.grids ? std::make_shared<MediumGrids>(*fog.grids) : std::make_shared<MediumGrids>();
+        grids->frames = std::make_shared<const FogFrames>(std::move(files.now));
+        fog.grids = std::move(grids);
     }
     if (fog_is_there) {
         if (!dims) medium.optics.extinction = vec3(min_extinction);

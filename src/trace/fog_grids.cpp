@@ -6,12 +6,14 @@
 #include "base/text.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
+#include "trace/fog_motion.h"
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/half.h"
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
 #include <map>
+#include <span>
 
 namespace tyndall {
 namespace {
@@ -59,33 +61,87 @@ std::string grids_text(const GridSource& source) {
 // What reading needs beside the property.
 struct Reading {
     Moment moment;
+    const SequenceTime& time;
     MissingFrame missing;
+    const MediumGrids* before;
+    FogFrames& frames;
     Snapshot& snapshot;
 };
 
-GridProperty read(const std::optional<GridSource>& source, Quantity quantity, const Reading& reading,
-                  const GridProperty* before) {
-    if (!source) return {};
-    const auto file = sequence_file(source->sequence, reading.moment.frame, reading.missing);
-    if (!file) return {};
-    const uint64_t size = check_readable(*file);
-    const auto changed = std::filesystem::last_write_time(*file).time_since_epoch().count();
+GridProperty property_of(StoredProperty stored, std::string key, Quantity quantity) {
     GridProperty property;
-    property.key = "file " + file->string() + " " + std::to_string(size) + " " + std::to_string(changed) + " " +
-                   grids_text(*source);
-    if (before && before->key == property.key) return *before;
-    CacheFolder* files = reading.snapshot.files.get();
-    const std::string content =
-        files ? "property " + file_hash(*file, *files->inputs) + " " + grids_text(*source) : std::string();
-    StoredProperty stored = found_or_made<StoredProperty>(files, "bricks", content,
-                                                          [&] { return read_property(*file, *source, quantity); });
-    if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
+    property.key = std::move(key);
     std::vector<PlacedBricks> pools;
     for (size_t i = 0; i < stored.pools.size(); ++i)
         pools.push_back({std::make_shared<const BrickPool>(std::move(stored.pools[i])), stored.places[i]});
     if (quantity != Quantity::number) property.there = pools.back(), pools.pop_back();
     for (size_t c = 0; c < 3; ++c) property.channels[c] = pools[pools.size() == 3 ? c : 0];
     return property;
+}
+
+// A property and what its file says of it, the same in every process; empty where nobody asks.
+struct FileProperty {
+    GridProperty property;
+    std::string content;
+};
+
+FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, const Reading& reading,
+                        std::span<const GridProperty> known) {
+    const auto file = sequence_file(source.sequence, frame, reading.missing);
+    if (!file) return {};
+    const std::string key = file_key(*file) + grids_text(source);
+    CacheFolder* files = reading.snapshot.files.get();
+    const std::string content =
+        files ? "property " + file_hash(*file, *files->inputs) + " " + grids_text(source) : std::string();
+    for (const GridProperty& one : known)
+        if (one.key == key) return {one, content};
+    StoredProperty stored =
+        found_or_made<StoredProperty>(files, "bricks", content, [&] { return read_property(*file, source, quantity); });
+    if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
+    return {property_of(std::move(stored), key, quantity), content};
+}
+
+// Between two files, or beside one.
+StoredProperty property_between(const SequenceTime& time, const GridProperty& here, const GridProperty& next,
+                                Quantity quantity, const std::string& what) {
+    StoredProperty property;
+    const auto grey = [](const GridProperty& one) { return one.channels[0].bricks == one.channels[1].bricks; };
+    const size_t channels = grey(here) && grey(next) ? 1 : 3;
+    for (size_t c = 0; c < channels; ++c) add_pool(volume_at(time, here.channels[c], next.channels[c], what), property);
+    if (quantity != Quantity::number) add_pool(volume_at(time, here.there, next.there, what), property);
+    return property;
+}
+
+// `number`: of the property among those of `frames`.
+GridProperty read(const std::optional<GridSource>& source, size_t number, Quantity quantity, const Reading& reading,
+                  const GridProperty* before) {
+    if (!source) return {};
+    const SequenceTime& time = reading.time;
+    const FogFrames* frames_before = reading.before ? reading.before->frames.get() : nullptr;
+    std::vector<GridProperty> known;
+    if (before) known.push_back(*before);
+    if (frames_before)
+        known.insert(known.end(), frames_before->properties[number].begin(), frames_before->properties[number].end());
+    if (!time.between()) return read_frame(*source, quantity, time.frame, reading, known).property;
+
+    const auto of_frame = [&](int frame) {
+        FileProperty read = read_frame(*source, quantity, frame, reading, known);
+        if (read.property) reading.frames.properties[number].push_back(read.property);
+        return read;
+    };
+    const FileProperty here = of_frame(time.frame), next = time.share > 0 ? of_frame(time.frame + 1) : FileProperty();
+    if (!here.property && !next.property) return {};
+    if (time.share > 0 && here.property.key == next.property.key) return here.property;
+    const std::string key = here.property.key + "\n" + next.property.key + time.key();
+    if (before && before->key == key) return *before;
+    CacheFolder* files = reading.snapshot.files.get();
+    std::string content;
+    if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
+    const std::string what = "medium " + source->grids[0];
+    return property_of(found_or_made<StoredProperty>(
+                           files, "bricks", content,
+                           [&] { return property_between(time, here.property, next.property, quantity, what); }),
+                       key, quantity);
 }
 
 // That of a recipe's fire.
@@ -228,17 +284,17 @@ bool has_grids(const MediumSource& source) {
     return source.albedo_grid || source.emission_grid || (source.blackbody && has_temperature);
 }
 
-std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, MissingFrame missing,
-                                                const mat4& matrix, const FogSource& fog, const MediumGrids* before,
-                                                Snapshot& snapshot) {
-    const Reading reading{moment, missing, snapshot};
+std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
+                                                MissingFrame missing, const mat4& matrix, const FogSource& fog,
+                                                const MediumGrids* before, FogFrames& frames, Snapshot& snapshot) {
+    const Reading reading{moment, time, missing, before, frames, snapshot};
     auto grids = std::make_shared<MediumGrids>();
-    grids->albedo = read(source.albedo_grid, Quantity::share, reading, before ? &before->albedo : nullptr);
-    grids->emission = read(source.emission_grid, Quantity::color, reading, before ? &before->emission : nullptr);
+    grids->albedo = read(source.albedo_grid, 0, Quantity::share, reading, before ? &before->albedo : nullptr);
+    grids->emission = read(source.emission_grid, 1, Quantity::color, reading, before ? &before->emission : nullptr);
     const GridProperty* const temperature_before = before ? &before->temperature : nullptr;
     grids->temperature = source.recipe ? grown_temperature(source, reading, temperature_before)
-                                       : read(source.temperature, Quantity::number, reading, temperature_before);
-    grids->flame = read(source.flame, Quantity::number, reading, before ? &before->flame : nullptr);
+                                       : read(source.temperature, 2, Quantity::number, reading, temperature_before);
+    grids->flame = read(source.flame, 3, Quantity::number, reading, before ? &before->flame : nullptr);
     grids->key = key_of(source, moment.seconds, *grids, fog);
     if (before && before->key == grids->key) {
         *grids = *before;

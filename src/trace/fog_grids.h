@@ -6,7 +6,9 @@
 #include <optional>
 
 namespace tyndall {
+struct FogFrames;
 struct MediumSource;
+struct SequenceTime;
 
 // One property, as its file has it.
 struct GridProperty {
@@ -34,13 +36,15 @@ struct MediumGrids {
     bool is_placed = false;
     std::shared_ptr<const AlbedoField> placed_color;
     EmissionPart placed_blackbody, placed_colored;
+    std::shared_ptr<const FogFrames> frames; // of fog that moves while the shutter is open; null = of none
 };
 
-// Of a medium with grids at a moment; `fog` has its density, if there is any. What `before` (may be null) has of the
-// same files is shared with it. Throws Error.
-std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, MissingFrame missing,
-                                                const mat4& matrix, const FogSource& fog, const MediumGrids* before,
-                                                Snapshot& snapshot);
+// Of a medium with grids at a moment, when its files are at `time`; `fog` has its density, if there is any. What
+// `before` (may be null) has of the same files is shared with it. Files that it lies between are left in `frames`.
+// Throws Error.
+std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
+                                                MissingFrame missing, const mat4& matrix, const FogSource& fog,
+                                                const MediumGrids* before, FogFrames& frames, Snapshot& snapshot);
 
 // Gives a medium its colors, and appends its light to the snapshot's media.
 void color_medium(const MediumSource& source, double seconds, const MediumGrids& grids, Medium& medium);

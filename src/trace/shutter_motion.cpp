@@ -3,6 +3,7 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
+#include "trace/fog_motion.h"
 #include "trace/moment.h"
 
 #include <algorithm>
@@ -12,9 +13,12 @@
 namespace tyndall {
 namespace {
 constexpr int looks = 5;          // moments at which places are compared
-constexpr float spacing = 1.5f;   // pixels between neighbouring moments
+constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
 constexpr int fewest_moments = 4; // of what changes at all
-constexpr double max_bytes = 1.0 * (1 << 30), bytes_per_triangle = 200;
+constexpr double gibibyte = 1 << 30, max_triangle_bytes = gibibyte, bytes_per_triangle = 200;
+// Measured: 8 MiB of light grids in march, 33 of beams in froxel.
+constexpr double max_light_bytes = 4 * gibibyte, bytes_per_light = 32 << 20;
+constexpr double max_picture_bytes = 2 * gibibyte, bytes_per_pixel = 16; // of froxels
 
 using Points = std::vector<vec3>;
 
@@ -89,7 +93,7 @@ bool changes(const Scene& scene, const LightSource& light) {
 
 bool changes(const MediumSource& medium) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
-    if (medium.recipe && recipe_speed(*medium.recipe) > 0) return true;
+    if ((medium.recipe && recipe_speed(*medium.recipe) > 0) || moves(medium)) return true;
     if (medium.blackbody && !all(medium.blackbody->scale, medium.blackbody->tint)) return true;
     return !all(medium.extinction, medium.g, medium.albedo, medium.emission, medium.translation, medium.scale,
                 medium.rotate, medium.rotation, medium.height_base, medium.height_falloff);
@@ -147,16 +151,46 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) 
            std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one.node); });
 }
 
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
-    if (!changes_while_open(scene, camera, shutter)) return 1;
-    const float motion = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
-    const unsigned wanted = std::bit_ceil(static_cast<unsigned>(std::min(motion, float(max_usual_moments)) + 0.999f));
+namespace {
+// The largest power of two that does not pass a number, from `least` on.
+int within(double most, int least) {
+    return static_cast<int>(
+        std::bit_floor(static_cast<unsigned>(std::clamp(most, double(least), double(max_usual_moments)))));
+}
+
+// By what all moments take together; `everything`: whether what is kept of lights is made anew at each.
+int affordable_by_lights(const Scene& scene, bool everything) {
+    const auto has_voxels = [](const MediumSource& medium) {
+        return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
+    };
+    if (std::ranges::none_of(scene.media, has_voxels)) return max_usual_moments;
+    double lights = 0;
+    for (const LightSource& light : scene.lights) lights += everything || changes(scene, light);
+    return within(max_light_bytes / std::max(lights * bytes_per_light, 1.0), max_costly_moments);
+}
+
+int affordable_by_surfaces(const Scene& scene) {
     double triangles = 0;
     for (const Instance& instance : scene.instances)
         if (instance.mesh >= 0 && is_moving(scene, instance.node))
             triangles += static_cast<double>(scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size());
-    const double affordable = max_bytes / std::max(triangles * bytes_per_triangle, 1.0);
-    const int most = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::clamp(affordable, 1.0, 32.0))));
-    return std::min(std::clamp(static_cast<int>(wanted), fewest_moments, max_usual_moments), most);
+    return within(max_triangle_bytes / std::max(triangles * bytes_per_triangle, 1.0), 1);
+}
+}
+
+int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_pictures) {
+    if (!changes_while_open(scene, camera, shutter)) return 1;
+    float wanted = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
+    if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
+        wanted = std::max(wanted, float(max_costly_moments));
+    const float most = static_cast<float>(max_usual_moments);
+    const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(wanted, most) + 0.999f)));
+    const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
+                            std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
+    const double pixels = static_cast<double>(size.x) * size.y;
+    const int by_pixels =
+        keeps_pictures ? within(max_picture_bytes / (pixels * bytes_per_pixel), max_costly_moments) : max_usual_moments;
+    return std::min({std::clamp(count, fewest_moments, max_usual_moments), affordable_by_surfaces(scene),
+                     affordable_by_lights(scene, everything), by_pixels});
 }
 }

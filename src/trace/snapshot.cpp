@@ -9,6 +9,8 @@
 #include "scene/photometry/light_power.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
+#include "trace/fog_grids.h"
+#include "trace/fog_motion.h"
 #include "trace/frame_cache.h"
 #include "trace/lights/environment.h"
 #include "trace/lights/light_filters.h"
@@ -176,23 +178,50 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
 }
 
 namespace {
-// How often fog of recipes has to be grown: once, and whenever it has moved half a voxel.
-double growths_wanted(const Scene& scene, double seconds) {
+// How often fog has to be made anew: once, and whenever it has moved half a voxel; of files that are mixed, a 16th of a
+// frame apart, which shows no steps.
+double recipes_wanted(const Scene& scene, double seconds) {
     double most = 1;
-    for (const MediumSource& medium : scene.media)
+    for (const MediumSource& medium : scene.media) {
         if (medium.kind == MediumKind::noise) {
             const double voxel = medium.voxel_size > 0 ? double{medium.voxel_size} : medium.recipe->voxel_size;
             most = std::max(most, std::ceil(2 * double{recipe_speed(*medium.recipe)} * seconds / voxel));
         }
+        if (medium.blends && moves(medium)) most = std::max(most, std::ceil(16 * seconds * scene.frame_rate));
+    }
     return most;
+}
+
+double files_wanted(const Scene& scene, const Snapshot& snapshot, double seconds) {
+    double most = 1;
+    for (size_t i = 0; i < scene.media.size(); ++i)
+        most =
+            std::max(most, std::ceil(2 * voxels_per_second(scene, scene.media[i], snapshot.fog_sources[i]) * seconds));
+    return most;
+}
+
+double bytes_of(const FogSource& fog) {
+    std::vector<const BrickPool*> pools{fog.bricks.get()};
+    if (const MediumGrids* grids = fog.grids.get()) {
+        for (const GridProperty* property : {&grids->albedo, &grids->emission, &grids->temperature, &grids->flame})
+            for (const PlacedBricks& channel : property->channels) pools.push_back(channel.bricks.get());
+        for (const EmissionPart* part : {&grids->blackbody, &grids->colored})
+            pools.push_back(part->luminance.bricks.get());
+    }
+    std::ranges::sort(pools);
+    pools.erase(std::ranges::unique(pools).begin(), pools.end());
+    double bytes = 0;
+    for (const BrickPool* pool : pools)
+        if (pool) bytes += static_cast<double>(pool->bytes());
+    return bytes;
 }
 
 double growths_affordable(const Scene& scene, const Snapshot& snapshot) {
     constexpr double max_bytes = 1 << 30;
     double bytes = 1;
     for (size_t i = 0; i < scene.media.size(); ++i)
-        if (const auto& bricks = snapshot.fog_sources[i].bricks; bricks && scene.media[i].kind == MediumKind::noise)
-            bytes += static_cast<double>(bricks->bytes());
+        if (scene.media[i].kind == MediumKind::noise || moves(scene.media[i]))
+            bytes += bytes_of(snapshot.fog_sources[i]);
     return std::max(max_bytes / bytes, 1.0);
 }
 
@@ -213,15 +242,21 @@ Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snap
                        std::shared_ptr<CacheFolder> files) {
     if (frame.moments.empty()) return make_snapshot(scene, frame.middle, previous, missing, std::move(files));
     if (previous && previous->moments) previous = &previous->moments->back();
-    const double wanted = growths_wanted(scene, frame.moments.back().seconds - frame.moments.front().seconds);
-    std::vector<Moment> moments = with_growths(frame.moments, wanted);
+    const double seconds = frame.moments.back().seconds - frame.moments.front().seconds;
+    const double wanted = recipes_wanted(scene, seconds);
+    // How fast files move is known once the first are read.
+    const bool by_velocity =
+        std::ranges::any_of(scene.media, [](const auto& medium) { return medium.velocity.has_value(); });
+    std::vector<Moment> moments = with_growths(frame.moments, by_velocity ? infinity : wanted);
     auto all = std::make_shared<std::vector<Snapshot>>();
     all->reserve(moments.size());
     for (size_t i = 0; i < moments.size(); ++i) {
         all->push_back(make_snapshot(scene, moments[i], i == 0 ? previous : &all->back(), missing, files));
         if (i > 0) continue;
-        if (const double most = growths_affordable(scene, all->front()); most < wanted)
-            moments = with_growths(frame.moments, most);
+        const double most = growths_affordable(scene, all->front());
+        if (by_velocity || most < wanted)
+            moments = with_growths(frame.moments,
+                                   std::min(std::max(wanted, files_wanted(scene, all->front(), seconds)), most));
     }
     Moment middle_moment = frame.middle;
     middle_moment.grown = moments[moments.size() / 2].grown;

@@ -1,12 +1,20 @@
 """The single-scattering integral written down plainly: the referee where renderers differ.
 
 Radiance of a camera ray through fog of extinction s(x), from its entry to the first surface or the fog's end:
-  integral of T(t) s albedo phase(cos) E_light(x) V(x) T_light(x) dt  +  T(end) color / pi * E_light cos V T_light
-with one random point in each of `STEPS` even steps. Visibility, distances in homogeneous fog and boxes are exact; in a grid
-both optical depths are sums over random points of even steps. Numpy, no code shared with any renderer."""
+  integral of T(t) (s albedo phase(cos) E_light(x) V(x) T_light(x) + emission(x)) dt
+  + T(end) (emission + color / pi * E_light cos V T_light)
+with one random point in each of `STEPS` even steps and one random point of the lights for each of those. Visibility,
+distances in homogeneous fog, boxes and balls are exact; in a grid both optical depths are sums over random points of even
+steps. Numpy, no code shared with any renderer."""
 import math
 
 import numpy as np
+
+import fire
+import lights
+from grids import bounds_of, density
+from phase import phase
+from shapes import Occluders, clip
 
 STEPS, LIGHT_STEPS = 64, 24
 
@@ -29,114 +37,78 @@ def camera_rays(camera, size, random):
     return np.array(camera.position, float), direction / np.linalg.norm(direction, axis=1, keepdims=True)
 
 
-def clip(low, high, origin, direction):
-    """Distances where rays enter and leave a box; entry > exit when they miss it. Also the axis of the entry."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a, b = (np.array(low) - origin) / direction, (np.array(high) - origin) / direction
-    near = np.minimum(a, b)
-    return near.max(-1), np.maximum(a, b).min(-1), near.argmax(-1)
-
-
-def first_hit(boxes, origin, direction):
-    """Distance, normal and color of the first surface; infinity where there is none."""
-    distance = np.full(len(direction), np.inf)
-    normal, color = np.zeros_like(direction), np.zeros_like(direction)
-    for box in boxes:
-        enter, leave, axis = clip(box.low, box.high, origin, direction)
-        hit = (enter < leave) & (enter > 1e-6) & (enter < distance)
-        distance[hit] = enter[hit]
-        normal[hit] = -np.sign(direction[hit]) * np.eye(3)[axis[hit]]
-        color[hit] = box.color
-    return distance, normal, color
-
-
-def arriving(light, points):
-    """Direction to the light, distance, irradiance on a plane that faces it, before anything in the way."""
-    if light.kind == "sun":
-        return np.broadcast_to(-unit(light.place), points.shape), np.inf, light.intensity
-    offset = np.array(light.place) - points
-    distance = np.linalg.norm(offset, axis=-1)
-    return offset / distance[..., None], distance, light.intensity / distance ** 2
-
-
-def visible(boxes, points, to_light, distance):
-    seen = np.ones(points.shape[:-1], bool)
-    for box in boxes:
-        enter, leave, _ = clip(box.low, box.high, points, to_light)
-        seen &= ~((enter < leave) & (leave > 1e-6) & (enter < distance))
-    return seen
-
-
-def density(voxels, points):
-    """Trilinear between voxel centres, 0 outside."""
-    first, size, values = voxels
-    padded = np.pad(values, 1)
-    place = np.clip((points - first) / size + 1, 0, np.array(padded.shape) - 1.001)
-    cell = place.astype(np.int64)
-    part = place - cell
-    strides = np.array(padded.strides) // padded.itemsize
-    flat, index = padded.ravel(), cell @ strides
-    at = [[flat[index + (x * strides[0] + y * strides[1])], flat[index + (x * strides[0] + y * strides[1] + 1)]]
-          for x in (0, 1) for y in (0, 1)]
-    rows = [a + part[:, 2] * (b - a) for a, b in at]
-    planes = [rows[2 * x] + part[:, 1] * (rows[2 * x + 1] - rows[2 * x]) for x in (0, 1)]
-    return planes[0] + part[:, 0] * (planes[1] - planes[0])
-
-
-def bounds_of(fog, voxels):
-    if voxels is None:
-        return fog.low, fog.high
-    first, size, values = voxels
-    return first - size, first + np.array(values.shape) * size
-
-
-def light_depth(fog, voxels, bounds, points, to_light, distance, random):
-    """Optical depth from the points to the light."""
-    enter, leave, _ = clip(*bounds, points, to_light)
+def thickness(voxels, bounds, points, direction, distance, random):
+    """Integral of the density from the points on, over at most `distance`."""
+    enter, leave, _ = clip(*bounds, points, direction)
     enter, leave = np.maximum(enter, 0), np.minimum(leave, distance)
     length = np.maximum(leave - enter, 0)
     if voxels is None:
-        return fog.extinction * length
-    depth = np.zeros(length.shape)
+        return length
+    total = np.zeros(length.shape)
     for k in range(LIGHT_STEPS):
         t = enter + (k + random.random(length.shape)) / LIGHT_STEPS * length
-        depth += density(voxels, points + t[..., None] * to_light)
-    return fog.extinction * depth * length / LIGHT_STEPS
+        total += density(voxels, points + t[..., None] * direction)
+    return total * length / LIGHT_STEPS
 
 
-def lit(scene, voxels, bounds, points, random):
-    """Direction to the light and irradiance there, with shadows of boxes and fog."""
-    to_light, distance, amount = arriving(scene.light, points)
-    depth = light_depth(scene.fog, voxels, bounds, points, to_light, distance, random)
-    return to_light, amount * visible(scene.boxes, points, to_light, distance) * np.exp(-depth)
+class Referee:
+    """A scene and what its integrals ask for again and again."""
+
+    def __init__(self, scene, voxels, seed):
+        self.scene, self.voxels, self.random = scene, voxels, np.random.default_rng(seed)
+        self.bounds = bounds_of(scene.fog, voxels)
+        self.extinction = np.broadcast_to(np.asarray(scene.fog.extinction, float), 3)
+        self.source = lights.source(scene)
+        count = scene.size[0] * scene.size[1]
+        self.occluders = Occluders(scene.boxes, scene.sphere, self.random.random(count) - 0.5)  # a moment for each ray
+
+    def transmittance(self, points, direction, distance):
+        return np.exp(-self.extinction * thickness(self.voxels, self.bounds, points, direction, distance, self.random)[:, None])
+
+    def lit(self, points, which):
+        """Direction to a random point of the lights and the irradiance from there over its pdf, on a plane that faces it,
+        with shadows of surfaces and fog. `which` of the camera's rays the points are on."""
+        to_light, distance, amount = self.source(points, self.random)
+        seen = self.occluders.visible(points, to_light, distance, which)
+        return to_light, amount * seen[:, None] * self.transmittance(points, to_light, distance)
+
+    def scattered(self, points, direction, which):
+        """In-scattered radiance, of albedo 1."""
+        if self.scene.fog.recipe and "fire" in self.scene.fog.recipe:
+            return fire.scattered(self, points, direction)
+        to_light, irradiance = self.lit(points, which)
+        return phase(self.scene.fog, (to_light * direction).sum(-1))[:, None] * irradiance
 
 
-def phase(g, cosine):
-    return (1 - g * g) / (4 * math.pi * (1 + g * g - 2 * g * cosine) ** 1.5)
+def surfaces(referee, picture, origin, direction, hit, through):
+    """Adds what the surfaces that are seen emit and reflect."""
+    which = np.flatnonzero(np.isfinite(hit.distance))
+    points = origin + hit.distance[which, None] * direction[which] + 1e-6 * hit.normal[which]
+    to_light, irradiance = referee.lit(points, which)
+    cosine = np.maximum((to_light * hit.normal[which]).sum(-1), 0)[:, None]
+    picture[which] += through[which] * (hit.emission[which, None] + hit.color[which] / math.pi * irradiance * cosine)
 
 
 def render(scene, voxels, seed):
     """One picture [y, x, rgb]."""
-    random = np.random.default_rng(seed)
-    fog, bounds = scene.fog, bounds_of(scene.fog, voxels)
+    referee = Referee(scene, voxels, seed)
+    random, albedo = referee.random, np.array(scene.fog.albedo)
     origin, direction = camera_rays(scene.camera, scene.size, random)
-    surface, normal, color = first_hit(scene.boxes, origin, direction)
-    enter, leave, _ = clip(*bounds, origin, direction)
-    enter = np.minimum(np.maximum(enter, 0), surface)
-    step = np.maximum(np.minimum(leave, surface) - enter, 0) / STEPS
-    radiance, depth = np.zeros(len(direction)), np.zeros(len(direction))
+    hit = referee.occluders.first_hit(origin, direction)
+    enter, leave, _ = clip(*referee.bounds, origin, direction)
+    enter = np.minimum(np.maximum(enter, 0), hit.distance)
+    step = np.maximum(np.minimum(leave, hit.distance) - enter, 0) / STEPS
+    picture, depth, every = np.zeros((len(direction), 3)), np.zeros(len(direction)), np.arange(len(direction))
     for k in range(STEPS):
         share = random.random(len(direction))
         points = origin + (enter + (k + share) * step)[:, None] * direction
-        extinction = fog.extinction * (1 if voxels is None else density(voxels, points))
-        to_light, irradiance = lit(scene, voxels, bounds, points, random)
-        scattered = phase(fog.g, (to_light * direction).sum(-1)) * irradiance
-        radiance += np.exp(-depth - extinction * share * step) * extinction * step * scattered
-        depth += extinction * step
-    picture = radiance[:, None] * np.array(fog.albedo)
-    hit = np.isfinite(surface)
-    points = origin + surface[hit, None] * direction[hit]
-    to_light, irradiance = lit(scene, voxels, bounds, points, random)
-    cosine = np.maximum((to_light * normal[hit]).sum(-1), 0)
-    picture[hit] += color[hit] / math.pi * (np.exp(-depth[hit]) * irradiance * cosine)[:, None]
+        here = 1 if voxels is None else density(voxels, points)
+        through = np.exp(-referee.extinction * (depth + here * share * step)[:, None])
+        extinction = referee.extinction * np.broadcast_to(here, len(direction))[:, None]
+        inner = extinction * albedo * referee.scattered(points, direction, every)
+        picture += through * (inner + fire.emission(scene, voxels, points)) * step[:, None]
+        depth += here * step
+    through = np.exp(-referee.extinction * depth[:, None])
+    surfaces(referee, picture, origin, direction, hit, through)
+    picture += through * lights.seen_behind(scene, direction) * ~np.isfinite(hit.distance)[:, None]
     return picture.reshape(scene.size[1], scene.size[0], 3)

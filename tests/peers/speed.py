@@ -2,6 +2,7 @@
 Every renderer's error is taken against its own converged picture; times are medians of runs that take turns."""
 import argparse
 import dataclasses
+import importlib.util
 import json
 import math
 import pathlib
@@ -67,11 +68,10 @@ class Tyndall:
 def cycles(folder, vdb, args):
     """Median seconds and error. The converged picture's own noise is taken out of it."""
     def job(samples, seeds, name):
-        run_blender({"scene": dataclasses.asdict(SHAFTS), "orders": 1, "samples": samples, "step_rate": 1,
-                     "vdb": str(vdb), "voxel_size": SHAFTS.fog.recipe["voxel_size"], "seeds": seeds,
-                     "output": str(folder / name)}, folder)
+        run_blender({"scene": dataclasses.asdict(SHAFTS), "orders": 1, "samples": samples, "threads": 2,
+                     "vdb": str(vdb), "seeds": seeds, "output": str(folder / name)}, folder)
         return [folder / f"{name}{seed}.exr" for seed in seeds], \
-            [float((folder / f"{name}{seed}.seconds").read_text()) for seed in seeds]
+            [float((folder / f"{name}{seed}.seconds").read_text().split()[0]) for seed in seeds]
 
     (converged,), _ = job(args.converged, [1000], "converged_")
     pictures, seconds = job(args.samples, list(range(args.runs)), "cycles_")
@@ -136,7 +136,7 @@ def main():
         vdb = folder / "shafts.vdb"
         ladder = Tyndall(args.tyndall, room, folder).ladder(args.runs)
         print_ladder("slats room, tyndall", ladder)
-        if "cycles" in args.peers and shutil.which("blender"):
+        if "cycles" in args.peers and importlib.util.find_spec("bpy"):
             seconds, left = cycles(folder, vdb, args)
             print(f"\nCycles, {args.samples} samples: {seconds:.1f} s, {100 * left:.2f} %")
             print_ratio("at that error", seconds, quickest(ladder, left))

@@ -14,6 +14,8 @@ THREADS, MOST_SAMPLES = 2, 4096
 FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centres of pixels
 STEP = 16   # variances fall by this factor at most at once: far from what is wanted, little is known
 HOPE = 4    # forecasts may be as many times too long
+FINER = 8   # times as many moments of motion blur as usual, at most
+MOST_MOMENTS = 64
 AIM = 0.85  # of the variance wanted
 SURE = 1.645  # deviations: variances are below what is counted on in 95 %
 PARTS = ("surface", "fog")
@@ -53,16 +55,26 @@ class Renderer:
     def __init__(self, program, scene, frame, folder, seconds):
         self.program, self.scene, self.frame, self.folder = program, scene, frame, folder
         self.left, self.seed = seconds, 7000
+        self.moments = None  # options: as many as motion blur is to be made of
 
-    def picture(self, recipe, samples, seed, more):
-        """Its parts, and the processor time it took."""
-        options = ["--mode", "march", "--quality", "reference", "--samples", samples, "--frames", self.frame, "--seed", seed]
+    def finer_moments(self):
+        usual = self.made(["--samples", 1, "--crop", "0,0,4,4"]).stats["frames"][0].get("time_samples", 1)
+        return ["--time-samples", max(min(FINER * usual, MOST_MOMENTS), 2 * usual)] if usual > 1 else []
+
+    def made(self, options):
         run = render(self.program, self.scene, self.folder / "truth.exr",
-                     [*options, *(word for row in RECIPES[recipe] for word in ("--set", row)), *more],
-                     THREADS, max(10 * self.left, 60), max(self.left, 1))
+                     ["--mode", "march", "--frames", self.frame, *options], THREADS, max(10 * self.left, 60), max(self.left, 1))
         self.left -= run.processor
         if self.left < 0 or run.layers is None:
             raise TooLong(run.said)
+        return run
+
+    def picture(self, recipe, samples, seed, more):
+        """Its parts, and the processor time it took."""
+        if self.moments is None:
+            self.moments = self.finer_moments()
+        options = ["--quality", "reference", "--samples", samples, "--seed", seed, *self.moments]
+        run = self.made([*options, *(word for row in RECIPES[recipe] for word in ("--set", row)), *more])
         return parts_of(run.layers), run.processor
 
 

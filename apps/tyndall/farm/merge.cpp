@@ -114,8 +114,8 @@ void say_merged(const Merge& merge, int frame, const std::string& file, const Me
                 const PartGroups& groups, size_t parts, double seconds) {
     std::string noise = ", its noise is not known";
     if (const auto error = result.stats.error())
-        noise = formatted(", %s %.3g, at most %.3g", result.stats.integrator || result.stats.orders ? "error" : "noise",
-                          error->error, error->bound);
+        noise = formatted(", %s %.3g, at most %.3g", result.stats.is_noise_alone() ? "noise" : "error", error->error,
+                          error->bound);
     else if (groups.gap.empty())
         noise.clear();
     merge.say(formatted("frame %d from %s in ", frame, count_text(parts, "part").c_str()) + seconds_text(seconds) +

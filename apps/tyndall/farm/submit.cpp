@@ -67,7 +67,7 @@ using FarmFiles = std::vector<std::pair<std::string, std::string>>;
 FarmFiles files_of(const FarmJob& job, const Scene& scene, const RenderRequest& request, const TaskLimits& limits) {
     if (job.engine == "slurm")
         return {{"task.sh", slurm_task_script(job)}, {"submit.sh", slurm_submit_script(job, limits)}};
-    return {{"asset_references.yaml", openjd_asset_references(job, input_files(scene, job.frames, request.missing))},
+    return {{"asset_references.yaml", openjd_asset_references(job, input_files(scene, job.frames, request))},
             {"template.json", openjd_template(job, limits)}};
 }
 

@@ -91,6 +91,11 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
                 read_color_vdb(volume, (*grid)->grids, (*grid)->map, share ? 1 : infinity, &report);
             });
         }
+        if (const auto& velocity = medium.velocity)
+            check_frames(file, scene, velocity->grid.sequence, problems,
+                         [&](const auto& volume, VdbReadReport& report) {
+                             read_velocity_vdb(volume, velocity->grid.grids, velocity->grid.map, &report);
+                         });
     }
 }
 

@@ -18,11 +18,11 @@ small { color: #666 } td table { font-size: 85%; background: #fff } td table td 
 
 // Every value of the sweep: error, what is allowed, what was said.
 std::string points_table(const StressResult& result) {
-    std::string text = "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>said</tr>";
+    std::string text = "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>bias<td>said</tr>";
     for (const StressPoint& point : result.points) {
-        text +=
-            formatted("<tr><td>%s<td>%.3g<td>%.3g<td>%s", xml_text(stress_value(*result.stress, point.value)).c_str(),
-                      point.error, point.allowed, xml_text(point.warning).c_str());
+        text += formatted("<tr><td>%s<td>%.3g<td>%.3g<td>%s<td>%s",
+                          xml_text(stress_value(*result.stress, point.value)).c_str(), point.error, point.allowed,
+                          point.bias < 0 ? "" : formatted("%.3g", point.bias).c_str(), xml_text(point.warning).c_str());
         if (!point.clean())
             text += formatted(" %llu not finite, %llu negative", static_cast<unsigned long long>(point.non_finite),
                               static_cast<unsigned long long>(point.negative));

@@ -15,6 +15,7 @@ std::string cell_text(const StressResult* result) {
 // What went wrong at a point, or was said to.
 std::string fault_text(const StressPoint& point) {
     std::string text = formatted("error %.3g, allowed %.3g", point.error, point.allowed);
+    if (point.bias >= 0) text += formatted("; bias %.3g, allowed %.3g", point.bias, point.allowed_bias);
     if (point.non_finite) text += "; " + count_text(point.non_finite, "value") + " not finite";
     if (point.negative) text += "; " + count_text(point.negative, "value") + " below 0 or above 1";
     if (point.silent() && point.said()) return text + formatted("; what was said excuses %.3g", point.excused_up_to);
@@ -39,6 +40,7 @@ Json point_json(const StressPoint& point) {
     return json_object({{"value", point.value},
                         {"error", point.error},
                         {"allowed", point.allowed},
+                        {"bias", point.bias < 0 ? Json() : Json(point.bias)},
                         {"holds", point.holds()},
                         {"said", point.said()},
                         {"excused_up_to", point.said() ? Json(point.excused_up_to) : Json()},

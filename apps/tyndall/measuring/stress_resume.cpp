@@ -24,10 +24,12 @@ uint64_t count_of(const Json& json, std::string_view key) {
     return static_cast<uint64_t>(std::clamp(json.number_or(key, 0), 0.0, 1e15));
 }
 
-StressPoint point_of(const Json& json) {
+StressPoint point_of(const Json& json, const StressMeasure& measure) {
     StressPoint point;
     point.value = number_of(json, "value");
     point.error = number_of(json, "error"), point.allowed = number_of(json, "allowed");
+    point.allowed_bias = measure.allowed_bias;
+    if (std::isfinite(point.allowed_bias)) point.bias = number_of(json, "bias");
     point.wrong = json.boolean_or("wrong", false);
     if (point.wrong) point.measured = number_of(json, "rmse_rel");
     point.warning = json.string_or("warning", "");
@@ -40,7 +42,7 @@ StressPoint point_of(const Json& json) {
 StressResult result_of(const Json& json, const StressCase& stress, const std::string& mode) {
     StressResult result{&stress, mode, {}, json.number_or("seconds", 0)};
     if (const Json* points = json.find("points"))
-        for (const Json& point : points->items) result.points.push_back(point_of(point));
+        for (const Json& point : points->items) result.points.push_back(point_of(point, stress.measure));
     const bool same = std::ranges::equal(result.points, stress.values, {}, &StressPoint::value);
     if (!same) result.points.clear();
     return result;

@@ -104,7 +104,7 @@ Contest contest_of_orders(std::span<const Mode> modes, const View& view, const S
     Contest contest;
     Goal beside = goal;
     if (goal.error > 0) {
-        const std::optional<double> left = error_beside(*plan.orders, goal.error);
+        const std::optional<double> left = error_beside(plan.orders->pixels, goal.error);
         if (!left) contest.contenders.push_back(path());
         beside.error = left.value_or(goal.error);
     }

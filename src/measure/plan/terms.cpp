@@ -114,6 +114,18 @@ struct Terms {
     Variant changed() const { return {&main_mode(), snapshot, base}; }
 };
 
+// The scene without the shadows of one of its lights, at each of the shutter's moments: those may have fewer lights.
+Snapshot without_shadows(Snapshot snapshot, size_t light) {
+    snapshot.lights[light].shadows = false;
+    if (!snapshot.moments) return snapshot;
+    std::vector<Snapshot> moments = *snapshot.moments;
+    for (Snapshot& moment : moments)
+        for (Light& one : moment.lights)
+            if (one.name == snapshot.lights[light].name) one.shadows = false;
+    snapshot.moments = std::make_shared<const std::vector<Snapshot>>(std::move(moments));
+    return snapshot;
+}
+
 void add_shadows(Terms& terms) {
     for (size_t i = 0; i < terms.snapshot.lights.size(); ++i) {
         const Light& light = terms.snapshot.lights[i];
@@ -125,7 +137,7 @@ void add_shadows(Terms& terms) {
             term.why = "there is nothing that could cast them";
         terms.add(term, blocked ? infinity : 0, &Terms::usual, [&] {
             Variant variant = terms.changed();
-            variant.snapshot.lights[i].shadows = false;
+            variant.snapshot = without_shadows(std::move(variant.snapshot), i);
             return variant;
         });
     }

@@ -49,6 +49,10 @@ double excused_by(const Limitation& limitation, const StressCase& stress, double
     for (const Excuse& excuse : stress.excuses) {
         if (limitation.severity == Severity::info || !limitation.is(*excuse.kind)) continue;
         if (limitation.severity == Severity::wrong) return infinity;
+        if (excuse.amount) {
+            most = std::max(most, excuse.amount(limitation));
+            continue;
+        }
         most = std::max({most, degraded_times * allowed, excuse.up_to});
     }
     return most;
@@ -70,12 +74,13 @@ StressPoint run_point(const StressCase& stress, const Mode* mode, double value, 
     if (cancel && *cancel) fail(ExitCode::internal, "stress", "cancelled");
     StressPoint point;
     point.value = value;
-    point.allowed = allowed_to(mode, stress.measure);
+    point.allowed = allowed_to(mode, stress.measure), point.allowed_bias = stress.measure.allowed_bias;
     Trial trial{mode, value, point.allowed, scene, truth, cancel};
     if (mode) ask_limitations(stress, *mode, scene, point);
     point.error = stress.measure.error ? stress.measure.error(trial) : error_to_truth(trial);
     if (point.wrong) point.measured = stress.measure.error ? error_to_truth(trial) : point.error;
     if (std::isnan(point.error)) point.error = infinity;
+    point.bias = std::isnan(trial.bias) ? infinity : trial.bias;
     point.non_finite = trial.faults.non_finite, point.negative = trial.faults.negative;
     if (truth) point.non_finite += truth->faults.non_finite, point.negative += truth->faults.negative;
     return point;
@@ -148,8 +153,10 @@ std::string_view name_of(Verdict verdict) {
 const std::vector<StressCase>& stress_cases() {
     static const std::vector<StressCase> cases = [] {
         std::vector<StressCase> all;
-        for (auto* group : {stress_lamps, stress_filters, stress_fog, stress_shadows, stress_history, stress_scattering,
-                            stress_orders, stress_files, stress_data, stress_looks, stress_program})
+        for (auto* group :
+             {stress_lamps, stress_filters, stress_beams, stress_fog, stress_shadows, stress_history, stress_scattering,
+              stress_lobes, stress_colors, stress_orders, stress_fire, stress_glow, stress_faces, stress_skies,
+              stress_shutters, stress_files, stress_data, stress_looks, stress_program})
             for (StressCase& stress : group()) all.push_back(std::move(stress));
         return all;
     }();

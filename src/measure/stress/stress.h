@@ -2,6 +2,8 @@
 // to hard, rendered by every mode that claims to handle it. A mode may hold, or say beforehand that it will not; what
 // it must not do is fail in silence.
 #pragma once
+#include "base/math.h"
+
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -12,6 +14,7 @@
 
 namespace tyndall {
 class LimitationKind;
+struct Limitation;
 struct Mode;
 struct StressScene;
 struct Trial; // both of measure/stress/trial.h
@@ -23,6 +26,7 @@ struct StressMeasure {
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
     double exact = -1;                       // what is allowed to modes that are exact here
     std::string_view exact_modes{};          // names between spaces
+    double allowed_bias = infinity;          // of the mean of the fog's light, as a share
 };
 
 // A limitation that may excuse an error. `wrong` excuses any. `degraded` says that the image is coarse, not that it is
@@ -30,6 +34,7 @@ struct StressMeasure {
 struct Excuse {
     const LimitationKind* kind;
     double up_to = 0;
+    double (*amount)(const Limitation&) = nullptr; // the error that it states, which is then the most it excuses
 };
 
 // What the rows of techniques say of them. All but `all`, `along_rays`, `history` and `fluence` are of physical ones.
@@ -82,16 +87,17 @@ enum class Verdict { holds, degrades, fails };
 struct StressPoint {
     double value = 0;
     double error = 0, allowed = 0;
-    double measured = -1;                  // relative RMSE where the mode called itself wrong; else -1
-    bool wrong = false;                    // some limitation says so
-    std::string warning;                   // the limitation that excuses most, as a line; empty = none
-    double excused_up_to = -1;             // the largest error that is excused; below 0 without one
+    double bias = -1, allowed_bias = infinity; // of the mean of the fog's light, as a share; below 0: not measured
+    double measured = -1;                      // relative RMSE where the mode called itself wrong; else -1
+    bool wrong = false;                        // some limitation says so
+    std::string warning;                       // the limitation that excuses most, as a line; empty = none
+    double excused_up_to = -1;                 // the largest error that is excused; below 0 without one
     uint64_t non_finite = 0, negative = 0; // samples dropped and values that are no number; values below 0, or shares
                                            // above 1; of the truth as well
 
     bool said() const { return excused_up_to >= 0; }
     bool clean() const { return non_finite == 0 && negative == 0; }
-    bool holds() const { return clean() && error <= allowed; }
+    bool holds() const { return clean() && error <= allowed && bias <= allowed_bias; }
     bool silent() const { return !clean() || (!holds() && !(error <= excused_up_to)); }
 };
 

@@ -17,7 +17,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_samples = 1024; // per pixel, of a mode whose error is noise
+// Per pixel, of a mode whose error is noise; and of one where light that is authored is sampled by chance.
+constexpr int max_samples = 1024, max_authored = 256;
 
 uint64_t negative_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(
@@ -35,12 +36,26 @@ uint64_t non_finite_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(image.pixels, [](vec3 value) { return !is_finite(value); }));
 }
 
+// Whether every picture of the scene is of samples taken by chance: where on the lens, when within the shutter.
+bool is_blurred(const StressScene& scene) { return scene.view.camera.lens || scene.view.shutter; }
+
+// Whether there is light in fog that marches sample by paths.
+bool has_sampled_light(const Snapshot& snapshot) {
+    const bool glowing = snapshot.scene && std::ranges::any_of(snapshot.scene->materials, [](const Material& material) {
+                             return max_component(material.emission) > 0;
+                         });
+    return snapshot.environment || glowing ||
+           std::ranges::any_of(snapshot.lights, [](const Light& light) { return light.area != nullptr; }) ||
+           std::ranges::any_of(snapshot.media, [](const Medium& medium) { return only_emits(medium.optics); });
+}
+
 // Whether all that is wrong with a picture is noise, of which its variance tells: a march looks at soft lights by
 // chance, as paths do, and several techniques at gobos.
 bool is_noise(const Trial& trial) {
     const Snapshot& snapshot = trial.scene.snapshot;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
-    if (error_is_noise(*trial.mode)) return true;
+    if (error_is_noise(*trial.mode) || is_blurred(trial.scene)) return true;
+    if (trial.mode->samples_soft_lights && has_sampled_light(snapshot)) return true;
     if (trial.mode->samples_soft_lights && shadows && std::ranges::any_of(snapshot.lights, is_soft)) return true;
     const Limitations said = trial.mode->limitations(trial.scene.view, snapshot, trial.scene.settings);
     return std::ranges::any_of(said, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
@@ -63,32 +78,49 @@ void count_faults(const Layers& layers, const FrameStats& stats, Faults& faults)
 struct Bias {
     double squared = 0, doubt = 0;
 };
-Bias bias_of(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth) {
-    const Estimate squared = product_of_errors(a, b, truth, truth);
+Bias bias_of(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth, const Image<vec3>& again) {
+    const Estimate squared = product_of_errors(a, b, truth, again);
     const double unit = mean_of(truth) * mean_of(truth);
     return {relative(squared.value, unit), relative(2 * squared.standard_error, unit)};
 }
 
+// How far the mean of two pictures is off that of two others, less two standard errors of what differs within the
+// pairs.
+double bias_of_means(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth, const Image<vec3>& again) {
+    const auto spread = [](const Image<vec3>& one, const Image<vec3>& other) {
+        double squares = 0;
+        for (size_t i = 0; i < one.pixels.size(); ++i) {
+            const dvec3 off = dvec3(one.pixels[i]) - dvec3(other.pixels[i]);
+            squares += std::pow((off.x + off.y + off.z) / 3, 2);
+        }
+        return 0.5 * std::sqrt(squares) / static_cast<double>(one.pixels.size());
+    };
+    const double right = 0.5 * (mean_of(truth) + mean_of(again)), found = 0.5 * (mean_of(a) + mean_of(b));
+    const double doubt = 2 * std::hypot(spread(a, b), spread(truth, again));
+    return relative(std::max(0.0, std::abs(found - right) - doubt), right);
+}
+
 // The bias that is beyond doubt, from enough samples that one as large as is allowed would be. Where even the most
-// samples are too few, the largest that there may be.
-double bias_to_truth(Trial& trial) {
-    const Layers& truth = trial.truth();
+// samples are too few, the largest that there may be; of what is authored that which is beyond doubt all the same.
+double bias_to_truth(Trial& trial, int max_taken = max_samples, bool doubted = true) {
+    const Layers &truth = trial.truth(), &other = trial.other_truth();
     StressScene again = trial.scene;
     again.view.seed += 1;
     const double allowed = trial.allowed * trial.allowed;
     for (;; trial.noisy_samples *= 2) {
         const Layers a = trial.render(), b = trial.render(again);
-        const Bias both[] = {bias_of(a.color, b.color, truth.color),
-                             bias_of(a.inscatter, b.inscatter, truth.inscatter)};
+        const Bias both[] = {bias_of(a.color, b.color, truth.color, other.color),
+                             bias_of(a.inscatter, b.inscatter, truth.inscatter, other.inscatter)};
+        trial.bias = bias_of_means(a.inscatter, b.inscatter, truth.inscatter, other.inscatter);
         double least = 0, most = 0, doubt = 0;
         for (const Bias& bias : both) {
             least = std::max(least, bias.squared - bias.doubt), doubt = std::max(doubt, bias.doubt);
             most = std::max(most, std::max(bias.squared, 0.0) + bias.doubt);
         }
         if (doubt <= allowed || least > allowed) return std::sqrt(least);
-        if (trial.noisy_samples >= max_samples) return std::sqrt(most);
+        if (trial.noisy_samples >= max_taken) return std::sqrt(doubted ? most : least);
         // The doubt about the product of two errors that are noise falls with the samples.
-        while (2 * trial.noisy_samples < max_samples && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
+        while (2 * trial.noisy_samples < max_taken && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
     }
 }
 
@@ -136,13 +168,49 @@ Layers Trial::truth_of_scene(const StressScene& what) {
     return layers;
 }
 
+namespace {
+// A march at final quality, its light followed through the fog, of so many samples by other random numbers.
+Layers sampled_truth(Trial& trial, int samples, uint32_t seed) {
+    const StressScene& what = trial.scene.finer ? *trial.scene.finer : trial.scene;
+    Settings settings = what.settings;
+    const Settings careful = settings_for(Quality::final);
+    settings.march = careful.march, settings.terms = careful.terms;
+    settings.terms.light = LightTransmittance::marched;
+    View view = what.view;
+    view.pixel_samples = samples, view.seed += seed;
+    FrameOptions options;
+    options.cancel = trial.cancel;
+    FrameStats stats;
+    Layers layers = render_frame(main_mode(), view, what.snapshot, settings, options, stats);
+    count_faults(layers, stats, trial.faults);
+    return layers;
+}
+
+// Two pictures, of as many samples as bring their noise near what is asked of techniques: the product of the errors
+// against both is free of it.
+Truth sampled_truths(Trial& trial) {
+    constexpr double noise = 0.15;
+    for (int samples = 64;; samples *= 2) {
+        Layers first = sampled_truth(trial, samples, 1001), second = sampled_truth(trial, samples, 1002);
+        if (2 * samples > max_samples || difference(first, second) < std::numbers::sqrt2 * noise)
+            return {std::move(first), {}, std::move(second)};
+    }
+}
+}
+
 const Layers& Trial::truth() {
     if (!known_truth) {
         const Faults own = std::exchange(faults, {});
-        Layers layers = truth_of_scene(scene);
-        known_truth = {std::move(layers), std::exchange(faults, own)};
+        const bool sampled = is_blurred(scene) || has_sampled_light(scene.snapshot);
+        known_truth = sampled ? sampled_truths(*this) : Truth{truth_of_scene(scene), {}, {}};
+        known_truth->faults = std::exchange(faults, own);
     }
     return known_truth->layers;
+}
+
+const Layers& Trial::other_truth() {
+    const Layers& first = truth();
+    return known_truth->again ? *known_truth->again : first;
 }
 
 double mean_of(const Image<vec3>& image) {
@@ -168,6 +236,18 @@ double difference(const Layers& test, const Layers& reference) {
 
 double error_to_truth(Trial& trial) {
     return is_noise(trial) ? bias_to_truth(trial) : difference(trial.render(), trial.truth());
+}
+
+double error_and_bias(Trial& trial) {
+    if (is_noise(trial)) return std::max(bias_to_truth(trial, max_authored, false), trial.bias);
+    StressScene preview = trial.scene;
+    preview.view.pixel_samples = preview.settings.pixel.samples;
+    const Layers &truth = trial.truth(), &other = trial.other_truth(), found = trial.render(preview);
+    trial.bias = bias_of_means(found.inscatter, found.inscatter, truth.inscatter, other.inscatter);
+    const double squares[] = {trial.bias * trial.bias,
+                              bias_of(found.color, found.color, truth.color, other.color).squared,
+                              bias_of(found.inscatter, found.inscatter, truth.inscatter, other.inscatter).squared};
+    return std::sqrt(std::ranges::max(squares));
 }
 
 double error_of_mean(Trial& trial) {

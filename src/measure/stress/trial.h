@@ -20,6 +20,7 @@ struct StressScene {
     Snapshot snapshot;
     View view;
     Settings settings;
+    std::shared_ptr<const StressScene> finer{}; // what the truth is rendered of, where it is not this: more moments
 };
 // What no picture may hold.
 struct Faults {
@@ -29,6 +30,7 @@ struct Faults {
 struct Truth {
     Layers layers;
     Faults faults;
+    std::optional<Layers> again{}; // as good, by other random numbers, where they decide what it shows
 };
 
 struct Trial {
@@ -38,12 +40,14 @@ struct Trial {
     std::optional<Truth>& known_truth; // of the scene, shared by the modes
     std::atomic<bool>* cancel = nullptr;
     Faults faults{};        // of everything rendered but the shared truth
+    double bias = -1;       // of the mean of the fog's light, as a share, where it is measured
     int noisy_samples = 16; // per pixel, of a mode whose error is noise
 
     Layers render(const StressScene& what, History* history = nullptr, bool parts = false);
     Layers render() { return render(scene); }
     Layers truth_of_scene(const StressScene& what); // exact single scattering, at pixel centres
     const Layers& truth();
+    const Layers& other_truth(); // the same picture where chance has no part in it
 };
 
 // --- errors ------------------------------------------------------------------------------------------------------
@@ -54,7 +58,9 @@ double difference(const Image<vec3>& test, const Image<vec3>& reference);
 // explain, from so many samples that a bias as large as is allowed shows.
 double error_to_truth(Trial& trial);
 double error_of_mean(Trial& trial); // of the fog light; where noise is the only error, as above
-double leak(Trial& trial);          // the fog's mean light, by that of the same fog without surfaces
+// The error, and beside it the bias of the mean of the fog's light, neither with the truth's own noise.
+double error_and_bias(Trial& trial);
+double leak(Trial& trial); // the fog's mean light, by that of the same fog without surfaces
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
 double max_of(const Image<vec3>& image);
@@ -81,4 +87,12 @@ std::vector<StressCase> stress_data();
 std::vector<StressCase> stress_scattering();
 std::vector<StressCase> stress_orders();
 std::vector<StressCase> stress_program();
+std::vector<StressCase> stress_fire();
+std::vector<StressCase> stress_glow();
+std::vector<StressCase> stress_faces();
+std::vector<StressCase> stress_beams();
+std::vector<StressCase> stress_skies();
+std::vector<StressCase> stress_lobes();
+std::vector<StressCase> stress_colors();
+std::vector<StressCase> stress_shutters();
 }

@@ -45,7 +45,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
     if (settings.terms.emission)
         add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
     add_left_out_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)
         limitations.push_back({Severity::degraded, &limitation::homogeneous_in_cards, Subject::medium, medium.name});

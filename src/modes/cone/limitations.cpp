@@ -58,13 +58,13 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
         add_light(view, snapshot, light, settings.of<ConeSettings>(), limitations);
     for (const Medium& medium : snapshot.media)
         if (medium.density.kind == DensityKind::bricks)
-            limitations.push_back(
-                {Severity::degraded, &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
+            limitations.push_back({only_emits(medium.optics) ? Severity::wrong : Severity::degraded,
+                                   &limitation::drawn_as_homogeneous, Subject::medium, medium.name});
     add_single_scattering(view, snapshot, limitations);
     if (settings.of<ConeSettings>().resolution != Resolution::full)
         add_no_fog_picture(view, "cone.resolution", limitations);
-    add_mean_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_mean_environment(view, snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) {
         add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);

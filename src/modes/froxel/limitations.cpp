@@ -129,8 +129,8 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     if (snapshot.media.empty()) return limitations;
     add_fog_through_middle(view, snapshot, limitations);
-    add_mean_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_mean_environment(view, snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
         add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
 
@@ -142,7 +142,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
         add_light(light, snapshot, froxel, size, limitations);
         add_glow(view, snapshot, light, froxel.tile, limitations);
     }
-    for (const Medium& medium : snapshot.media) add_medium(medium, size, limitations);
+    for (const Medium& medium : thickest_media(snapshot)) add_medium(medium, size, limitations);
     const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };
     if (std::ranges::any_of(snapshot.media, unbounded))
         limitations.push_back({Severity::info, &limitation::few_far_slices, Subject::setting, "froxel.depth_slices"});

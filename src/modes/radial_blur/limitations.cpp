@@ -43,7 +43,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
     if (settings.terms.emission)
         add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
     add_left_out_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, own);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const auto found = std::ranges::find(seen, i, &BlurLight::index);

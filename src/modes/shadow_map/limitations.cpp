@@ -1,5 +1,6 @@
 #include "modes/shadow_map/limitations.h"
 
+#include "integrate/lights/fire_lamps.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/map_shadows.h"
@@ -14,20 +15,29 @@
 
 namespace tyndall {
 namespace {
-// Edges of light that fall between steps: of shafts, and of the light around lamps that the image shows.
-void add_few_steps(const View& view, const Snapshot& snapshot, int steps, Limitations& limitations) {
+// Whether the picture shows where a light is.
+bool is_seen(const View& view, const Light& light) {
+    const std::optional<vec2> at = is_distant(light) ? std::nullopt : pixel_of(view.camera, view.size, light.position);
+    return at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size)));
+}
+
+// Edges of light that fall between steps: of shafts, and of the light around lamps that the image shows, those that
+// stand for fire included.
+void add_few_steps(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     constexpr int fine = 64;
+    const int steps = settings.of<ShadowMapSettings>().steps;
     if (steps >= fine || snapshot.media.empty()) return;
+    const auto add = [&](const LimitationKind& kind, const Light& light) {
+        limitations.push_back({Severity::degraded, &kind, Subject::light, light.name, {double(steps)}});
+    };
     for (const Light& light : snapshot.lights) {
-        const auto add = [&](const LimitationKind& kind) {
-            limitations.push_back({Severity::degraded, &kind, Subject::light, light.name, {double(steps)}});
-        };
-        if (shadow_casters(light, snapshot)) add(limitation::grainy_edges);
-        if (is_distant(light)) continue;
-        const std::optional<vec2> at = pixel_of(view.camera, view.size, light.position);
-        if (at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size))))
-            add(limitation::few_steps_for_glow);
+        if (shadow_casters(light, snapshot)) add(limitation::grainy_edges, light);
+        if (is_seen(view, light)) add(limitation::few_steps_for_glow, light);
     }
+    if (!settings.terms.emission) return;
+    const std::vector<Light> lamps = fire_lamps(snapshot);
+    const auto seen = std::ranges::find_if(lamps, [&](const Light& lamp) { return is_seen(view, lamp); });
+    if (seen != lamps.end()) add(limitation::few_steps_for_glow, *seen);
 }
 }
 
@@ -40,14 +50,14 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     const ShadowMapSettings& own = settings.of<ShadowMapSettings>();
     add_map_shadows(view, snapshot, settings, limitations);
     add_steps(view, snapshot, own.steps, true, limitations);
-    add_few_steps(view, snapshot, own.steps, limitations);
+    add_few_steps(view, snapshot, settings, limitations);
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     add_sampled_filters(snapshot, Sampled::all_filters, own.steps, limitations);
     add_mean_albedo(snapshot, limitations);
     if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
-    add_mean_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_mean_environment(view, snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
         add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
     return limitations;

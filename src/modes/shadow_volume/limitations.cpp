@@ -33,8 +33,8 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
         add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);
         add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(snapshot, limitations);
     }
-    add_single_scattering(view, snapshot, limitations), add_mean_environment(snapshot, limitations);
-    add_lamps_for_faces(snapshot, limitations);
+    add_single_scattering(view, snapshot, limitations), add_mean_environment(view, snapshot, limitations);
+    add_lamps_for_faces(view, snapshot, limitations);
 }
 
 void add_shadows(const Snapshot& snapshot, Limitations& limitations) {

@@ -36,8 +36,10 @@ double samples_for(const Contender& contender, double error) {
     const double left = (error * error - contender.integrator().bound) / chance;
     if (!(left > 0) || (choice.has_integrator && !choice.scout)) return infinity;
     // The first image tells where noise is, if it has any.
-    if (!choice.scout || choice.scout_variance == 0)
-        return std::max(std::ceil(choice.measured.sample.value / left), 1.0 * scout_samples);
+    if (!choice.scout || choice.scout_variance == 0) {
+        const double samples = std::ceil(choice.measured.sample.value / left);
+        return samples <= max_target_samples ? std::max(samples, 1.0 * scout_samples) : infinity;
+    }
     const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
     const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
     return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;

@@ -147,7 +147,7 @@ std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, con
     if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
     const OrdersError orders =
         goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
-    if (goal.error > 0) goal.error = error_beside(orders, goal.error).value_or(goal.error); // else it is missed
+    if (goal.error > 0) goal.error = error_beside(orders.pixels, goal.error).value_or(goal.error); // else it is missed
     return orders;
 }
 

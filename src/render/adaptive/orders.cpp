@@ -261,9 +261,9 @@ OrdersError orders_error(const Mode& mode, const View& given, const Snapshot& sn
     return result;
 }
 
-std::optional<double> error_beside(const OrdersError& orders, double error) {
+std::optional<double> error_beside(const Noise& other, double error) {
     constexpr double least = 0.3; // of the error: less takes more than ten times as many samples
-    const double left = error * error - orders.pixels.bound * orders.pixels.bound;
+    const double left = error * error - other.bound * other.bound;
     if (left >= least * least * error * error) return std::sqrt(left);
     return {};
 }

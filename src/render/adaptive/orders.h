@@ -14,8 +14,8 @@ bool takes_fluence(const Mode& mode, const Settings& settings);
 OrdersError orders_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                          double error, const FrameOptions& options, const std::function<bool()>& stop = {});
 
-// What an error asked for leaves to noise and integrator beside multiple scattering; none where that is too little.
-std::optional<double> error_beside(const OrdersError& orders, double error);
+// What an error asked for leaves to noise and integrator beside another part of it; none where that is too little.
+std::optional<double> error_beside(const Noise& other, double error);
 
 namespace limitation {
 inline constexpr LimitationKind approximate_orders{

@@ -178,8 +178,8 @@ std::shared_ptr<const Prepared> prepare(const Pilot& pilot, const Mode& mode, co
 SquaredError worse(SquaredError a, SquaredError b) {
     return {std::max(a.value, b.value), std::max(a.bound, b.bound), a.bound > b.bound ? a.by_noise : b.by_noise};
 }
+}
 
-// The worse of colour and fog light.
 SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const std::vector<vec3>& own,
                       Product product) {
     SquaredError result;
@@ -193,7 +193,6 @@ SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const 
         result = worse(result, squared_error(sums, {pilot.tiles.data(), count}, product));
     }
     return result;
-}
 }
 
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,

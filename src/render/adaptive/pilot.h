@@ -102,6 +102,10 @@ double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settin
 
 enum Product { of_integrator, of_sample, product_count };
 
+// Of values on the pilot's tiles: the worse of colour and fog light.
+SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const std::vector<vec3>& own,
+                      Product product);
+
 // Of one layer: products of differences, as said above, summed over pixels.
 struct Sums {
     double products[product_count] = {};

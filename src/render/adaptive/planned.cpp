@@ -4,7 +4,9 @@
 #include "base/random.h"
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
+#include "render/adaptive/shutter_error.h"
 #include "render/adaptive/to_target.h"
+#include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 
 #include <algorithm>
@@ -64,6 +66,20 @@ void note_choice(const Choice& choice, PlannedSamples& planned) {
             {std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, planned.settings};
 }
 
+// Of motion blur, where there is any; on tiles by what an image shows, if there is one.
+std::optional<Noise> moments_of_frame(const Mode& mode, const View& view, const Snapshot& snapshot,
+                                      const Settings& settings, std::shared_ptr<const Prepared> prepared,
+                                      const Layers& image, double error, const FrameOptions& options) {
+    if (!has_moments(view, snapshot)) return {};
+    const View even = even_frame(view);
+    if (!prepared)
+        prepared = std::make_shared<const Prepared>(prepare_frame(mode, even, snapshot, settings, options.history));
+    const TileChances chances = image.variance.empty() ? even_chances(even, snapshot) : chances_in(image);
+    const SquaredError squared =
+        moments_error(mode, even, snapshot, settings, *prepared, chances, error, false, options);
+    return Noise{std::sqrt(squared.value), std::sqrt(squared.bound)};
+}
+
 double mean_of(const TileFactors& counts) {
     double sum = 0;
     for (const uint16_t count : counts.factors.pixels) sum += count;
@@ -83,6 +99,11 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     if (has_integrator(mode))
         choice = goal.choice ? *goal.choice : choose(mode, view, snapshot, settings, goal, goal.clock(), options);
     PilotImage pilot = pilot_image(mode, view, snapshot, settings, choice, options);
+    planned.error.moments =
+        moments_of_frame(mode, view, snapshot, choice ? choice->candidate.settings : settings,
+                         choice ? choice->measured.prepared : nullptr, pilot.layers, goal.error, options);
+    if (planned.error.moments)
+        goal.error = error_beside(*planned.error.moments, goal.error).value_or(goal.error); // else it is missed
     for (uint32_t check = 1; choice && check <= max_checks; ++check) {
         const double noise = noise_target(*choice, goal.error);
         const Choice after = checked(*choice, pilot.layers, {noise, noise, noise}, pilot_samples, infinity, mode,
@@ -136,7 +157,10 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
     const FrameOptions options = without_report(given);
     PlannedError error;
     if (takes_fluence(mode, settings)) error.orders = orders_error(mode, view, snapshot, settings, 0, options);
-    if (!has_integrator(mode)) return error;
+    if (!has_integrator(mode)) {
+        error.moments = moments_of_frame(mode, view, snapshot, settings, nullptr, {}, 0, options);
+        return error;
+    }
     Layers image; // which shows where errors may be; where it would take long, tiles are drawn without
     if (static_cast<int64_t>(view.size.x) * view.size.y <= max_shown_pixels) {
         View few = even_view(even_frame(view), scout_samples, scout_samples);
@@ -146,6 +170,7 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
     }
     error.integrator = measured_integrator(choice_of("as set", settings, {}), 0, mode, view, snapshot, image, {},
                                            image_check, options);
+    error.moments = moments_of_frame(mode, view, snapshot, settings, nullptr, image, 0, options);
     return error;
 }
 
@@ -153,6 +178,7 @@ void judge_planned(const PlannedError& planned, const Mode& mode, const View& vi
                    const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
     if (!stats.noise) return;
     if (planned.orders) stats.orders = planned.orders;
+    if (planned.moments) stats.moments_error = planned.moments;
     if (planned.integrator) stats.integrator = planned.integrator;
     if (!planned.is_checked()) return;
     const Integrator& before = *planned.integrator;

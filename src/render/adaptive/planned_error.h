@@ -8,6 +8,7 @@ struct PlannedError {
     std::optional<Integrator> integrator; // of the candidate or the settings, in the first frame
     bool is_truth = false;                // the candidate is what images are held against
     std::optional<OrdersError> orders;    // where light scatters more than once
+    std::optional<Noise> moments{};       // of motion blur by few of them
 
     bool is_checked() const { return target > 0 && integrator && !is_truth; } // on the finished image
 };

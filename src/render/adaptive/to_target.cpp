@@ -5,6 +5,7 @@
 #include "modes/mode.h"
 #include "render/adaptive/allotment.h"
 #include "render/adaptive/orders.h"
+#include "render/adaptive/shutter_error.h"
 #include "render/frame/layers.h"
 #include "trace/transmittance/light_depth.h"
 
@@ -253,6 +254,23 @@ struct Rendering {
     std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
 };
 
+// How far the shutter's moments are off, where there are some; the goal is left what that leaves of it.
+std::optional<Noise> moments_beside(Rounds& rounds, Rendering& rendering) {
+    const auto& [mode, snapshot, options, settings, prepared] = rendering;
+    if (!has_moments(rounds.view, snapshot)) return {};
+    if (!prepared)
+        rendering.prepared =
+            std::make_shared<const Prepared>(prepare_frame(mode, rounds.view, snapshot, settings, options.history));
+    const std::shared_ptr<const Scout> scout = rounds.choice ? rounds.choice->scout : nullptr;
+    Goal& goal = rounds.goal;
+    const SquaredError error = moments_error(mode, rounds.view, snapshot, settings, *rendering.prepared,
+                                             scout ? chances_in(scout->layers) : even_chances(rounds.view, snapshot),
+                                             goal.error, goal.seconds > 0, options);
+    const Noise moments{std::sqrt(error.value), std::sqrt(error.bound)};
+    if (goal.error > 0) goal.error = error_beside(moments, goal.error).value_or(goal.error); // else it is missed
+    return moments;
+}
+
 void note_integrator(const Choice& choice, FrameStats& stats) {
     if (!choice.has_integrator) return;
     const SquaredError& error = choice.measured.integrator;
@@ -349,6 +367,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (rounds.choice->scout) round = 1; // none may take the random numbers of the first picture again
     }
+    const std::optional<Noise> moments = moments_beside(rounds, rendering);
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
         const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
@@ -372,7 +391,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
             render_rounds(rounds, rendering, next_round(rounds, stats), result, stats, round);
         break;
     }
-    stats.orders = orders;
+    stats.orders = orders, stats.moments_error = moments;
     stats.goal_seconds = goal.clock() - rounds.start;
     if (options.progress) options.progress(1);
     return result;

@@ -1,12 +1,14 @@
 // Every file that a job reads.
 #pragma once
-#include "volume/vdb/sequence.h"
+#include <filesystem>
+#include <vector>
 
 namespace tyndall {
+struct RenderRequest;
 struct Scene;
 
-// Scene, models, images, recipes, and the volumes of these frames; absolute, sorted, each once. Throws Error
-// (unreadable) for a volume that is missing.
+// Scene, models, images, recipes, and the volumes that these frames show with the request's shutter; absolute, sorted,
+// each once. Throws Error (unreadable) for a volume that is missing.
 std::vector<std::filesystem::path> input_files(const Scene& scene, const std::vector<int>& frames,
-                                               MissingFrame missing);
+                                               const RenderRequest& request);
 }

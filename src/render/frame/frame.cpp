@@ -84,8 +84,9 @@ void FrameStats::add(const FrameStats& other) {
 std::optional<Noise> FrameStats::error() const {
     if (!noise) return noise;
     const Noise none, &systematic = integrator ? integrator->error : none, &grid = orders ? orders->pixels : none;
-    return Noise{std::hypot(noise->error, systematic.error, grid.error),
-                 std::hypot(noise->bound, systematic.bound, grid.bound)};
+    const Noise& blur = moments_error ? *moments_error : none;
+    return Noise{std::hypot(std::hypot(noise->error, systematic.error, grid.error), blur.error),
+                 std::hypot(std::hypot(noise->bound, systematic.bound, grid.bound), blur.bound)};
 }
 
 namespace {

@@ -120,6 +120,7 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
         request.grouping.error.integrator = {error_of(*integrator), json.string_or("candidate", ""), request.settings};
     if (const Json* orders = json.find("orders"))
         request.grouping.error.orders = OrdersError{json.number_or("orders_mean", 0), error_of(*orders)};
+    if (const Json* moments = json.find("moments")) request.grouping.error.moments = error_of(*moments);
     return request;
 }
 
@@ -171,6 +172,7 @@ void save_plan(const std::filesystem::path& file, const Scene& scene, const Save
         members.emplace_back("orders", error_json(orders->pixels));
         members.emplace_back("orders_mean", orders->mean);
     }
+    if (error.moments) members.emplace_back("moments", error_json(*error.moments));
     if (const std::optional<Shutter>& shutter = plan.request.shutter)
         members.emplace_back("shutter", std::vector{shutter->open, shutter->close});
     if (plan.request.time_samples > 0) members.emplace_back("time_samples", plan.request.time_samples);

@@ -127,8 +127,11 @@ FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int fr
     const int camera = find_camera(scene, request.camera);
     if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    const int count =
-        request.time_samples > 0 ? request.time_samples : usual_moments(scene, camera, size, frame, shutter);
+    // A mode that is yet to be chosen may be one of those.
+    const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.remembers; };
+    const bool keeps_pictures = std::ranges::none_of(modes(), keeps_none);
+    const int count = request.time_samples > 0 ? request.time_samples
+                                               : usual_moments(scene, camera, size, frame, shutter, keeps_pictures);
     return frame_moments(scene, frame, shutter, count);
 }
 

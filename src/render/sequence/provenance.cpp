@@ -33,7 +33,7 @@ std::string scene_text(const Scene& scene) {
 
 std::string fog_text(const Scene& scene, const RenderRequest& request, int frame, FileHashes& files) {
     std::string text;
-    for (const FrameFile& file : frame_files(scene, frame, request.missing))
+    for (const FrameFile& file : frame_files(scene, frame, request.missing, shutter_of(scene, request)))
         text +=
             (file.volume ? "fog=" : "gobo=") + (file.path ? file_hash(*file.path, files) : std::string("none")) + "\n";
     return text;
@@ -192,7 +192,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
         attributes["tyndall:achievedError"] = number(stats.error()->error);
         attributes["tyndall:errorBound"] = number(stats.error()->bound);
     }
-    if (stats.noise && (stats.integrator || stats.orders)) {
+    if (stats.noise && !stats.is_noise_alone()) {
         attributes["tyndall:noiseError"] = number(stats.noise->error);
         attributes["tyndall:noiseBound"] = number(stats.noise->bound);
     }
@@ -205,6 +205,10 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
         attributes["tyndall:ordersError"] = number(stats.orders->pixels.error);
         attributes["tyndall:ordersBound"] = number(stats.orders->pixels.bound);
         attributes["tyndall:ordersMean"] = number(stats.orders->mean);
+    }
+    if (stats.moments_error) {
+        attributes["tyndall:momentsError"] = number(stats.moments_error->error);
+        attributes["tyndall:momentsBound"] = number(stats.moments_error->bound);
     }
     if (request.target_error > 0) attributes["tyndall:targetError"] = number(request.target_error);
     if (request.time_budget > 0) {
@@ -235,6 +239,8 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
     const Noise orders{value("tyndall:ordersError"), value("tyndall:ordersBound")};
     if (orders.error >= 0 && orders.bound >= 0 && attributes.contains("tyndall:ordersMean"))
         stats.orders = OrdersError{value("tyndall:ordersMean"), orders};
+    const Noise moments{value("tyndall:momentsError"), value("tyndall:momentsBound")};
+    if (moments.error >= 0 && moments.bound >= 0) stats.moments_error = moments;
     stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));
 }
 }

@@ -49,13 +49,14 @@ namespace {
 // What is known of the error, its parts and what was asked for.
 std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (!stats.noise) return {};
-    std::string text = stats.integrator || stats.orders ? ", error " : ", noise ";
+    std::string text = stats.is_noise_alone() ? ", noise " : ", error ";
     text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
     if (request.target_error > 0) text += formatted(" (wanted %.3g)", request.target_error);
     if (stats.integrator)
         text += formatted(": noise %.3g, integrator %.3g (%s)", stats.noise->error, stats.integrator->error.error,
                           stats.integrator->candidate.c_str());
     if (stats.orders) text += formatted(", multiple scattering %.3g", stats.orders->pixels.error);
+    if (stats.moments_error) text += formatted(", moments %.3g", stats.moments_error->error);
     text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
     if (request.time_budget > 0)
         text += formatted(", %.3g s of a budget of %.3g s", stats.goal_seconds, request.time_budget);

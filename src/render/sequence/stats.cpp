@@ -37,6 +37,10 @@ Json frame_json(const FrameReport& frame) {
         json.members.emplace_back("orders_error", frame.stats.orders->pixels.error);
         json.members.emplace_back("orders_bound", frame.stats.orders->pixels.bound);
     }
+    if (frame.stats.moments_error) {
+        json.members.emplace_back("moments_error", frame.stats.moments_error->error);
+        json.members.emplace_back("moments_bound", frame.stats.moments_error->bound);
+    }
     if (frame.stats.goal_seconds > 0) json.members.emplace_back("goal_seconds", frame.stats.goal_seconds);
     if (frame.stats.forecast_seconds > 0 && frame.stats.forecast_seconds < infinity)
         json.members.emplace_back("forecast_seconds", frame.stats.forecast_seconds);

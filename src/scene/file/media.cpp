@@ -105,6 +105,9 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     if (const Field sequence = field.member("sequence")) {
         medium.sequence.mode = sequence_mode_named(sequence.json->string_or("mode", "hold"));
         medium.sequence.offset = static_cast<int>(sequence.json->number_or("offset", 0));
+        const Field blend = sequence.member("blend");
+        medium.blends = blend && blend.json->boolean;
+        if (medium.blends && medium.sequence.files.empty()) refuse(blend, "is of numbered files, and this is one");
     }
 
     // The first file speaks for all.

@@ -60,6 +60,17 @@ void read_density(const Field& field, const Field& density, MediumSource& medium
     medium.sequence.grid = source.grids[0].empty() ? own : source.grids[0];
 }
 
+VelocitySource velocity_source(const Field& field, const Field& velocity, const MediumSource& medium, Scene& scene) {
+    VelocitySource source;
+    source.grid = grid_source(velocity, "vel", medium, scene);
+    if (const Field unit = field.member("velocity_unit")) source.per_frame = unit.json->string == "frame";
+    if (const Field scale = field.member("velocity_scale")) source.scale = read_number(scale);
+    if (medium.blends) refuse(velocity, "moves the fog, and \"blend\" of its sequence mixes it: say one of them");
+    if (medium.sequence.mode == SequenceMode::ping_pong)
+        refuse(velocity, "says nothing of files that are played backwards, as \"ping_pong\" does");
+    return source;
+}
+
 BlackbodySource blackbody_source(const Field& field, const MediumSource& medium, Scene& scene) {
     BlackbodySource source;
     const std::string& name = field.member("convention").json->string;
@@ -111,7 +122,12 @@ void read_grids(const Field& field, MediumSource& medium, Scene& scene) {
         if (const Field density = grids.member("density")) read_density(field, density, medium, scene);
         read("albedo", "Cd", medium.albedo_grid), read("emission", "emission", medium.emission_grid);
         read("temperature", "temperature", medium.temperature), read("flame", "flame", medium.flame);
+        if (const Field velocity = grids.member("velocity"))
+            medium.velocity = velocity_source(field, velocity, usual, scene);
     }
+    if (!medium.velocity)
+        for (const char* name : {"velocity_unit", "velocity_scale"})
+            if (const Field said = field.member(name)) refuse(said, "says nothing without a \"velocity\" in \"grids\"");
     if (medium.emission_grid && !field.member("emission")) medium.emission = vec3(1);
     if (blackbody) medium.blackbody = blackbody_source(blackbody, medium, scene);
 }

@@ -66,12 +66,15 @@ std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
     const bool dims = density && density->maximum > 0;
+    const auto velocity = std::ranges::find_if(
+        info.grids, [](const VdbGridInfo& grid) { return grid.role == GridRole::velocity && grid.active_voxels > 0; });
     std::vector<std::string> grids;
     if (dims) grids.push_back(member("density", density_text(*density)));
     if (dims && color) grids.push_back(member("albedo", color_name(*color)));
     if (temperature) grids.push_back(member("temperature", temperature_text(*temperature)));
     if (flame) grids.push_back(member("flame", quote_json(flame->key)));
     if (emission) grids.push_back(member("emission", color_name(*emission)));
+    if (velocity != info.grids.end()) grids.push_back(member("velocity", color_name(*velocity)));
     std::string text = "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
                        ", " + member("extinction", dims ? digits(usual_extinction(*density)) : "0");
     if (!grids.empty()) text += ", " + member("grids", "{" + joined(grids, ", ") + "}");

@@ -6,7 +6,8 @@
 #include <string>
 
 namespace tyndall {
-// An entry of "media" that takes each grid as what it looks like: density, color, temperature and flame, or emission.
+// An entry of "media" that takes each grid as what it looks like: density, color, temperature and flame, or emission,
+// and velocity.
 // Where there is no density, nothing is dimmed; empty where no grid is of use.
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info);
 

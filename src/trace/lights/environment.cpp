@@ -89,10 +89,6 @@ std::shared_ptr<const DirectionTable> make_table(const BackgroundNow& map) {
     table.mean = vec3(sum / (4 * std::numbers::pi));
     if (!(total > 0)) return nullptr;
     add_chances(powers, total, table);
-    for (size_t i = 0; i < powers.size(); ++i) {
-        const double even = table.densities[i] > 0 ? powers[i] / (table.densities[i] * 4 * std::numbers::pi) : 0;
-        table.uneven += std::max(powers[i] - even, 0.0) / total;
-    }
     return std::make_shared<const DirectionTable>(std::move(table));
 }
 

@@ -19,7 +19,6 @@ struct DirectionTable {
     std::vector<double> rows, columns; // cumulative: cells.y + 1, and cells.y × (cells.x + 1)
     std::vector<float> densities;      // of each cell, 1/sr
     vec3 mean{0};                      // radiance, over the sphere
-    double uneven = 0;                 // share of the light that would have to move for an even sky, 0..1
 };
 
 struct Environment {

@@ -62,9 +62,11 @@ dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity) {
         static const double even = observed([](double) { return 1.0; }).y;
         return in_gamut(rec709_from_xyz(relative_xyz(kelvin) / even));
     }
+    const dvec3 xyz = relative_xyz(kelvin);
+    if (!(xyz.y > 0)) return dvec3(0);
     constexpr double stefan_boltzmann = 5.670373e-8 * 1e-6 * std::numbers::inv_pi;
     const double power = 1 + (kelvin * kelvin * kelvin * kelvin - 1) * intensity;
-    return blackbody_tint(kelvin) * (stefan_boltzmann * power);
+    return glm::max(rec709_from_xyz(xyz / xyz.y), dvec3(0)) * (stefan_boltzmann * power);
 }
 
 dvec3 blackbody_tint(double kelvin) {

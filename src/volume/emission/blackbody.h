@@ -27,10 +27,10 @@ dvec3 in_gamut(dvec3 rgb);
 // Linear Rec.709 of luminance 1, in gamut; black where so little is visible that no number holds it.
 dvec3 blackbody_tint(double kelvin);
 
-// What stands for a temperature before any scale, linear Rec.709 in gamut:
+// What stands for a temperature before any scale, linear Rec.709, in gamut but where said otherwise:
 //   kelvin: radiance, nits.
-//   cycles: 5.670373e-8 · 1e-6 / π · (1 - intensity + intensity T⁴) × the colour at luminance 1 (Blender's Principled
-//           Volume, kernel/svm/closure.h).
+//   cycles: 5.670373e-8 · 1e-6 / π · (1 - intensity + intensity T⁴) × the color at luminance 1, with what is below 0
+//           cut off (Blender's Principled Volume, kernel/svm/closure.h): brighter by up to 1 % from 1200 K on.
 //   pbrt: Planck's law over its own maximum, by the observer's sum of an even spectrum of 1; 0 at or below 100 K
 //         (pbrt-v4 media.h, util/spectrum.h).
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity = 1);

@@ -187,6 +187,24 @@ void keep_active(DecodedTree& tree) {
     tree.inactive_tiles.clear(), tree.background = 0;
 }
 
+void keep_finite(DecodedTree& tree, VdbReadReport& report) {
+    for (size_t n = 0; n < tree.leaves.size(); ++n)
+        for (uint32_t v = 0; v < 512; ++v) {
+            float& value = tree.leaves[n].values[v];
+            if (std::isfinite(value)) continue;
+            report.non_finite += tree.active[n][v / 64] >> (v % 64) & 1, value = 0;
+        }
+    for (Tile& tile : tree.active_tiles)
+        if (!std::isfinite(tile.value)) report.non_finite += voxel_count(tile), tile.value = 0;
+}
+
+void make_plain(DecodedTree tree, SparseVolume& volume) {
+    keep_active(tree);
+    const ActiveBox box = active_box(tree);
+    volume.active_low = box.low, volume.active_high = box.high;
+    volume.leaves = std::move(tree.leaves), volume.tiles = std::move(tree.active_tiles);
+}
+
 DecodedTree active_share(DecodedTree tree) {
     for (size_t n = 0; n < tree.leaves.size(); ++n)
         for (uint32_t v = 0; v < 512; ++v)

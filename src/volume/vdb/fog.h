@@ -24,6 +24,12 @@ void limit(DecodedTree& tree, float most, VdbReadReport& report);
 // Sets what is not active to 0.
 void keep_active(DecodedTree& tree);
 
+// Sets voxels whose value is not finite to 0, and counts those that are active.
+void keep_finite(DecodedTree& tree, VdbReadReport& report);
+
+// Active voxels as they are, of either sign.
+void make_plain(DecodedTree tree, SparseVolume& volume);
+
 // 1 at active voxels, 0 elsewhere.
 DecodedTree active_share(DecodedTree tree);
 

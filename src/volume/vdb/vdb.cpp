@@ -12,6 +12,8 @@
 #include "volume/vdb/nano_tree.h"
 #include "volume/vdb/prewalk.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include <limits>
 #include <new>
 
@@ -144,6 +146,45 @@ ColorVolume read_color(const std::filesystem::path& path, std::span<const std::s
     return color;
 }
 
+SparseVolume plain_volume(DecodedTree tree, const VdbGridEntry& grid) {
+    SparseVolume volume;
+    volume.name = grid.name, volume.index_to_world = grid.index_to_world;
+    make_plain(std::move(tree), volume);
+    return volume;
+}
+
+// A staggered grid has each component on the lower face of its voxel along that axis.
+VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const std::string> names, const ValueMap& map,
+                             VdbReadReport* report) {
+    ByteCursor file(path);
+    const VdbDirectory directory = read_directory(file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const bool vectors = is_vector_float(*grids[0]);
+    if (!vectors && grids.size() == 1)
+        refuse(label(file, *grids[0]), "holds one number a voxel; a velocity is a grid of vectors, or three grids");
+    VelocityVolume velocity;
+    VdbReadReport mended;
+    mended.grid = names.size() == 1 ? names[0] : grids[0]->name, mended.empty = true;
+    for (int c = 0; c < 3; ++c) {
+        const VdbGridEntry& grid = *grids[vectors ? 0 : static_cast<size_t>(c)];
+        VdbTreeCounts counts;
+        DecodedTree tree = load_tree(file, directory, grid, counts, vectors ? c : 0);
+        keep_finite(tree, mended);
+        apply(map, tree);
+        if (c == 0 || !vectors) velocity.known.push_back(plain_volume(active_share(tree), grid));
+        SparseVolume& component = velocity.components[static_cast<size_t>(c)];
+        component = plain_volume(std::move(tree), grid);
+        mended.empty &= component.empty();
+        if (vectors && grid.grid_class == "staggered") {
+            dvec3 face(0);
+            face[c] = -0.5;
+            component.index_to_world = glm::translate(component.index_to_world, face);
+        }
+    }
+    if (report) *report = mended;
+    return velocity;
+}
+
 VdbInfo file_info(const std::filesystem::path& path) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
@@ -174,6 +215,11 @@ SparseVolume read_vdb(const std::filesystem::path& path, const std::string& want
 ColorVolume read_color_vdb(const std::filesystem::path& path, std::span<const std::string> grids, const ValueMap& map,
                            float most, VdbReadReport* report) {
     return within_memory(path, [&] { return read_color(path, grids, map, most, report); });
+}
+
+VelocityVolume read_velocity_vdb(const std::filesystem::path& path, std::span<const std::string> grids,
+                                 const ValueMap& map, VdbReadReport* report) {
+    return within_memory(path, [&] { return read_velocity(path, grids, map, report); });
 }
 
 VdbInfo vdb_info(const std::filesystem::path& path) {

@@ -120,6 +120,15 @@ struct ColorVolume {
 ColorVolume read_color_vdb(const std::filesystem::path& file, std::span<const std::string> grids, const ValueMap& map,
                            float most, VdbReadReport* report);
 
+// A velocity, in the file's lengths and whatever its unit of time is.
+struct VelocityVolume {
+    std::array<SparseVolume, 3> components; // of either sign; where the grid is staggered, each on voxels of its own
+    std::vector<SparseVolume> known;        // 1 where there is one: of all components, or of each
+};
+// `grids` as of a color; one of numbers alone is refused. What is not finite is set to 0 and counted.
+VelocityVolume read_velocity_vdb(const std::filesystem::path& file, std::span<const std::string> grids,
+                                 const ValueMap& map, VdbReadReport* report);
+
 // Metadata of the file without its voxels (optics and frame written by a bake).
 std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);
 

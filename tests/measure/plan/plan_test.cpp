@@ -64,6 +64,21 @@ TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
     EXPECT_EQ(without_needless(terms, Settings{}).terms.light, LightTransmittance::off);
 }
 
+TEST(Terms, ShadowsCountAtEveryMomentOfAnOpenShutter) {
+    Stage stage = stage_of({homogeneous_medium(0.1f, room)}, {spot_light({0, 3, 0}, {0, -1, 0}, 50, 0.4f, 0.5f)},
+                           {box_of({-0.5f, 1, -0.5f}, {0.5f, 1.2f, 0.5f})});
+    View view = small_view();
+    const double still = term_named(terms_of(view, stage.snapshot, Settings{}, 0.05), "shadows").error;
+    EXPECT_GT(still, 0.1);
+    auto shutter = std::make_shared<OpenShutter>();
+    shutter->cameras = {view.camera, view.camera}, view.shutter = shutter;
+    const std::vector<Snapshot> moments{stage.snapshot, stage.snapshot};
+    stage.snapshot.moments = std::make_shared<const std::vector<Snapshot>>(moments);
+    const Term term = term_named(terms_of(view, stage.snapshot, Settings{}, 0.05), "shadows");
+    EXPECT_NEAR(term.error, still, 0.5 * still);
+    EXPECT_TRUE(term.needed);
+}
+
 TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
     Settings all;
     all.fluence.orders = all_orders;
@@ -113,6 +128,21 @@ TEST(Terms, ErrorsAreThoseOfClosedForms) {
     const double seen = phase_value_of<double>(phase, glm::dot(glm::normalize(vec3(1, 0, -1)), vec3(0, 0, 1)));
     const double expected = std::abs(1 / (4 * std::numbers::pi * seen) - 1);
     EXPECT_NEAR(term_named(terms, "phase function").error, expected, 2e-3 * expected);
+}
+
+TEST(Plan, NothingGetsThereByMoreSamplesThanThereMayBe) {
+    const Snapshot snapshot =
+        snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
+    const Plan plan = plan_of(snapshot, 1e-5);
+    for (const Standing& standing : plan.standings)
+        if (standing.best && standing.best->gets_there()) {
+            EXPECT_LE(standing.best->samples, max_target_samples) << standing.mode->name;
+        }
+    const auto path = std::ranges::find(plan.standings, std::string_view("path"),
+                                        [](const Standing& standing) { return standing.mode->name; });
+    ASSERT_NE(path, plan.standings.end());
+    ASSERT_TRUE(path->best);
+    EXPECT_FALSE(path->best->gets_there());
 }
 
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {

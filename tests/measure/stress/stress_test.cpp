@@ -49,7 +49,7 @@ std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
 INSTANTIATE_TEST_SUITE_P(Cases, Stability, testing::ValuesIn(case_names()), test_name);
 
 TEST(StressCases, AreManyAndWellFormed) {
-    EXPECT_GE(stress_cases().size(), 60u);
+    EXPECT_GE(stress_cases().size(), 180u);
     std::set<std::string_view> ids;
     for (const StressCase& stress : stress_cases()) {
         EXPECT_TRUE(ids.insert(stress.id).second) << stress.id;

@@ -263,11 +263,47 @@ TEST(UsualMoments, FollowTheMotionOnThePicture) {
     put(moving, true);
     const Shutter shutter = moving.scene.cameras[0].shutter;
     // 0.4 m are a fifth of the picture.
-    for (const auto& [side, count] : {std::pair{10, 4}, {40, 8}, {100, 16}, {1000, max_usual_moments}}) {
+    for (const auto& [side, count] : {std::pair{10, 4}, {40, 16}, {100, 32}, {400, 128}, {4000, max_usual_moments}}) {
         EXPECT_NEAR(motion_on_picture(moving.scene, 0, ivec2(side), 0, shutter), 0.2f * static_cast<float>(side),
                     0.01f * static_cast<float>(side));
         EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(side), 0, shutter), count) << side;
     }
+}
+
+// Ripple of a comb of thin lines so many pixels apart, seen through the filter: RMS by the mean.
+double ripple(PixelFilter filter, float radius, double apart) {
+    double sum = 0, squares = 0;
+    constexpr int places = 500;
+    for (int i = 0; i < places; ++i) {
+        double light = 0;
+        for (int line = -20; line <= 20; ++line) {
+            const double away = (i / double{places} + line) * apart / double{radius};
+            if (std::abs(away) < 1) light += double{filter_density(filter, {static_cast<float>(away), 0.0f})};
+        }
+        sum += light, squares += light * light;
+    }
+    const double mean = sum / places;
+    return std::sqrt(std::max(squares / places - mean * mean, 0.0)) / mean;
+}
+
+TEST(UsualMoments, ThinLinesShowAsOne) {
+    EXPECT_LT(ripple(PixelFilter::blackman_harris, 1, 0.75), 0.07) << "the usual distance";
+    EXPECT_GT(ripple(PixelFilter::blackman_harris, 1, 1.5), 0.5);
+}
+
+TEST(UsualMoments, MemoryBoundsThem) {
+    Moving moving;
+    put(moving, false);
+    const Shutter shutter = moving.scene.cameras[0].shutter;
+    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), max_usual_moments);
+    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter, true), max_costly_moments);
+    moving.scene.lights.resize(1);
+    MediumSource fog;
+    fog.kind = MediumKind::vdb;
+    moving.scene.media.push_back(fog);
+    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), 128);
+    moving.scene.lights.resize(9);
+    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), max_costly_moments);
 }
 
 TEST(UsualMoments, NothingThatMovesNeedsOne) {

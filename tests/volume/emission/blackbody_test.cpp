@@ -75,9 +75,23 @@ TEST(Blackbody, CyclesIsStefanAndBoltzmannTimesAColorOfLuminanceOne) {
     EXPECT_NEAR(hot.x, 0.8262954810, 0.002);
     EXPECT_NEAR(hot.y, 0.9945080502, 0.002);
     EXPECT_NEAR(hot.z, 1.5663077103, 0.004);
-    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 1500)), power * std::pow(1500.0, 4), 1e-4);
-    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 1500, 0.5)),
-                power * (0.5 + 0.5 * std::pow(1500.0, 4)), 1e-4);
+    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 2500)), power * std::pow(2500.0, 4), 1e-4);
+    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 2500, 0.5)),
+                power * (0.5 + 0.5 * std::pow(2500.0, 4)), 1e-4);
+}
+
+// What Blender 5.0.1's Blackbody node shows: below some 1900 K it cuts the blue off, and keeps red and green.
+TEST(Blackbody, CyclesCutsOffWhatIsBelowZero) {
+    const double power = 5.670373e-8 * 1e-6 * std::numbers::inv_pi;
+    const std::pair<double, dvec3> node[] = {{1200, {3.96553278, 0.22789729, 0}},
+                                             {1600, {3.08095288, 0.48727179, 0}},
+                                             {1800, {2.7711153, 0.57614315, 0}},
+                                             {2200, {2.31363511, 0.70361412, 0.06542045}},
+                                             {4000, {1.41411614, 0.92364192, 0.53367424}}};
+    for (const auto& [kelvin, expected] : node) {
+        const dvec3 found = blackbody_color(BlackbodyKind::cycles, kelvin) / (power * std::pow(kelvin, 4));
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 2e-3) << kelvin;
+    }
 }
 
 // Both are the same spectrum: what is between them is its maximum, 683 lm/W and pbrt's ∫ ȳ = 106.856895 nm.

@@ -1,0 +1,73 @@
+// Surfaces that glow: what fog scatters of their light.
+#include "measure/stress/authored.h"
+#include "modes/froxel/limitations.h"
+#include "modes/shared_limitations.h"
+#include "scene/light.h"
+#include "scene/mesh.h"
+#include "volume/bricks/sparse_volume.h"
+#include "volume/medium.h"
+#include "volume/phase.h"
+
+namespace tyndall {
+namespace {
+const std::vector<Excuse> excuses{{&limitation::emission_lights_no_fog}};
+const Camera beside = camera_from({0.5f, 0.4f, 3.5f}, vec3(0));
+
+// The first material glows, the second is black.
+StressScene glowing(std::vector<Mesh> meshes, Camera camera = beside, Medium haze = thin_haze()) {
+    return authored({std::move(haze)}, {}, camera, std::move(meshes),
+                    {lambert(vec3(0), vec3(5, 3, 1)), lambert(vec3(0))});
+}
+
+Mesh plate(float width, float height) {
+    return quad({-0.5f * width, -0.5f * height, 0}, {width, 0, 0}, {0, height, 0}, 0);
+}
+
+StressScene of_side(double side) { return glowing({plate(static_cast<float>(side), static_cast<float>(side))}); }
+
+// Of one area.
+StressScene of_length(double length) {
+    return glowing({plate(static_cast<float>(length), 0.04f / static_cast<float>(length))});
+}
+
+StressScene closed_box(double side) {
+    const vec3 half(0.5f * static_cast<float>(side));
+    return glowing({box_of(-half, half, 0)});
+}
+
+StressScene in_fog(double extinction) {
+    return glowing({plate(0.5f, 0.5f)}, beside, thin_haze(static_cast<float>(extinction)));
+}
+
+// Bars before it that leave half of the view.
+StressScene behind_grille(double bar) {
+    std::vector<Mesh> meshes{plate(1, 1)};
+    const float width = static_cast<float>(bar);
+    for (float x = -1; x < 1; x += 2 * width) meshes.push_back(box_of({x, -1, 0.4f}, {x + width, 1, 0.42f}, 1));
+    return glowing(std::move(meshes));
+}
+
+StressScene eye_before(double distance) {
+    return glowing({plate(1, 1)}, camera_from({0.1f, 0.1f, static_cast<float>(distance)}, {1.5f, 0.3f, 1.5f}));
+}
+}
+
+std::vector<StressCase> stress_glow() {
+    constexpr std::string_view group = "glowing surfaces";
+    const StressMeasure usual = usual_measure();
+    return {
+        StressCase("small-glow", group, "a glowing plate shrinks below a pixel", "side", "m", {1, 0.2, 0.02},
+                   Claim::physical, excuses, of_side, usual),
+        StressCase("long-glow", group, "it gets long and thin", "length", "m", {0.2, 1, 5}, Claim::physical, excuses,
+                   of_length, usual),
+        StressCase("closed-glow", group, "a box that glows all around", "side", "m", {0.1, 0.5, 1.5}, Claim::physical,
+                   excuses, closed_box, usual),
+        StressCase("glow-in-fog", group, "the fog around it gets thick", "extinction", "1/m", {0.02, 0.2, 2},
+                   Claim::physical, excuses, in_fog, usual),
+        StressCase("grille", group, "it shines through bars that get fine", "bar", "m", {0.4, 0.1, 0.03},
+                   Claim::physical, excuses, behind_grille, usual),
+        StressCase("eye-at-glow", group, "the eye comes near it", "distance", "m", {2, 0.5, 0.02}, Claim::physical,
+                   excuses, eye_before, usual),
+    };
+}
+}

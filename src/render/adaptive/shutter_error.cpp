@@ -1,0 +1,72 @@
+#include "render/adaptive/shutter_error.h"
+
+#include "base/clock.h"
+#include "trace/snapshot.h"
+#include "trace/transmittance/light_depth.h"
+#include "trace/view.h"
+
+#include <bit>
+
+namespace tyndall {
+namespace {
+constexpr uint32_t moments_salt = 0x5b17u; // tiles of their own
+
+// A mode as it is set, and what it showed of each moment so far.
+struct Moments {
+    const View& view;
+    const Snapshot& snapshot;
+    std::vector<Look> looks;
+};
+
+Moments looks_at(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                 const Prepared& prepared) {
+    Moments moments{view, snapshot, {}};
+    for (size_t k = 0; k < snapshot.moments->size(); ++k) {
+        const std::shared_ptr<const Prepared> borrowed(std::shared_ptr<void>(), &prepared.moments[k]);
+        moments.looks.push_back({mode, settings, borrowed, &(*snapshot.moments)[k]});
+    }
+    return moments;
+}
+
+// Follows the tiles not yet seen.
+void follow(const Pilot& pilot, size_t moment, Look& look, const View& view) {
+    Pilot still = pilot;
+    still.view.camera = view.shutter->cameras[moment], still.view.shutter = nullptr;
+    measure(still, look, steady_seconds);
+}
+
+SquaredError compare(const Pilot& pilot, Moments& moments) {
+    const size_t count = moments.looks.size(), values = pilot.tiles.size() * pilot_values;
+    std::vector<vec3> mean(values, vec3(0)), difference(values, vec3(0));
+    float sum_of_signs = 0;
+    for (size_t k = 0; k < count; ++k) {
+        follow(pilot, k, moments.looks[k], moments.view);
+        const float share = 1 / static_cast<float>(count), sign = std::popcount(k) % 2 ? -1.0f : 1.0f;
+        sum_of_signs += sign;
+        for (size_t i = 0; i < values; ++i) {
+            mean[i] += share * moments.looks[k].values[i];
+            difference[i] += share * sign * moments.looks[k].values[i];
+        }
+    }
+    for (size_t i = 0; i < values; ++i)
+        difference[i] += mean[i] * (1 - sum_of_signs / static_cast<float>(count)); // becomes the other blur
+    return error_of(pilot, mean, difference, of_integrator);
+}
+}
+
+SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                           const Prepared& prepared, const TileChances& chances, double error, bool once,
+                           const FrameOptions& options) {
+    constexpr double small = 0.15;     // beside the error asked for: it takes a hundredth of its square
+    constexpr size_t few_moments = 32; // more of them leave little, and every tile is followed through all
+    Pilot pilot = make_pilot(mode, view, snapshot, nullptr, chances, moments_salt, options);
+    Moments moments = looks_at(mode, view, snapshot, settings, prepared);
+    while (true) {
+        const SquaredError found = compare(pilot, moments);
+        const double enough = std::max(2 * found.value, small * small * error * error);
+        if (once || moments.looks.size() > few_moments || found.bound <= enough || !pilot.can_grow(found.by_noise))
+            return found;
+        grow(pilot, found.by_noise);
+    }
+}
+}

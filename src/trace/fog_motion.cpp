@@ -1,0 +1,119 @@
+#include "trace/fog_motion.h"
+
+#include "base/error.h"
+#include "base/io/cache_folder.h"
+#include "base/io/file.h"
+#include "base/text.h"
+#include "scene/scene.h"
+#include "trace/fog_grids.h"
+#include "volume/bricks/bricks.h"
+#include "volume/motion/moved_fog.h"
+
+#include <set>
+
+namespace tyndall {
+namespace {
+// Frames from the moment's own to its time; times of moments are rounded.
+double frames_after(const Scene& scene, const Moment& moment) {
+    constexpr double rounding = 1e-9;
+    const double frames = moment.grown.value_or(moment.seconds) * scene.frame_rate - moment.frame;
+    return std::abs(frames) < rounding ? 0 : frames;
+}
+
+std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int frame, MissingFrame missing,
+                                                const std::shared_ptr<const FileVelocity>& before, Snapshot& snapshot) {
+    const auto file = sequence_file(source.sequence, frame, missing);
+    if (!file) return nullptr;
+    auto velocity = std::make_shared<FileVelocity>();
+    const std::string grids = joined(source.grids, "\n") + source.map.text();
+    velocity->key = file_key(*file) + grids;
+    if (before && before->key == velocity->key) return before;
+    if (CacheFolder* files = snapshot.files.get())
+        velocity->content = "velocity " + file_hash(*file, *files->inputs) + " " + grids;
+    VdbReadReport report;
+    velocity->field = make_velocity_field(read_velocity_vdb(*file, source.grids, source.map, &report));
+    if (const std::string note = report.summary(); !note.empty())
+        snapshot.notes.push_back(file->filename().string() + ": " + note);
+    return velocity;
+}
+
+// The frame whose files are moved: the nearest, but where that has none of its own the files of `frame` go on.
+int nearest_frame(const MediumSource& source, int frame, double after, MissingFrame missing) {
+    const auto steps = static_cast<int>(after > 0 ? std::ceil(after - 0.5) : std::floor(after + 0.5));
+    if (steps == 0) return frame;
+    const auto there = sequence_file(source.sequence, frame + steps, missing);
+    return there && there != sequence_file(source.sequence, frame, missing) ? frame + steps : frame;
+}
+}
+
+std::string file_key(const std::filesystem::path& file) {
+    const uint64_t size = check_readable(file);
+    const auto changed = std::filesystem::last_write_time(file).time_since_epoch().count();
+    return "file " + file.string() + " " + std::to_string(size) + " " + std::to_string(changed) + " ";
+}
+
+bool moves(const MediumSource& source) { return source.velocity || (source.blends && !source.sequence.files.empty()); }
+
+namespace {
+std::string time_text(const SequenceTime& time) { return formatted(" %a %a ", double{time.share}, time.moved); }
+}
+
+std::string SequenceTime::key() const { return time_text(*this) + (velocity ? velocity->key : ""); }
+std::string SequenceTime::content() const { return time_text(*this) + (velocity ? velocity->content : ""); }
+
+SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const Moment& moment, MissingFrame missing,
+                           const FogFrames* before, Snapshot& snapshot) {
+    SequenceTime time;
+    time.frame = moment.frame;
+    const double after = moves(source) ? frames_after(scene, moment) : 0;
+    if (after == 0) return time;
+    if (source.blends) {
+        const double whole = std::floor(after);
+        time.frame += static_cast<int>(whole), time.share = static_cast<float>(after - whole);
+        return time;
+    }
+    time.frame = nearest_frame(source, moment.frame, after, missing);
+    const double frames = after - (time.frame - moment.frame), scale = double{source.velocity->scale};
+    time.moved = scale * (source.velocity->per_frame ? frames : frames / scene.frame_rate);
+    const auto velocity =
+        velocity_of(source.velocity->grid, time.frame, missing, before ? before->velocity : nullptr, snapshot);
+    if (velocity && velocity->field.fastest > 0 && time.moved != 0) time.velocity = velocity;
+    return time;
+}
+
+SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
+                       const std::string& what) {
+    if (!time.velocity) return blended_fog(here, next, time.share, what);
+    return here.bricks ? moved_fog(here, time.velocity->field, time.moved, what) : SparseVolume();
+}
+
+namespace {
+// The most voxels that velocities move fog by in their unit of time.
+double voxels_per_time(const FogSource& fog) {
+    const FogFrames* frames = fog.grids ? fog.grids->frames.get() : nullptr;
+    if (!frames || !frames->velocity || !fog.bricks) return 0;
+    double voxel = infinity;
+    for (int axis = 0; axis < 3; ++axis) voxel = std::min(voxel, glm::length(dvec3(fog.index_to_world[axis])));
+    return double{frames->velocity->field.fastest} / voxel;
+}
+}
+
+double voxels_per_second(const Scene& scene, const MediumSource& source, const FogSource& fog) {
+    if (!source.velocity) return 0;
+    const double speed = voxels_per_time(fog) * std::abs(double{source.velocity->scale});
+    return source.velocity->per_frame ? speed * scene.frame_rate : speed;
+}
+
+FogTravel fog_travel(const Snapshot& snapshot, size_t medium) {
+    FogTravel travel;
+    std::set<const BrickPool*> places;
+    for (const Snapshot& moment : *snapshot.moments) {
+        const FogSource& fog = moment.fog_sources[medium];
+        const double speed = voxels_per_time(fog);
+        if (speed > 0) travel.voxels = std::max(travel.voxels, speed * std::abs(fog.grids->frames->moved));
+        places.insert(fog.bricks.get());
+    }
+    travel.places = static_cast<int>(places.size());
+    return travel;
+}
+}

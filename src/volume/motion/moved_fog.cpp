@@ -1,0 +1,219 @@
+#include "volume/motion/moved_fog.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "volume/motion/cell_grid.h"
+#include "volume/motion/velocity_field.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace tyndall {
+namespace {
+constexpr double max_voxels = 4096; // that fog may be moved by
+constexpr int iterations = 4;       // of the way back
+
+ivec3 voxel_of(size_t v) { return {static_cast<int>(v >> 6), static_cast<int>(v >> 3 & 7), static_cast<int>(v & 7)}; }
+
+// The same bricks with index coordinates for places.
+BrickPool in_index_space(const BrickPool& pool, const dmat4& placed = dmat4(1)) {
+    BrickPool result = pool;
+    place(result, placed);
+    return result;
+}
+
+struct VelocityRange {
+    vec3 low{0}, high{0}, sum{0};
+    int known = 0;
+
+    vec3 mean() const { return known > 0 ? sum / static_cast<float>(known) : vec3(0); }
+};
+
+// Over all corners of a brick's voxels.
+VelocityRange range_in(const LocalVelocity& velocity, ivec3 cell) {
+    VelocityRange range;
+    for_each_cell(cell * 8, cell * 8 + 8, [&](ivec3 voxel) {
+        vec3 v;
+        if (!velocity.at(vec3(voxel), v)) return;
+        range.low = range.known > 0 ? glm::min(range.low, v) : v,
+        range.high = range.known > 0 ? glm::max(range.high, v) : v;
+        range.sum += v, ++range.known;
+    });
+    return range;
+}
+
+// What gets to a cell: how much of it there is, and its mean velocity times that.
+struct Arrivals {
+    vec3 velocity{0};
+    float count = 0;
+};
+
+struct MovedCells {
+    CellGrid grid;
+    std::vector<Arrivals> arrivals;
+    std::vector<ivec3> cells; // that anything gets to
+};
+
+// What takes longer to note than to move is no motion.
+void check_reach(const std::vector<Box>& boxes, const std::string& what) {
+    constexpr double max_cells = 1 << 28;
+    double cells = 0;
+    for (const Box& box : boxes) {
+        const dvec3 size = dvec3(box.size()) / 8.0 + 1.0;
+        cells += size.x * size.y * size.z;
+    }
+    if (cells > max_cells)
+        refuse(what, "its velocities scatter it over too many voxels while the shutter is open: see velocity_unit, "
+                     "velocity_scale, and clamp of the grid");
+}
+
+MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, float time, const std::string& what) {
+    const std::vector<ivec3> from = filled_cells(fog);
+    std::vector<VelocityRange> ranges(from.size());
+    parallel_ranges(static_cast<int64_t>(from.size()), 4, [&](int64_t begin, int64_t end) {
+        for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
+            ranges[i] = range_in(velocity, from[i]);
+    });
+
+    // Where each brick gets to: from its first voxel to before the first of the next.
+    std::vector<Box> boxes(from.size());
+    Box all;
+    for (size_t i = 0; i < from.size(); ++i) {
+        const vec3 corner(from[i] * 8), a = ranges[i].low * time, b = ranges[i].high * time;
+        all.grow(boxes[i] = {corner + glm::min(a, b), corner + 7.999f + glm::max(a, b)});
+    }
+    MovedCells moved;
+    moved.grid = cells_around(dvec3(all.low), dvec3(all.high), what);
+    check_reach(boxes, what);
+    moved.arrivals.resize(moved.grid.count());
+    for (size_t i = 0; i < from.size(); ++i)
+        for_each_cell(ivec3(glm::floor(boxes[i].low / 8.0f)), ivec3(glm::floor(boxes[i].high / 8.0f)), [&](ivec3 cell) {
+            Arrivals& arrivals = moved.arrivals[moved.grid.at(cell)];
+            if (arrivals.count == 0) moved.cells.push_back(cell);
+            arrivals.velocity += ranges[i].mean(), arrivals.count += 1;
+        });
+    return moved;
+}
+
+// Where what is at x now was.
+vec3 way_back(const LocalVelocity& velocity, vec3 x, vec3 usual, float time) {
+    vec3 v;
+    bool known = velocity.at(x, v);
+    if (!known) v = usual;
+    vec3 y = x - time * v;
+    for (int i = 0; i < iterations && velocity.at(y, v); ++i) known = true, y = x - time * v;
+    return known ? y : x;
+}
+
+void set_box(SparseVolume& volume, const CellGrid& grid) {
+    if (volume.leaves.empty() && volume.tiles.empty()) return;
+    volume.active_low = grid.first * 8, volume.active_high = (grid.first + grid.size) * 8 - 1;
+}
+}
+
+SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& field, double time, const std::string& what) {
+    SparseVolume volume;
+    volume.name = what, volume.index_to_world = fog.index_to_world;
+    const vec3 sizes = fog.bricks->voxel_size;
+    const double voxels = std::abs(time) * double{field.fastest} / double{std::min({sizes.x, sizes.y, sizes.z})};
+    if (!(voxels <= max_voxels))
+        refuse(what,
+               formatted("its velocity moves it by up to %.3g voxels while the shutter is open: see velocity_unit "
+                         "and velocity_scale",
+                         voxels));
+
+    const LocalVelocity velocity(field, fog.index_to_world);
+    const BrickPool bricks = in_index_space(*fog.bricks);
+    const auto t = static_cast<float>(time);
+    const MovedCells moved = moved_cells(bricks, velocity, t, what);
+    volume.leaves = filled_leaves(moved.cells, what, [&](ivec3 cell, Leaf& leaf) {
+        const Arrivals& arrivals = moved.arrivals[moved.grid.at(cell)];
+        const vec3 usual = arrivals.velocity / arrivals.count;
+        for (size_t v = 0; v < 512; ++v)
+            leaf.values[v] = sample_density(bricks, way_back(velocity, vec3(leaf.origin + voxel_of(v)), usual, t));
+    });
+    set_box(volume, moved.grid);
+    return volume;
+}
+
+namespace {
+// One of two grids of fog, on the voxels of the result.
+struct BlendPart {
+    float weight = 0;
+    BrickPool bricks;  // in index coordinates of the result
+    bool same = false; // on the same voxels
+    std::vector<ivec3> cells;
+
+    // The one value that it has all over a cell, if it is known to.
+    std::optional<float> even(ivec3 cell) const {
+        if (bricks.empty()) return 0.0f;
+        if (!same) return {};
+        const ivec3 at = cell - bricks.low / 8;
+        for (int axis = 0; axis < 3; ++axis)
+            if (at[axis] < 0 || at[axis] >= bricks.size[axis]) return 0.0f;
+        const int32_t id = bricks.index[size_t((at.x * bricks.size.y + at.y) * bricks.size.z + at.z)];
+        if (id > 0) return {};
+        return id == 0 ? 0.0f : bricks.constants[static_cast<size_t>(-id - 1)];
+    }
+};
+
+// The cells of the result that a cell of other voxels reaches into.
+void append_cells(const mat4& to_result, ivec3 cell, std::vector<ivec3>& cells) {
+    const Box box = transform(to_result, Box{vec3(cell * 8), vec3(cell * 8 + 8)});
+    for_each_cell(ivec3(glm::floor(box.low / 8.0f)), ivec3(glm::floor(box.high / 8.0f)),
+                  [&](ivec3 reached) { cells.push_back(reached); });
+}
+
+BlendPart part_of(const PlacedBricks& fog, float weight, const dmat4& index_to_world) {
+    BlendPart part;
+    part.weight = weight;
+    if (!fog.bricks) return part;
+    const dmat4 place = glm::inverse(index_to_world) * fog.index_to_world;
+    part.same = fog.index_to_world == index_to_world;
+    part.bricks = part.same ? in_index_space(*fog.bricks) : in_index_space(*fog.bricks, place);
+    for (const ivec3 cell : filled_cells(*fog.bricks))
+        part.same ? part.cells.push_back(cell) : append_cells(mat4(place), cell, part.cells);
+    return part;
+}
+
+double voxel_volume(const PlacedBricks& fog) { return std::abs(glm::determinant(glm::dmat3(fog.index_to_world))); }
+}
+
+SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float share, const std::string& what) {
+    SparseVolume volume;
+    const bool on_b = !a.bricks || (b.bricks && voxel_volume(b) < (1 - 1e-9) * voxel_volume(a));
+    volume.name = what, volume.index_to_world = on_b ? b.index_to_world : a.index_to_world;
+    const BlendPart parts[] = {part_of(a, 1 - share, volume.index_to_world), part_of(b, share, volume.index_to_world)};
+
+    // Each cell once.
+    dvec3 low(infinity), high(-infinity);
+    for (const BlendPart& part : parts)
+        for (const ivec3 cell : part.cells)
+            low = glm::min(low, dvec3(cell * 8)), high = glm::max(high, dvec3(cell * 8 + 7));
+    if (!(low.x <= high.x)) return volume;
+    const CellGrid grid = cells_around(low, high, what);
+    std::vector<uint8_t> taken(grid.count());
+    std::vector<ivec3> cells;
+    for (const BlendPart& part : parts)
+        for (const ivec3 cell : part.cells) {
+            if (std::exchange(taken[grid.at(cell)], uint8_t{1})) continue;
+            const auto first = parts[0].even(cell), second = parts[1].even(cell);
+            if (!first || !second)
+                cells.push_back(cell);
+            else if (const float value = (1 - share) * *first + share * *second; value > 0)
+                volume.tiles.push_back({cell * 8, cell * 8 + 7, value});
+        }
+
+    volume.leaves = filled_leaves(cells, what, [&](ivec3, Leaf& leaf) {
+        for (size_t v = 0; v < 512; ++v) {
+            const vec3 at(leaf.origin + voxel_of(v));
+            leaf.values[v] = parts[0].weight * sample_density(parts[0].bricks, at) +
+                             parts[1].weight * sample_density(parts[1].bricks, at);
+        }
+    });
+    set_box(volume, grid);
+    return volume;
+}
+}

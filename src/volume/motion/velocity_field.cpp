@@ -1,0 +1,93 @@
+#include "volume/motion/velocity_field.h"
+
+#include "base/parallel.h"
+#include "volume/bricks/bricks.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tyndall {
+namespace {
+constexpr float min_share = 1e-3f; // of a sample's weight, on voxels that are known
+
+// Least and greatest known value: `volume` and `known` have the same leaves and tiles.
+Interval<float> range_of(const SparseVolume& volume, const SparseVolume& known) {
+    Interval<float> range{infinity, -infinity};
+    const auto add = [&](float value) { range = {std::min(range.low, value), std::max(range.high, value)}; };
+    for (size_t n = 0; n < volume.leaves.size(); ++n)
+        for (size_t v = 0; v < 512; ++v)
+            if (known.leaves[n].values[v] > 0) add(volume.leaves[n].values[v]);
+    for (const Tile& tile : volume.tiles) add(tile.value);
+    return range;
+}
+
+// Values to 0..1: halves then hold them to a 4096th of the range, or better.
+void normalize(const SparseVolume& known, float low, float range, SparseVolume& volume) {
+    const auto normal = [&](float value) { return range > 0 ? (value - low) / range : 0.0f; };
+    parallel_ranges(static_cast<int64_t>(volume.leaves.size()), 64, [&](int64_t begin, int64_t end) {
+        for (auto n = static_cast<size_t>(begin); n < static_cast<size_t>(end); ++n)
+            for (size_t v = 0; v < 512; ++v) {
+                float& value = volume.leaves[n].values[v];
+                value = known.leaves[n].values[v] > 0 ? normal(value) : 0;
+            }
+    });
+    for (Tile& tile : volume.tiles) tile.value = normal(tile.value);
+}
+
+// The same bricks where another volume's index space is.
+std::shared_ptr<const BrickPool> placed(const BrickPool& pool, const dmat4& index_to_world) {
+    auto moved = std::make_shared<BrickPool>(pool);
+    place(*moved, index_to_world);
+    return moved;
+}
+}
+
+VelocityField make_velocity_field(VelocityVolume volume) {
+    VelocityField field;
+    if (std::ranges::any_of(volume.components, &SparseVolume::empty)) return field;
+    vec3 greatest(0);
+    std::shared_ptr<const BrickPool> known;
+    for (size_t c = 0; c < 3; ++c) {
+        SparseVolume& component = volume.components[c];
+        const SparseVolume& mask = volume.known[volume.known.size() == 3 ? c : 0];
+        const Interval<float> range = range_of(component, mask);
+        const auto axis = static_cast<glm::length_t>(c);
+        field.low[axis] = range.low, field.range[axis] = range.high - range.low;
+        greatest[axis] = std::max(std::abs(range.low), std::abs(range.high));
+        field.index_to_world[c] = component.index_to_world;
+        normalize(mask, range.low, range.high - range.low, component);
+        if (c == 0 || volume.known.size() == 3) known = make_bricks(mask);
+        field.components[c] = make_bricks(component), field.known[c] = known;
+    }
+    field.fastest = glm::length(greatest);
+    return field;
+}
+
+LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_world)
+    : low_(field.low), range_(field.range), to_index_(glm::inverse(glm::dmat3(index_to_world))) {
+    const dmat4 to_index = glm::inverse(index_to_world);
+    for (size_t c = 0; c < 3; ++c) {
+        const dmat4 place = to_index * field.index_to_world[c];
+        components_[c] = placed(*field.components[c], place);
+        const bool same =
+            c > 0 && field.known[c] == field.known[0] && field.index_to_world[c] == field.index_to_world[0];
+        known_[c] = same ? known_[0] : placed(*field.known[c], place);
+    }
+}
+
+bool LocalVelocity::at(vec3 point, vec3& velocity) const {
+    vec3 share;
+    for (glm::length_t c = 0; c < 3; ++c) {
+        const auto i = static_cast<size_t>(c);
+        share[c] = c > 0 && known_[i] == known_[0] ? share[0] : sample_density(*known_[i], point);
+        if (!(share[c] > min_share)) return false;
+    }
+    vec3 in_world;
+    for (glm::length_t c = 0; c < 3; ++c) {
+        const float part = range_[c] > 0 ? sample_density(*components_[static_cast<size_t>(c)], point) / share[c] : 0;
+        in_world[c] = low_[c] + range_[c] * part;
+    }
+    velocity = to_index_ * in_world;
+    return true;
+}
+}
