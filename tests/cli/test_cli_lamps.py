@@ -196,9 +196,9 @@ class Lamps(ProgramTest):
         path = self.write("scene.json", scene(frames="1-3", resolution=[8, 8], lights=[{**screen, "gobo": gobo}], media=[],
                                               background={"color": 0},
                                               camera={"position": [0, 0, 0], "target": [0, 0, -1], "vertical_fov": 20}))
-        self.succeed("render", path, "-o", self.path("f.#.exr"), "--samples", "1", "--float")
+        self.succeed("render", path, "-o", self.path("f.####.exr"), "--samples", "1", "--float")
         for frame, expected in ((1, 10), (2, 2), (3, 10)):
-            self.assertAlmostEqual(read_channels(self.path(f"f.{frame}.exr"))["R"][27], expected, delta=0.01)
+            self.assertAlmostEqual(read_channels(self.path(f"f.{frame:04}.exr"))["R"][27], expected, delta=0.01)
 
     def test_march_agrees_with_paths_at_a_screen(self):
         self.write("board.png", png((32, 32), lambda x, y: 255 if (x // 8 + y // 8) % 2 else 10))

@@ -1,5 +1,6 @@
 """Layers that add up to the picture in every mode, and what alpha covers."""
 import json
+import math
 import struct
 import unittest
 import zlib
@@ -197,6 +198,72 @@ class Background(LayersTest):
         refused = ["render", self.rich, "-o", self.path("out.exr"), "--background", "off", "--aov", "background"]
         self.refuse(2, ["--aov", "--background off"], *refused)
         self.refuse(2, ["--background", "of"], "render", self.rich, "-o", self.path("out.exr"), "--background", "of")
+
+
+class ColoredFog(LayersTest):
+    """The transmittance of each channel, where fog dims them differently."""
+    EXTINCTION = (0.2, 0.6, 1.2)
+
+    def colored(self, **changes):
+        return self.write("colored.json", lit_scene(
+            lights=LAMPS, media=[fog(extinction=list(self.EXTINCTION), emission=[0, 0, 0])], **changes))
+
+    def test_each_channel_is_dimmed_by_its_extinction(self):
+        for mode in ("march", "froxel"):
+            channels, _ = self.render(self.colored(), "a.exr", "--mode", mode, "--float", "--background", "off",
+                                      aov="transmittance", samples=1)
+            foggy = 0
+            for i, mean in enumerate(channels["transmittance.T"]):
+                own = [channels[f"transmittance.{c}"][i] for c in "RGB"]
+                self.assertAlmostEqual(sum(own) / 3, mean, delta=2e-6, msg=mode)
+                self.assertAlmostEqual(channels["A"][i], 1 - mean, delta=2e-6, msg=mode)
+                if mode != "march":  # froxels mix transmittances, not depths
+                    continue
+                metres = [-math.log(value) / extinction for value, extinction in zip(own, self.EXTINCTION)]
+                # One length for all channels; at the edges, where a pixel has several rays, means of exp(-length) are
+                # those of a shorter one the more the fog dims.
+                self.assertGreater(metres[0] - metres[1], -1e-4)
+                self.assertGreater(metres[1] - metres[2], -1e-4)
+                foggy += metres[2] > 1 and metres[0] - metres[2] < 1e-3
+            if mode == "march":
+                self.assertGreater(foggy, 20)
+
+    def test_every_frame_has_the_layer_and_grey_scenes_have_none(self):
+        white = {"keys": [[0, list(self.EXTINCTION)], [1, [0.5, 0.5, 0.5]]]}
+        path = self.write("keyed.json", lit_scene(lights=LAMPS, media=[fog(extinction=white)], frame_rate=1, frames="0-1"))
+        self.succeed("render", path, "-o", self.path("k.####.exr"), "--samples", "2", "--float", "-q")
+        for frame in (0, 1):
+            channels = read_channels(self.path(f"k.{frame:04}.exr"))
+            self.assertEqual(channels["transmittance.R"] == channels["transmittance.B"], frame == 1)
+        self.assertIn("transmittance.T", self.render(self.rich, "grey.exr", aov="transmittance")[0])
+        self.assertNotIn("transmittance.R", self.render(self.rich, "grey.exr", aov="transmittance")[0])
+        # What is there is used again.
+        made = self.path("k.0000.exr").stat().st_mtime_ns
+        self.succeed("render", path, "-o", self.path("k.####.exr"), "--samples", "2", "--float", "-q", "--resume")
+        self.assertEqual(self.path("k.0000.exr").stat().st_mtime_ns, made)
+
+    def test_compare_and_crop_know_it(self):
+        scene = self.colored(gltf="panes.gltf")
+        whole, _ = self.render(scene, "whole.exr", "--float", aov="transmittance," + PARTS)
+        crop, _ = self.render(scene, "crop.exr", "--float", "--crop", "8,4,20,13", aov="transmittance," + PARTS)
+        for name, values in crop.items():
+            self.assertEqual(values.tolist(), [whole[name][32 * y + x] for y in range(4, 13) for x in range(8, 20)], name)
+        self.succeed("compare", self.path("whole.exr"), self.path("whole.exr"))
+
+    def test_parts_make_the_bits_of_one_run(self):
+        scene = self.colored(gltf="panes.gltf")
+        for layers in ("transmittance", "transmittance," + PARTS):
+            self.succeed("plan", scene, "--save", self.path("plan.json"), "-q", "--samples", "4", "--groups", "2", "--float",
+                         "--aov", layers, "--mode", "march")
+            self.succeed("render", "--plan", self.path("plan.json"), "-o", self.path("one.exr"), "-q")
+            for part in (1, 2, 3):
+                self.succeed("render", "--plan", self.path("plan.json"), "-o", self.path("f.exr"), "--part", f"{part}/3", "-q")
+            self.succeed("merge", *sorted(self.directory.glob("f.part-*-of-3.exr")), "-o", self.path("merged.exr"), "-q")
+            one = read_channels(self.path("one.exr"))
+            self.assertEqual(read_channels(self.path("merged.exr")), one)
+            self.assertNotEqual(one["transmittance.R"], one["transmittance.B"])
+            for path in self.directory.glob("f.part-*"):
+                path.unlink()
 
 
 if __name__ == "__main__":

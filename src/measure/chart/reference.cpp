@@ -88,7 +88,7 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderReq
     const std::filesystem::path file = shot.directory / (name + ".exr");
     if (!shot.directory.empty()) {
         std::string why;
-        std::vector<std::string> channels = channel_names({}, exact_colors);
+        std::vector<std::string> channels = channel_names({}, false, exact_colors);
         if (const auto kept = finished_frame(file, {view.size, ivec2(0), view.size, channels, hash}, why))
             return {color_of(*kept), layer_of(*kept, "inscatter")};
     }

@@ -30,7 +30,8 @@ size_t max_nodes(const Mode& mode, const View& view, int asked) {
 // Of a part in memory while it is written; a whole frame takes no more than a part of one node.
 double bytes_of_part(const Mode& mode, const View& view, const Snapshot& snapshot, int parts) {
     const size_t light_parts = view.fog_parts ? snapshot.lights.size() + 3 : 0;
-    const size_t numbers = (fixed_sums + 3 * light_parts) * max_nodes(mode, view, parts) + 3;
+    const size_t channels = snapshot.scene && has_colored_fog(*snapshot.scene) ? 1 : 0;
+    const size_t numbers = (fixed_sums + 3 * (light_parts + channels)) * max_nodes(mode, view, parts) + 3;
     return 2.0 * sizeof(float) * static_cast<double>(numbers) * view.size.x * view.size.y;
 }
 

@@ -167,6 +167,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
         result.surface = scatter[i].surface, result.background = scatter[i].background;
         result.inscatter = scatter[i].radiance, result.held = scatter[i].held;
         result.transmittance = scatter[i].transmittance;
+        result.channels = scatter[i].transmittance * scatter[i].tint;
         result.validity = scatter[i].validity;
         result.steps = scatter[i].steps;
         s.path[i].through = scatter[i].transmittance * scatter[i].tint;

@@ -22,25 +22,26 @@ namespace tyndall {
 namespace {
 void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats) {
     const View& view = task.tracer.view;
-    const size_t part_count = task.parts.size(), count = tile.count;
+    const size_t part_count = task.parts.size(), of_fog = task.fog_parts, count = tile.count;
     const int sample_count = samples_of(view, tile.corner), batch_size = sample_count / batches_of(view, tile.corner);
     if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
     PixelSum sums[16];
     PixelSample samples[16];
     int64_t steps[16] = {};
-    std::vector<vec3> fog_parts(part_count * count), part_sums(part_count * count, vec3(0));
+    std::vector<vec3> fog_parts(of_fog * count), part_sums(part_count * count, vec3(0));
     for (int s = 0; s < sample_count; ++s) {
         trace_samples(task.tracer, {tile.pixels, count}, s, {samples, count}, fog_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(layers, tile.pixels[i])) continue;
             ++stats.camera_rays, steps[i] += samples[i].steps;
-            const std::span<const vec3> parts{fog_parts.data() + i * part_count, part_count};
+            const std::span<const vec3> parts{fog_parts.data() + i * of_fog, of_fog};
             if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
                 stats.drop(tile.pixels[i]);
                 continue;
             }
             sums[i].add(samples[i]);
-            for (size_t k = 0; k < part_count; ++k) part_sums[i * part_count + k] += parts[k];
+            for (size_t k = 0; k < of_fog; ++k) part_sums[i * part_count + k] += parts[k];
+            if (of_fog < part_count) part_sums[i * part_count + of_fog] += samples[i].weight * samples[i].channels;
         }
         if ((s + 1) % batch_size) continue;
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
@@ -95,7 +96,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     assert(view.pixel_samples > 0 && view.batches > 0 && view.pixel_samples % view.batches == 0);
     const double start = steady_seconds();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
-    if (view.fog_parts) task.parts = add_light_layers(light_layers(snapshot), task.layers);
+    find_parts(view, view.fog_parts ? light_layers(snapshot) : LightLayers{}, task);
     const double prepared = steady_seconds();
 
     Layers& layers = task.layers;
@@ -128,7 +129,7 @@ template<class T> void crop(Image<T>& image, ivec2 low, ivec2 size) {
 void crop(Layers& layers, ivec2 low, ivec2 high) {
     const ivec2 size = high - low;
     for (Image<vec3>* image : {&layers.color, &layers.inscatter, &layers.surface, &layers.background, &layers.ambient,
-                               &layers.emission, &layers.multiple})
+                               &layers.emission, &layers.multiple, &layers.channel_transmittance})
         crop(*image, low, size);
     for (Image<float>* image : {&layers.alpha, &layers.depth, &layers.transmittance, &layers.validity})
         crop(*image, low, size);

@@ -74,6 +74,16 @@ std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& la
     return result;
 }
 
+bool tells_channels(const Snapshot& snapshot) {
+    return is_chromatic(snapshot) || (snapshot.scene && has_colored_fog(*snapshot.scene));
+}
+
+void find_parts(const View& view, const LightLayers& lights, FrameTask& task) {
+    if (view.fog_parts) task.parts = add_light_layers(lights, task.layers);
+    task.fog_parts = task.parts.size();
+    if (!task.layers.channel_transmittance.empty()) task.parts.push_back(&task.layers.channel_transmittance);
+}
+
 bool contains(const Layers& layers, ivec2 pixel) {
     const ivec2 p = pixel - layers.low;
     return p.x >= 0 && p.y >= 0 && p.x < layers.size.x && p.y < layers.size.y;
@@ -88,6 +98,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
                     const FrameOptions& options) {
     // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
+    if (tells_channels(snapshot)) layers.channel_transmittance = Image<vec3>(layers.size);
     std::shared_ptr<const Prepared> prepared = options.prepared;
     if (!prepared)
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
@@ -95,7 +106,7 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
     FrameTracer tracer = frame_tracer(mode, view, snapshot, settings, *prepared);
     tracer.covered = view.background && view.covered && counts_held(snapshot), tracer.fog_seconds = fog_seconds.get();
     const double mode_seconds = options.prepared ? 0 : prepared->mode_seconds;
-    FrameTask task{prepared, fog_seconds, tracer, mode_seconds, std::move(layers), {}, {}, options.cancel};
+    FrameTask task{prepared, fog_seconds, tracer, mode_seconds, std::move(layers), {}, {}, 0, options.cancel};
     if (snapshot.files) {
         task.made_by = mode.name;
         for (const SettingRow& row : setting_rows()) task.made_by += " " + row.name + "=" + row.get(settings);

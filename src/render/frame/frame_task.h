@@ -13,8 +13,11 @@ struct FrameTask {
     FrameTracer tracer;
     double mode_seconds = 0; // its preparation
     Layers layers;
-    std::string made_by{};           // mode and settings, where the snapshot has files; else empty
-    std::vector<Image<vec3>*> parts; // of the layers: where the parts of fog light go; empty unless asked for
+    std::string made_by{}; // mode and settings, where the snapshot has files; else empty
+    // Of the layers: where the parts of fog light go, as many as asked for; then the channels' transmittance, where fog
+    // is coloured.
+    std::vector<Image<vec3>*> parts;
+    size_t fog_parts = 0; // of these
     const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -32,6 +35,12 @@ std::vector<int> layers_of_lights(const LightLayers& layers, const Snapshot& sna
 
 // Adds the layers, black. Where the parts of fog light go: for each light, then ambient, emission and multiple.
 std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers);
+
+// Whether the channels' transmittances are a layer of the frame.
+bool tells_channels(const Snapshot& snapshot);
+
+// Finds where the parts go, with layers made for them. `lights`: empty unless the view asks for them.
+void find_parts(const View& view, const LightLayers& lights, FrameTask& task);
 
 // The pixels of a tile that lie in the picture; those outside its crop too, since a mode may let neighbours share
 // steps.

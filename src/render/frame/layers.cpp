@@ -1,5 +1,7 @@
 #include "render/frame/layers.h"
 
+#include "scene/scene.h"
+
 #include <algorithm>
 
 namespace tyndall {
@@ -27,6 +29,7 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
     blend(layers.alpha, other.alpha, share);
     blend(layers.inscatter, other.inscatter, share);
     blend(layers.transmittance, other.transmittance, share);
+    blend(layers.channel_transmittance, other.channel_transmittance, share);
     blend(layers.validity, other.validity, share);
     blend(layers.work, other.work, share);
     blend(layers.half_a, other.half_a, share);
@@ -43,7 +46,16 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
 }
 }
 
+bool has_colored_fog(const Scene& scene) {
+    return std::ranges::any_of(scene.media, [](const MediumSource& m) { return m.channel_extinction.has_value(); });
+}
+
 void add_up(Layers& layers) {
+    for (size_t i = 0; i < layers.channel_transmittance.pixels.size(); ++i) {
+        vec3& channels = layers.channel_transmittance.pixels[i];
+        const float mean = mean_component(channels), all = layers.transmittance.pixels[i];
+        channels = mean > 0 ? channels * (all / mean) : vec3(all);
+    }
     for (size_t i = 0; i < layers.ambient.pixels.size(); ++i) {
         vec3 sum(0);
         for (const auto& [name, light] : layers.lights) sum += light.pixels[i];

@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace tyndall {
+struct Scene;
+
 // How far a picture may be from the mean of all pictures its mode makes.
 struct Noise {
     double error = 0; // root mean square of the standard errors over linear RGB, as a share of the picture's mean; for
@@ -29,6 +31,7 @@ struct Layers {
                                               // centre, metres; infinite = none
     Image<vec3> inscatter;                    // fog light alone, as far as BLEND surfaces in front let it through
     Image<float> transmittance;               // of the fog, eye to surface
+    Image<vec3> channel_transmittance;        // where fog of the scene is coloured: that of each channel
     Image<float> validity;                    // of the least valid stretch of a sample
     Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
     Image<float> variance_error, inscatter_variance_error; // squared standard errors of the variances' channel means
@@ -47,8 +50,11 @@ struct LightLayers {
     std::vector<int> of_light; // which of them each light goes into
 };
 
-// Makes fog light, and then colour, the float sums of the parts there are: surface + background + inscatter, and the
-// lights in their order + ambient + emission + multiple.
+// Whether fog of the scene dims the channels differently, at any time.
+bool has_colored_fog(const Scene& scene);
+
+// Makes the mean of the channels' transmittances that of all, and fog light, and then colour, the float sums of the
+// parts there are: surface + background + inscatter, and the lights in their order + ambient + emission + multiple.
 void add_up(Layers& layers);
 
 // How far the mode is from the truth whatever the number of samples, and what it was set to.

@@ -69,7 +69,7 @@ struct Merging {
     const FramePart& like;
     int sections = 0;
     MergedParts& merged;
-    std::vector<Image<vec3>*> lights; // of the merged layers
+    std::vector<Image<vec3>*> lights; // of the merged layers, and the transmittance of the channels
     bool alone = false;               // a pixel has one section only
     std::mutex counting{};            // held to change that and counts
 };
@@ -123,6 +123,10 @@ MergedParts merge_parts(const View& view, bool halves, const FramePart& like, si
     MergedParts merged{make_layers(of_all, halves), {}};
     Merging merging{like, groups * view.sections, merged, {}};
     if (view.fog_parts) merging.lights = add_light_layers(like.lights, merged.layers);
+    if (like.colored) {
+        merged.layers.channel_transmittance = Image<vec3>(merged.layers.size);
+        merging.lights.push_back(&merged.layers.channel_transmittance);
+    }
 
     const int step = rows_of_band(like, nodes);
     for (int first = 0; first < like.size.y; first += step) {

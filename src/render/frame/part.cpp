@@ -175,12 +175,13 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     const double start = steady_seconds();
     FrameTask task = make_task(mode, view, snapshot, settings, options);
     const LightLayers lights = view.fog_parts ? light_layers(snapshot) : LightLayers{};
-    if (view.fog_parts) task.parts = add_light_layers(lights, task.layers);
+    find_parts(view, lights, task);
     const double prepared = steady_seconds();
     FramePart part;
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;
     part.range = range, part.leaves = view.leaves;
     part.numbers = fixed_sums + 3 * task.parts.size(), part.lights = lights;
+    part.colored = task.parts.size() > task.fog_parts;
     part.covered = given.background && has_background(snapshot.background) && !has_mattes(snapshot);
     check_size(part);
     part = begun_part(std::move(part), std::exchange(checkpoints.last, {}));

@@ -42,7 +42,8 @@ PartRange part_range(int part, int parts, int first_section, int sections, int l
 std::vector<SumNode> nodes_of(const PartRange& range, int leaves);
 
 // Where the sums of a pixel's samples lie: colours as RGB, those of camera paths weighted by the pixel filter, samples
-// kept and samples taken; after them RGB of each part of the fog light.
+// kept and samples taken; after them RGB of each part of the fog light, and of the
+// transmittance where the channels differ.
 enum PixelSums : size_t {
     surface_sum = 0,
     background_sum = 3,
@@ -62,6 +63,7 @@ struct FramePart {
     int leaves = 1;       // of a section
     size_t numbers = 0;   // of a pixel and node
     bool covered = false; // whether the background is part of the image: then alpha is 1
+    bool colored = false; // whether the last colour is the transmittance of the channels
     LightLayers lights;   // where those are wanted
     std::vector<SumNode> nodes;
     std::vector<std::vector<float>> sums; // of each node, pixel by pixel

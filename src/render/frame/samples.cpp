@@ -55,7 +55,7 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
         PixelSample& result = samples[path.lane];
         result.inscatter += path.through * scatter[i].radiance;
         path.fog *= scatter[i].transmittance * scatter[i].tint;
-        result.transmittance = mean_component(path.fog);
+        result.transmittance = mean_component(path.fog), result.channels = path.fog;
         result.validity = std::min(result.validity, scatter[i].validity);
         result.steps += scatter[i].steps;
         for (size_t p = 0; p < part_count; ++p)

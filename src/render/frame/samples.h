@@ -14,6 +14,7 @@ struct PixelSample {
     vec3 surface{0}, background{0}, inscatter{0}; // what makes up its colour; times the weight
     float weight = 1;                             // of the sample in its pixel
     float alpha = 0, transmittance = 1, validity = 1;
+    vec3 channels{1};       // the transmittance of each channel
     float held = 0;         // share of the sample that mattes hold out
     float depth = infinity; // planar z of the first opaque surface
     float off_center = 0;   // squared distance of the ray from the pixel's centre, pixels

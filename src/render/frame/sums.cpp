@@ -13,7 +13,7 @@ void add_color(vec3 color, std::span<float> sums) {
 }
 
 // One that is not finite counts as taken only.
-void add_sample(const PixelSample& sample, std::span<const vec3> parts, std::span<float> sums) {
+void add_sample(const PixelSample& sample, std::span<const vec3> parts, bool channels, std::span<float> sums) {
     add_color(sample.surface, sums.subspan(surface_sum));
     add_color(sample.background, sums.subspan(background_sum));
     add_color(sample.inscatter, sums.subspan(inscatter_sum));
@@ -22,10 +22,11 @@ void add_sample(const PixelSample& sample, std::span<const vec3> parts, std::spa
         sums[validity_sum] += w * sample.validity;
     sums[kept_sum] += 1;
     for (size_t k = 0; k < parts.size(); ++k) add_color(parts[k], sums.subspan(fixed_sums + 3 * k));
+    if (channels) add_color(w * sample.channels, sums.subspan(fixed_sums + 3 * parts.size()));
 }
 
 std::vector<float> leaf_sums(TileSums& tile, int section, int leaf) {
-    const size_t count = tile.tile.count, numbers = tile.numbers(), part_count = tile.task.parts.size();
+    const size_t count = tile.tile.count, numbers = tile.numbers(), part_count = tile.task.fog_parts;
     std::vector<float> sums(count * numbers, 0.0f);
     std::vector<vec3> fog_parts(part_count * count);
     PixelSample samples[16];
@@ -43,7 +44,7 @@ std::vector<float> leaf_sums(TileSums& tile, int section, int leaf) {
                 tile.stats.drop(tile.tile.pixels[i]);
                 continue;
             }
-            add_sample(samples[i], parts, own);
+            add_sample(samples[i], parts, tile.task.parts.size() > part_count, own);
             if (samples[i].off_center < tile.off_center[i])
                 tile.off_center[i] = samples[i].off_center, tile.depth[i] = samples[i].depth;
         }

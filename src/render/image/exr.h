@@ -1,10 +1,11 @@
 // OpenEXR pictures as this program writes them. Encoded in memory, then written atomically.
 //
 // Channels: R G B A (premultiplied), Z, surface.R/G/B, background.R/G/B, inscatter.R/G/B, light_NAME.R/G/B (in the
-// order that tyndall:lights names), ambient.R/G/B, emission.R/G/B, multiple.R/G/B, transmittance.T, validity.T,
-// Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of the even and odd batches). Half floats, clamped
-// to ±65504 (tyndall:clamped counts them), or 32 bit on request; always 32 bit are Z, 1e10 where there is no surface,
-// Variance and the halves. Rec.709, ZIP, no date and no host: the same input gives the same bytes.
+// order that tyndall:lights names), ambient.R/G/B, emission.R/G/B, multiple.R/G/B, transmittance.T (with .R/G/B where
+// fog of the scene is coloured), validity.T, Variance.R/G/B (of the mean RGB), half_a.R/G/B, half_b.R/G/B (RGB of the
+// even and odd batches). Half floats, clamped to ±65504 (tyndall:clamped counts them), or 32 bit on request; always 32
+// bit are Z, 1e10 where there is no surface, Variance and the halves. Rec.709, ZIP, no date and no host: the same input
+// gives the same bytes.
 #pragma once
 #include "base/exr/exr_file.h"
 #include "render/frame/layers.h"
@@ -58,8 +59,9 @@ void write_exr_channels(const std::filesystem::path& file, const ExrWindow& wind
                         std::span<const ExrChannel> channels, const Provenance& provenance,
                         ExrPacking packing = ExrPacking::zip);
 
-// Names of the channels a picture gets, sorted: what write_exr will write for these lights.
-std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options);
+// Names of the channels a picture gets, sorted: what write_exr will write for these lights and fog.
+std::vector<std::string> channel_names(const std::vector<std::string>& lights, bool colored_fog,
+                                       const ExrOptions& options);
 
 // Throws Error (usage, unwritable, internal).
 void write_exr(const std::filesystem::path& file, const Layers& layers, const Provenance& provenance,

@@ -89,6 +89,8 @@ std::vector<ExrChannel> make_channels(const Layers& layers, const Image<float>& 
     for (const auto& [name, image] : colors)
         if (wants(options, name)) add_color(channels, std::string(name) + ".", *image, wide);
     if (wants(options, "transmittance")) add_value(channels, "transmittance.T", layers.transmittance, wide);
+    if (wants(options, "transmittance") && !layers.channel_transmittance.empty())
+        add_color(channels, "transmittance.", layers.channel_transmittance, wide);
     if (wants(options, "validity")) add_value(channels, "validity.T", layers.validity, wide);
     if (wants(options, "variance")) add_color(channels, "Variance.", layers.variance, true);
     if (wants(options, "halves")) {
@@ -176,8 +178,10 @@ void check_layer_names(const ExrOptions& options) {
             fail(ExitCode::usage, "--aov", unknown_name("layer", name, known));
 }
 
-std::vector<std::string> channel_names(const std::vector<std::string>& lights, const ExrOptions& options) {
+std::vector<std::string> channel_names(const std::vector<std::string>& lights, bool colored_fog,
+                                       const ExrOptions& options) {
     Layers layers;
+    if (colored_fog) layers.channel_transmittance = Image<vec3>(ivec2(1));
     for (const std::string& light : lights)
         if (std::ranges::find(layers.lights, light, [](const auto& l) { return l.first; }) == layers.lights.end())
             layers.lights.emplace_back(light, Image<vec3>());

@@ -41,6 +41,7 @@ void add_attributes(const FramePart& part, const Grouping& grouping, const std::
     attributes["tyndall:partRange"] = range_text(part.range);
     attributes["tyndall:partLeaves"] = std::to_string(part.leaves);
     attributes["tyndall:partCovered"] = part.covered ? "1" : "0";
+    if (part.colored) attributes["tyndall:partColored"] = "1";
     attributes["tyndall:planFile"] =
         absolute(grouping.plan_file).lexically_relative(absolute(file).parent_path()).string();
     const std::vector<std::string>& names = part.lights.names;
@@ -181,6 +182,7 @@ PartFile part_in(const ExrFile& exr, const std::filesystem::path& file) {
     FramePart& part = result.part;
     part.display = exr.display, part.low = exr.low, part.size = exr.size;
     part.covered = header.text("tyndall:partCovered") == "1";
+    part.colored = exr.attributes.contains("tyndall:partColored");
     read_range(header, part), read_lights(header, part), find_sums(exr, file.string(), part);
     return result;
 }

@@ -163,7 +163,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
                       plan,
                       progress,
                       cancel,
-                      channel_names(lights, request.exr),
+                      channel_names(lights, has_colored_fog(scene), request.exr),
                       first ? std::move(*first) : LoadedFrame{}};
     run(pipeline);
 

@@ -59,7 +59,11 @@ Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown) {
     case ShownLayer::fog:
         return coded(layers, [&](int x, int y) { return display_code(layers.inscatter.at(x, y), display, x, y); });
     case ShownLayer::transmittance:
-        return coded(layers, [&](int x, int y) { return plain_code(vec3(layers.transmittance.at(x, y)), x, y); });
+        return coded(layers, [&](int x, int y) {
+            const bool colored = !layers.channel_transmittance.empty();
+            const vec3 shown = colored ? layers.channel_transmittance.at(x, y) : vec3(layers.transmittance.at(x, y));
+            return plain_code(shown, x, y);
+        });
     case ShownLayer::depth: {
         const float middle = median_depth(layers.depth);
         return coded(layers,

@@ -67,6 +67,28 @@ TEST(Channels, ABackgroundComesThroughByItsColor) {
     EXPECT_NEAR(seen.layers.transmittance.at(4, 4), mean_component(through), 0.005f);
 }
 
+TEST(Channels, EachHasItsTransmittanceWhoseMeanIsThatOfAll) {
+    for (const char* mode : {"march", "path", "froxel"}) {
+        Seen seen;
+        see(scene_text(text(extinction)), mode, seen, true, 64);
+        vec3 sum(0);
+        for (size_t i = 0; i < seen.layers.transmittance.pixels.size(); ++i)
+            EXPECT_NEAR(mean_component(seen.layers.channel_transmittance.pixels[i]),
+                        seen.layers.transmittance.pixels[i], 1e-6f);
+        for (int y = 2; y < 6; ++y)
+            for (int x = 2; x < 6; ++x) sum += seen.layers.channel_transmittance.at(x, y) / 16.0f;
+        const bool noisy = mode == std::string_view("path");                 // a sample comes through or does not
+        const float slices = mode == std::string_view("froxel") ? 0.04f : 0; // its slices cut the edges of the box
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c], through[c],
+                        0.005f + slices + (noisy ? 4.5f * std::sqrt((1 - through[c]) * through[c] / 1024) : 0))
+                << mode;
+    }
+    Seen grey;
+    see(scene_text("0.5"), "march", grey);
+    EXPECT_TRUE(grey.layers.channel_transmittance.empty());
+}
+
 // A sample comes through or does not.
 TEST(Channels, ABackgroundComesThroughPathsByItsColor) {
     constexpr int samples = 256;

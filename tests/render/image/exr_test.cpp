@@ -92,7 +92,7 @@ TEST(Exr, NamesItsChannelsBeforehand) {
     for (const auto& channel : read_exr(directory.file("a.exr")).channels) names.push_back(channel.first);
     for (const auto& light : layers.lights) lights.push_back(light.first);
     lights.push_back("Key light"); // lights of one name share a layer
-    EXPECT_EQ(names, channel_names(lights, all_layers));
+    EXPECT_EQ(names, channel_names(lights, false, all_layers));
     EXPECT_EQ(names.size(), 10u + 5 * 3);
     for (const std::string& name : names) {
         EXPECT_LE(name.size(), 31u);

@@ -57,7 +57,7 @@ TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
 
     std::vector<std::string> names;
     for (const auto& channel : exr.channels) names.push_back(channel.first);
-    EXPECT_EQ(names, channel_names({}, options));
+    EXPECT_EQ(names, channel_names({}, false, options));
     EXPECT_EQ(names.size(), 4u + 9);
     const auto expect = [&](const std::string& layer, vec3 value) {
         for (int c = 0; c < 3; ++c) EXPECT_EQ(exr.channel(layer + "RGB"[c])->at(2, 1), value[c]) << layer << c;
