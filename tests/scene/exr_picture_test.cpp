@@ -263,7 +263,9 @@ void expect_picture_or_line(const std::string& bytes, bool repeats) {
         }
     };
     const std::string first = outcome(), second = outcome();
-    if (repeats) EXPECT_EQ(first, second);
+    if (repeats) {
+        EXPECT_EQ(first, second);
+    }
 }
 
 // Small files of each way to store a picture.

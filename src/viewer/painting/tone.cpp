@@ -61,8 +61,8 @@ Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown) {
     case ShownLayer::transmittance:
         return coded(layers, [&](int x, int y) {
             const bool colored = !layers.channel_transmittance.empty();
-            const vec3 shown = colored ? layers.channel_transmittance.at(x, y) : vec3(layers.transmittance.at(x, y));
-            return plain_code(shown, x, y);
+            const vec3 passed = colored ? layers.channel_transmittance.at(x, y) : vec3(layers.transmittance.at(x, y));
+            return plain_code(passed, x, y);
         });
     case ShownLayer::depth: {
         const float middle = median_depth(layers.depth);
