@@ -178,7 +178,8 @@ int affordable_by_surfaces(const Scene& scene) {
 }
 }
 
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_pictures) {
+int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_pictures,
+                  int finer) {
     if (!changes_while_open(scene, camera, shutter)) return 1;
     float wanted = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
     if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
@@ -190,7 +191,7 @@ int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const S
     const double pixels = static_cast<double>(size.x) * size.y;
     const int by_pixels =
         keeps_pictures ? within(max_picture_bytes / (pixels * bytes_per_pixel), max_costly_moments) : max_usual_moments;
-    return std::min({std::clamp(count, fewest_moments, max_usual_moments), affordable_by_surfaces(scene),
-                     affordable_by_lights(scene, everything), by_pixels});
+    return std::min({finer * std::clamp(count, fewest_moments, max_usual_moments), max_usual_moments,
+                     affordable_by_surfaces(scene), affordable_by_lights(scene, everything), by_pixels});
 }
 }

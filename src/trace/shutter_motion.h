@@ -17,10 +17,10 @@ float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, c
 bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
 
 // A power of two: so many that the moments lie no more than 0.75 pixels apart, or max_usual_moments; at least 4 where
-// anything changes, else 1. Fewer where moving triangles would take more than 1 GiB, and, down to max_costly_moments,
-// where what lights have in fog of voxels would take more than 4 GiB or, with `keeps_pictures`, what a mode has of each
-// pixel more than 2. Fog that its velocities move takes max_costly_moments: its speed is in files that are not read
-// yet.
+// anything changes, else 1; `finer` times as many where the error counts. Fewer where moving triangles would take more
+// than 1 GiB, and, down to max_costly_moments, where what lights have in fog of voxels would take more than 4 GiB or,
+// with `keeps_pictures`, what a mode has of each pixel more than 2. Fog that its velocities move takes
+// max_costly_moments: its speed is in files that are not read yet.
 int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
-                  bool keeps_pictures = false);
+                  bool keeps_pictures = false, int finer = 1);
 }

@@ -21,7 +21,7 @@ FILM = """{
   "background": { "color": [0.10, 0.20, 0.30] }
 }
 """
-SLIDERS, VALUES = range(290, 620, 15), (1120, 1230)  # pixels of the window
+SLIDERS, VALUES = range(312, 642, 15), (1120, 1230)  # pixels of the window
 # The picture is as wide as the space left of the panel; the lamp stands a little above its middle.
 LAMP = (467, 366)
 

@@ -115,6 +115,10 @@ bool wants_layer(const RenderRequest& request, std::string_view layer) {
 }
 
 Shutter shutter_of(const Scene& scene, const RenderRequest& request) {
+    // One that was moved by hand is none of the scene's, and what it sees is a still.
+    const bool own =
+        request.camera.empty() || std::ranges::count(scene.cameras, request.camera, &CameraSource::name) > 0;
+    if (!own) return request.shutter.value_or(Shutter{});
     Shutter shutter = scene.cameras[static_cast<size_t>(find_camera(scene, request.camera))].shutter;
     if (!request.shutter) return shutter;
     shutter.open = request.shutter->open, shutter.close = request.shutter->close;
@@ -130,8 +134,10 @@ FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int fr
     // A mode that is yet to be chosen may be one of those.
     const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.remembers; };
     const bool keeps_pictures = std::ranges::none_of(modes(), keeps_none);
-    const int count = request.time_samples > 0 ? request.time_samples
-                                               : usual_moments(scene, camera, size, frame, shutter, keeps_pictures);
+    const int finer = request.target_error > 0 ? 2 : 1; // what half of them leave is part of the error asked for
+    const int count = request.time_samples > 0
+                          ? request.time_samples
+                          : usual_moments(scene, camera, size, frame, shutter, keeps_pictures, finer);
     return frame_moments(scene, frame, shutter, count);
 }
 
